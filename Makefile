@@ -1,0 +1,37 @@
+# Two commands for a newcomer: `make demo` and `make test`. Both set everything up first.
+PYTHON ?= python3
+VENV   ?= .venv
+BIN    := $(VENV)/bin
+READY  := $(VENV)/.ready
+
+.PHONY: demo test check serve openapi bench clean
+
+$(READY): pyproject.toml constraints.txt
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --upgrade pip
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[service,dev]'
+	touch $@
+
+demo: $(READY)            ## repair a real scan over HTTP; results land in demo/
+	$(BIN)/python -m onebox demo
+
+serve: $(READY)           ## one box on http://127.0.0.1:8000 until Ctrl-C
+	$(BIN)/python -m onebox serve
+
+test: $(READY)            ## every test, with the real Valkey
+	$(BIN)/python -m pytest -n 2 --dist loadfile
+
+check: $(READY)           ## ruff, import rules, types
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/lint-imports
+	$(BIN)/mypy
+
+openapi: $(READY)         ## write openapi.yaml from the app
+	$(BIN)/python -m service openapi > openapi.yaml
+
+bench: $(READY)           ## speed of the method's stages
+	$(BIN)/python -m benchmarks.stages
+
+clean:
+	rm -rf $(VENV) demo var build dist *.egg-info

@@ -1,0 +1,89 @@
+"""Everything that the method raises on purpose.
+
+::
+
+    QuadpatchError              code
+    ├── MeshError
+    │   ├── ReadError           unreadable_mesh       the bytes are no mesh of that format
+    │   ├── FormatError         unsupported_format    a format or feature that is not read or written
+    │   ├── EmptyMeshError      empty_mesh            no vertex or no face
+    │   ├── NotFiniteError      not_finite            infinite or NaN coordinates
+    │   ├── IndexRangeError     index_out_of_range    a face names a vertex that is not there
+    │   └── TooLargeError       mesh_too_large        over a limit of the reader
+    ├── OptionError             invalid_option        an option outside its range, an unknown hole id
+    ├── ModelError              unusable_model        a model file that is broken or of the wrong kind
+    └── StageError              stage_failed          a stage could not do its work on this mesh
+        └── NoQuadsError        no_quads              the outline is too small or too thin for one quad
+"""
+
+
+class QuadpatchError(Exception):
+    """Base of all errors of the method; `code` is stable and meant for programs."""
+
+    code = "quadpatch_error"
+
+
+class MeshError(QuadpatchError):
+    """The mesh itself can't be worked on."""
+
+    code = "invalid_mesh"
+
+
+class ReadError(MeshError):
+    """The bytes are no mesh of that format."""
+
+    code = "unreadable_mesh"
+
+
+class FormatError(MeshError):
+    """A format, or a feature of one, that is not read or written here."""
+
+    code = "unsupported_format"
+
+
+class EmptyMeshError(MeshError):
+    """No vertex or no face."""
+
+    code = "empty_mesh"
+
+
+class NotFiniteError(MeshError):
+    """Infinite or NaN coordinates."""
+
+    code = "not_finite"
+
+
+class IndexRangeError(MeshError):
+    """A face names a vertex that is not there."""
+
+    code = "index_out_of_range"
+
+
+class TooLargeError(MeshError):
+    """Over a limit of the reader."""
+
+    code = "mesh_too_large"
+
+
+class OptionError(QuadpatchError):
+    """An option outside its range, or one that does not fit the mesh."""
+
+    code = "invalid_option"
+
+
+class ModelError(QuadpatchError):
+    """A model file that is broken, or of the wrong kind."""
+
+    code = "unusable_model"
+
+
+class StageError(QuadpatchError):
+    """A stage could not do its work on this mesh."""
+
+    code = "stage_failed"
+
+
+class NoQuadsError(StageError):
+    """The outline is too small or too thin to carry one quad."""
+
+    code = "no_quads"
