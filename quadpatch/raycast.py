@@ -1,0 +1,130 @@
+"""Rays against a triangle mesh; the one place that talks to embree.
+
+Embree works in float32, and reads the buffers it was given for as long as the scene lives. So the mesh is moved and
+scaled into the unit ball first, the buffers are kept next to the scene (without them hits go missing and nothing
+says so), and only the *choice* of triangle is embree's: the distance is computed here, in float64, from the plane
+of that triangle.
+"""
+
+import numpy as np
+from embreex.mesh_construction import TriangleMesh as EmbreeMesh
+from embreex.rtcore_scene import EmbreeScene
+
+from quadpatch.types import FloatArray, IntArray, TriangleMesh
+
+# In the unit ball a float32 coordinate is off by up to 6e-8; two surfaces closer than this can't be told apart.
+_RESOLUTION = 1e-6
+# A ray through an edge can slip between its two triangles. It is cast again, moved sideways by this much.
+_JITTER = 3e-7
+# Rays start at most this far before the point where they come closest to the ball's centre.
+_RUN_UP = 2.0
+
+
+class RayScene:
+    """A mesh, ready to be asked what a ray hits first.
+
+    Building takes about 60 ms for 128,000 triangles, 700,000 rays about 0.3 s on one core. The answers are
+    deterministic. Vertices that no triangle uses don't matter, triangles without area are never hit.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+        Vertices must be finite. An empty mesh is allowed: nothing is ever hit.
+
+    Attributes
+    ----------
+    resolution : float
+        In mesh units: surfaces closer together than this may be mixed up. A ray that should see a surface it starts
+        on has to start at least this far before it.
+    """
+
+    def __init__(self, mesh: TriangleMesh) -> None:
+        self._centre, self._radius = _ball(mesh)
+        self.resolution = _RESOLUTION * self._radius
+        unit = (mesh.vertices - self._centre) / self._radius
+        # Embree reads these two arrays as long as the scene lives; see the module docstring.
+        self._vertex_buffer = np.ascontiguousarray(unit, dtype=np.float32)
+        self._triangle_buffer = np.ascontiguousarray(mesh.triangles, dtype=np.int32)
+        self._scene = EmbreeScene(robust=True)
+        self._is_empty = len(mesh.triangles) == 0
+        if not self._is_empty:
+            self._geometry = EmbreeMesh(self._scene, self._vertex_buffer, self._triangle_buffer)
+        corners = unit[mesh.triangles]
+        self._corner = corners[:, 0].copy()
+        # Not of unit length: only its direction enters the distance.
+        self._normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+
+    def cast(self, origins: FloatArray, directions: FloatArray) -> tuple[IntArray, FloatArray]:
+        """Find the first triangle along each ray.
+
+        Parameters
+        ----------
+        origins : (n, 3) float64
+            In mesh units.
+        directions : (n, 3) float64
+            Of any length but zero.
+
+        Returns
+        -------
+        triangle : (n,) int64
+            -1 where the ray hits nothing.
+        distance : (n,) float64
+            From the origin to the plane of that triangle along the ray, in mesh units; infinite where nothing is
+            hit. May fall short of zero by up to `resolution` for a ray that starts on the surface.
+        """
+        triangle = np.full(len(origins), -1, dtype=np.int64)
+        distance = np.full(len(origins), np.inf)
+        if self._is_empty or len(origins) == 0:
+            return triangle, distance
+        unit_directions = directions / np.linalg.norm(directions, axis=1, keepdims=True)
+        start = (origins - self._centre) / self._radius
+        # A far origin would cost float32 digits: slide it along the ray to just before the ball.
+        slide = np.maximum(-np.einsum("ij,ij->i", start, unit_directions) - _RUN_UP, 0.0)
+        start += slide[:, None] * unit_directions
+        triangle[:] = self._first_hit(start, unit_directions)
+        hit = np.flatnonzero(triangle >= 0)
+        normal = self._normal[triangle[hit]]
+        along = np.einsum("ij,ij->i", self._corner[triangle[hit]] - start[hit], normal)
+        steepness = np.einsum("ij,ij->i", unit_directions[hit], normal)
+        # A ray within the plane of its triangle has no one distance; that counts as a miss.
+        is_grazing = steepness == 0.0
+        triangle[hit[is_grazing]] = -1
+        hit, along, steepness = hit[~is_grazing], along[~is_grazing], steepness[~is_grazing]
+        distance[hit] = (along / steepness + slide[hit]) * self._radius
+        return triangle, distance
+
+    def _first_hit(self, origins: FloatArray, directions: FloatArray) -> IntArray:
+        triangle = self._run(origins, directions)
+        missed = np.flatnonzero(triangle < 0)
+        if len(missed):
+            sideways = _perpendicular(directions[missed])
+            triangle[missed] = self._run(origins[missed] + _JITTER * sideways, directions[missed])
+        return triangle
+
+    def _run(self, origins: FloatArray, directions: FloatArray) -> IntArray:
+        hit = self._scene.run(
+            np.ascontiguousarray(origins, dtype=np.float32), np.ascontiguousarray(directions, dtype=np.float32)
+        )
+        return np.asarray(hit, dtype=np.int64)
+
+
+def _ball(mesh: TriangleMesh) -> tuple[FloatArray, float]:
+    """Centre of the bounding box of all used vertices, and half its diagonal (1 for an empty or pointlike mesh)."""
+    if len(mesh.triangles) == 0:
+        return np.zeros(3), 1.0
+    is_used = np.zeros(len(mesh.vertices), dtype=bool)
+    is_used[mesh.triangles] = True
+    used = mesh.vertices[is_used]
+    low, high = used.min(axis=0), used.max(axis=0)
+    return 0.5 * (low + high), float(np.linalg.norm(high - low)) / 2 or 1.0
+
+
+def _perpendicular(directions: FloatArray) -> FloatArray:
+    """One unit vector at right angles to each direction, the same every time and in no special direction."""
+    # The axis of the smallest component is the one that the direction can't be parallel to.
+    axis = np.eye(3)[np.argmin(np.abs(directions), axis=1)]
+    first = np.cross(directions, axis)
+    first /= np.linalg.norm(first, axis=1, keepdims=True)
+    second = np.cross(directions, first)
+    # Off both axes of the plane, so that a ray on a grid line leaves the line.
+    return np.asarray(0.8 * first + 0.6 * second)
