@@ -1,0 +1,1 @@
+"""Sparse coding: dictionaries, masked orthogonal matching pursuit, K-SVD."""

@@ -1,0 +1,87 @@
+"""From the heights of a patch to the signals that a dictionary codes, and back.
+
+A signal is the detail of a patch (its heights over a smooth surface) shifted by the mean of its known bins and
+divided by their spread, so that a shallow and a deep relief of the same shape give the same signal. Training and
+inpainting both call this module: a dictionary only fits signals made the way its own were.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from quadpatch.types import BoolArray, FloatArray
+
+# What model cards call this normalisation; a model made with another one can't be used here.
+NORMALISATION = "detail-mean-spread"
+
+# A spread this small against the heights themselves is rounding, not relief.
+FLAT = 1e-9
+
+
+@dataclass(frozen=True)
+class Scaling:
+    """What was taken out of every patch: ``detail = mean + spread * signal``.
+
+    Attributes
+    ----------
+    mean : (n_patches,) float64
+        Mean detail of the known bins, in mesh units; 0 where none is known.
+    spread : (n_patches,) float64
+        Standard deviation of the known bins' detail, in mesh units; 0 where the patch is flat or has no known bin.
+    """
+
+    mean: FloatArray
+    spread: FloatArray
+
+
+def to_signals(detail: FloatArray, known: BoolArray, least_spread: float = 0.0) -> tuple[FloatArray, Scaling]:
+    """Bring patches to mean 0 and standard deviation 1 over their known bins.
+
+    Parameters
+    ----------
+    detail : (n_patches, N, N) float64
+        Height over the smooth surface, in mesh units; unknown bins may hold anything.
+    known : (n_patches, N, N) bool
+        True = measured bin.
+    least_spread : float
+        In mesh units. Patches that vary less are divided by this instead, so that noise stays small.
+
+    Returns
+    -------
+    signals : (n_patches, N * N) float64
+        0 in unknown bins, and everywhere in flat patches.
+    scaling : Scaling
+        For `from_signals`.
+    """
+    n_patches = len(detail)
+    flat_known = known.reshape(n_patches, -1)
+    values = np.where(flat_known, detail.reshape(n_patches, -1), 0.0)
+    count = np.maximum(flat_known.sum(axis=1), 1)
+    mean = values.sum(axis=1) / count
+    centred = np.where(flat_known, values - mean[:, None], 0.0)
+    spread = np.sqrt((centred**2).sum(axis=1) / count)
+    spread = np.where(spread > FLAT * np.abs(values).max(axis=1, initial=0.0), spread, 0.0)
+    spread = np.where(spread > 0.0, np.maximum(spread, least_spread), 0.0)
+    signals = np.divide(centred, spread[:, None], out=np.zeros_like(centred), where=spread[:, None] > 0.0)
+    return signals, Scaling(mean, spread)
+
+
+def from_signals(signals: FloatArray, scaling: Scaling) -> FloatArray:
+    """Undo `to_signals`.
+
+    Parameters
+    ----------
+    signals : (n_patches, N * N) float64
+        Completed signals, ``codes @ atoms.T``.
+    scaling : Scaling
+        As `to_signals` gave it.
+
+    Returns
+    -------
+    (n_patches, N, N) float64
+        Detail, in mesh units.
+    """
+    n_patches, n_bins = signals.shape
+    resolution = int(np.sqrt(n_bins))
+    detail = scaling.mean[:, None] + scaling.spread[:, None] * signals
+    return detail.reshape(n_patches, resolution, resolution)
