@@ -1,0 +1,1 @@
+"""The contract between service, workers, training and clients."""

@@ -1,0 +1,16 @@
+"""Identifiers: a mesh is named by the sha256 of its bytes, a job by the time of its birth and chance."""
+
+import secrets
+import time
+
+JOB_ID_PATTERN = r"^job_[0-9a-hjkmnp-tv-z]{26}$"
+SHA256_PATTERN = r"^[0-9a-f]{64}$"
+
+# Crockford's alphabet: no i, l, o, u, so that an id survives being read aloud.
+_ALPHABET = "0123456789abcdefghjkmnpqrstvwxyz"
+
+
+def new_job_id() -> str:
+    """Return a fresh id: 48 bits of milliseconds, then 80 random bits, so that ids sort by age."""
+    number = (time.time_ns() // 1_000_000) << 80 | secrets.randbits(80)
+    return "job_" + "".join(_ALPHABET[number >> shift & 31] for shift in range(125, -1, -5))

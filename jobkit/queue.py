@@ -1,0 +1,94 @@
+"""Queue adapter: RQ as an executor only. The database is the truth; a lost queue is refilled from it.
+
+There is one queue for both kinds of tasks: RQ loses a job when a worker that listens to two queues is killed right
+after the pop. Analyses go to the front, they are short and somebody waits for them.
+"""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from redis import Redis
+from redis.exceptions import RedisError
+from rq import Queue
+from rq.serializers import JSONSerializer
+
+from jobkit.errors import QueueUnavailableError
+
+RUN_JOB = "worker.jobs.run_job"
+INSPECT_MESH = "worker.jobs.inspect_mesh"
+# The engine has limits of its own; this one only frees a worker whose watch over the engine failed.
+_MARGIN_S = 60
+_SOCKET_TIMEOUT_S = 5.0
+
+
+class TaskQueue:
+    """The queue that API and workers share.
+
+    Parameters
+    ----------
+    redis_url : str
+    name : str
+        Name of the RQ queue.
+    time_limit_s : float
+        Most seconds of one attempt; RQ's own limit lies a minute above.
+    """
+
+    def __init__(self, redis_url: str, name: str, time_limit_s: float) -> None:
+        self.connection = Redis.from_url(
+            redis_url, socket_timeout=_SOCKET_TIMEOUT_S, socket_connect_timeout=_SOCKET_TIMEOUT_S
+        )
+        self._queue = Queue(name, connection=self.connection, serializer=JSONSerializer)
+        self._timeout_s = int(time_limit_s) + _MARGIN_S
+
+    def enqueue_job(self, job_id: str, attempt: int) -> None:
+        """Ask for an attempt at a job; `attempt` is the number that it will have. Raise QueueUnavailableError."""
+        self._enqueue(RUN_JOB, job_id, job_entry(job_id, attempt), at_front=False)
+
+    def enqueue_inspection(self, mesh_id: str, attempt: int) -> None:
+        """Ask for the analysis of a mesh; raise QueueUnavailableError."""
+        self._enqueue(INSPECT_MESH, mesh_id, mesh_entry(mesh_id, attempt), at_front=True)
+
+    def waiting(self) -> set[str]:
+        """Return the entries that wait in the queue; raise QueueUnavailableError."""
+        with _translated():
+            return set(self._queue.get_job_ids())
+
+    def ping(self) -> None:
+        """Raise QueueUnavailableError if Redis does not answer."""
+        with _translated():
+            self.connection.ping()
+
+    def close(self) -> None:
+        """Close all connections."""
+        self.connection.close()
+
+    def _enqueue(self, function: str, subject: str, entry: str, *, at_front: bool) -> None:
+        with _translated():
+            self._queue.enqueue_call(
+                function,
+                args=(subject,),
+                timeout=self._timeout_s,
+                result_ttl=0,
+                failure_ttl=3600,
+                job_id=entry,
+                at_front=at_front,
+            )
+
+
+def job_entry(job_id: str, attempt: int) -> str:
+    """Return the name of the queue's entry for that attempt at a job."""
+    return f"{job_id}-{attempt}"
+
+
+def mesh_entry(mesh_id: str, attempt: int) -> str:
+    """Return the name of the queue's entry for that attempt at an analysis."""
+    return f"mesh_{mesh_id}-{attempt}"
+
+
+@contextmanager
+def _translated() -> Iterator[None]:
+    try:
+        yield
+    except (RedisError, OSError) as error:
+        # The URL may hold a password, so the text of the error stays in the log.
+        raise QueueUnavailableError("the queue does not answer") from error

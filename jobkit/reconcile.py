@@ -1,0 +1,124 @@
+"""Make the queue follow the database again.
+
+The queue may lose entries: a Valkey without its log, a worker killed right after the pop. So whatever waits in the
+database and is not in the queue is put there again; twins are harmless, since only one can start an attempt.
+"""
+
+from dataclasses import dataclass
+from datetime import datetime, timedelta
+
+from sqlalchemy import select, update
+
+from jobkit.attempts import Attempts
+from jobkit.clock import utc_now
+from jobkit.database import Database
+from jobkit.queue import TaskQueue, job_entry, mesh_entry
+from jobkit.schema import JobState, MeshProblem, MeshState
+from jobkit.tables import JobRow, MeshRow
+
+# Between the pop and the start of the attempt an entry is in neither place.
+GRACE_S = 10.0
+MAX_ANALYSES = 3
+
+
+@dataclass(frozen=True)
+class Reconciled:
+    """What one look found."""
+
+    expired: int
+    enqueued_jobs: int
+    enqueued_meshes: int
+
+
+def reconcile(database: Database, queue: TaskQueue, now: datetime | None = None) -> Reconciled:
+    """Take back expired leases and refill the queue.
+
+    Raises
+    ------
+    QueueUnavailableError
+        If Redis does not answer; leases have been taken back even so.
+    """
+    moment = now or utc_now()
+    expired = Attempts(database).take_back_expired(moment)
+    _give_up_analyses(database, moment)
+    waiting = queue.waiting()
+    jobs = _enqueue_jobs(database, queue, waiting, moment)
+    meshes = _enqueue_meshes(database, queue, waiting, moment)
+    return Reconciled(len(expired), jobs, meshes)
+
+
+def submit_job(database: Database, queue: TaskQueue, job_id: str, attempt: int) -> None:
+    """Put a queued job into the queue and note when; `attempt` is the number it has now.
+
+    Raises
+    ------
+    QueueUnavailableError
+        If Redis does not answer; the row stays queued, and `reconcile` picks it up later.
+    """
+    queue.enqueue_job(job_id, attempt + 1)
+    with database.write() as session:
+        session.execute(
+            update(JobRow)
+            .where(JobRow.id == job_id, JobRow.state == JobState.QUEUED.value, JobRow.attempt == attempt)
+            .values(enqueued_at=utc_now())
+        )
+
+
+def submit_analysis(database: Database, queue: TaskQueue, mesh_id: str) -> None:
+    """Put a mesh that waits for its analysis into the queue; nothing happens where none is due. Raises like above."""
+    with database.read() as session:
+        query = select(MeshRow.attempt).where(MeshRow.id == mesh_id, MeshRow.state == MeshState.ANALYSING.value)
+        attempt = session.scalars(query).one_or_none()
+    if attempt is None:
+        return
+    queue.enqueue_inspection(mesh_id, attempt + 1)
+    with database.write() as session:
+        session.execute(update(MeshRow).where(MeshRow.id == mesh_id).values(enqueued_at=utc_now()))
+
+
+def _enqueue_jobs(database: Database, queue: TaskQueue, waiting: set[str], now: datetime) -> int:
+    with database.read() as session:
+        query = select(JobRow.id, JobRow.attempt, JobRow.enqueued_at, JobRow.updated_at)
+        rows = session.execute(query.where(JobRow.state == JobState.QUEUED.value).order_by(JobRow.id)).all()
+    lost = [
+        (job_id, attempt)
+        for job_id, attempt, enqueued_at, updated_at in rows
+        if job_entry(job_id, attempt + 1) not in waiting and _is_overdue(enqueued_at, now)
+    ]
+    for job_id, attempt in lost:
+        submit_job(database, queue, job_id, attempt)
+    return len(lost)
+
+
+def _enqueue_meshes(database: Database, queue: TaskQueue, waiting: set[str], now: datetime) -> int:
+    with database.read() as session:
+        query = select(MeshRow.id, MeshRow.attempt, MeshRow.enqueued_at, MeshRow.lease_until)
+        rows = session.execute(query.where(MeshRow.state == MeshState.ANALYSING.value)).all()
+    lost = [
+        mesh_id
+        for mesh_id, attempt, enqueued_at, lease_until in rows
+        if mesh_entry(mesh_id, attempt + 1) not in waiting
+        and _is_overdue(enqueued_at, now)
+        and (lease_until is None or lease_until < now)
+    ]
+    for mesh_id in lost:
+        submit_analysis(database, queue, mesh_id)
+    return len(lost)
+
+
+def _give_up_analyses(database: Database, now: datetime) -> None:
+    problem = MeshProblem(code="analysis_failed", message=f"the analysis was lost {MAX_ANALYSES} times")
+    with database.write() as session:
+        session.execute(
+            update(MeshRow)
+            .where(
+                MeshRow.state == MeshState.ANALYSING.value,
+                MeshRow.attempt >= MAX_ANALYSES,
+                MeshRow.lease_until < now,
+            )
+            .values(state=MeshState.REJECTED.value, problem=problem.model_dump(mode="json"), updated_at=now)
+        )
+
+
+def _is_overdue(enqueued_at: datetime | None, now: datetime) -> bool:
+    return enqueued_at is None or enqueued_at < now - timedelta(seconds=GRACE_S)

@@ -1,0 +1,153 @@
+"""Jobs, their events and results as clients see them."""
+
+from typing import Any, Literal
+
+from pydantic import Field
+
+from jobkit.schema.base import JobId, MeshId, Moment, Response, Sha256
+from jobkit.schema.meshes import Hole
+from jobkit.schema.models import ResolvedModel
+from jobkit.schema.spec import JobSpec, Limits, OutputFormat
+from jobkit.schema.states import JobState
+
+STAGES = (
+    "read",
+    "holes",
+    "fill",
+    "smooth",
+    "quadrangulate",
+    "patchify",
+    "learn",
+    "inpaint",
+    "reconstruct",
+    "judge",
+    "write",
+)
+
+
+class JobError(Response):
+    """Why a job, or an attempt, failed."""
+
+    code: str = Field(description="Stable code.", examples=["time_limit"])
+    message: str = Field(description="A sentence for people.", examples=["the repair took longer than 120 s"])
+    stage: str | None = Field(default=None, description="Stage of the method that failed.", examples=["inpaint"])
+    retryable: bool = Field(default=False, description="Whether the same job may succeed another time.")
+
+
+class HoleCounts(Response):
+    """Verdicts over all holes."""
+
+    found: int = Field(default=0, ge=0, description="Boundary loops found.", examples=[39])
+    filled: int = Field(default=0, ge=0, description="Filled with the model.", examples=[36])
+    filled_smooth: int = Field(default=0, ge=0, description="Filled without it: the smooth fall-back.", examples=[2])
+    skipped: int = Field(default=0, ge=0, description="Left open by rule.", examples=[1])
+    refused: int = Field(default=0, ge=0, description="Left open because they can't be filled well.", examples=[0])
+
+
+class ResultFile(Response):
+    """One file of a result."""
+
+    role: Literal["result", "report", "preview"] = Field(description="What it is.", examples=["result"])
+    name: str = Field(pattern=r"^[A-Za-z0-9._-]{1,100}$", description="Name in the store.", examples=["repaired.ply"])
+    media_type: str = Field(description="Media type.", examples=["application/octet-stream"])
+    size_bytes: int = Field(ge=0, description="Size, in bytes.", examples=[3_300_000])
+    sha256: Sha256
+
+
+class JobResult(Response):
+    """Facts of a finished repair."""
+
+    format: OutputFormat = Field(description="Format of the repaired mesh.", examples=["ply"])
+    holes: HoleCounts = Field(default_factory=HoleCounts, description="Verdicts over all holes.")
+    new_vertices: int = Field(default=0, ge=0, description="Vertices that were added.", examples=[2110])
+    new_triangles: int = Field(default=0, ge=0, description="Triangles that were added.", examples=[4800])
+    seconds: float = Field(default=0.0, ge=0, description="Wall-clock seconds of the repair.", examples=[14.2])
+    warnings: list[str] = Field(default_factory=list, description="Sentences for people.")
+    files: list[ResultFile] = Field(default_factory=list, description="What can be fetched.")
+
+    def file(self, role: str) -> ResultFile | None:
+        """Return the file of that role, None where there is none."""
+        return next((file for file in self.files if file.role == role), None)
+
+
+class JobLinks(Response):
+    """Paths on this service; null where there is nothing to fetch or do."""
+
+    self: str = Field(description="This job.")
+    events: str = Field(description="Its event log.")
+    mesh: str = Field(description="The mesh it repairs.")
+    rerun: str = Field(description="POST here to run the same spec again.")
+    cancel: str | None = Field(default=None, description="POST here to cancel.")
+    result: str | None = Field(default=None, description="The repaired mesh.")
+    report: str | None = Field(default=None, description="The JSON report.")
+    preview: str | None = Field(default=None, description="The before/after picture.")
+
+
+class Job(Response):
+    """A repair, from the promise to the result."""
+
+    id: JobId
+    state: JobState = Field(description="Where it stands.", examples=["running"])
+    attempt: int = Field(ge=0, description="Attempts started so far.", examples=[1])
+    max_attempts: int = Field(ge=1, description="Attempts before the job is given up.", examples=[3])
+    stage: str | None = Field(default=None, description="Stage of the method at work.", examples=["inpaint"])
+    percent: float = Field(ge=0, le=100, description="Share of the whole repair that is done.", examples=[62.5])
+    created_at: Moment = Field(description="When it was accepted, RFC 3339.")
+    started_at: Moment | None = Field(default=None, description="When its latest attempt started, RFC 3339.")
+    finished_at: Moment | None = Field(default=None, description="When it ended, RFC 3339.")
+    mesh_id: MeshId
+    model: ResolvedModel = Field(description="The model version it is pinned to.")
+    spec: JobSpec = Field(description="What it was asked to do, with defaults written out.")
+    error: JobError | None = Field(default=None, description="Set once the state is `failed`.")
+    result: JobResult | None = Field(default=None, description="Set once it succeeded.")
+    rerun_of: JobId | None = Field(default=None, description="The job that this one repeats.")
+    revision: int = Field(ge=1, description="Raised by every change; the number of its latest event.", examples=[7])
+    links: JobLinks = Field(description="Paths on this service.")
+
+
+EventType = Literal["queued", "started", "progress", "requeued", "cancel_requested", "canceled", "succeeded", "failed"]
+
+
+class Event(Response):
+    """One change of a job."""
+
+    sequence: int = Field(ge=1, description="Counts up from 1 within a job.", examples=[3])
+    type: EventType = Field(description="What happened.", examples=["progress"])
+    at: Moment = Field(description="When, RFC 3339.")
+    attempt: int = Field(ge=0, description="The attempt it belongs to.", examples=[1])
+    data: dict[str, Any] = Field(
+        default_factory=dict, description="Facts of the change.", examples=[{"stage": "inpaint", "percent": 62.5}]
+    )
+
+
+class JobPage(Response):
+    """One page of jobs, newest first."""
+
+    items: list[Job] = Field(description="Newest first.")
+    next_cursor: str | None = Field(
+        default=None, description="Pass as `cursor` to go on; null on the last page.", examples=["job_01jd…"]
+    )
+
+
+class EventPage(Response):
+    """One page of a job's events, oldest first."""
+
+    items: list[Event] = Field(description="Oldest first.")
+    next_after: int | None = Field(default=None, description="Pass as `after` to go on; null on the last page.")
+
+
+class PlannedHole(Hole):
+    """A hole, and what the job would do with it."""
+
+    selected: bool = Field(description="Whether the job would fill it.")
+    reason: str | None = Field(default=None, description="Why it would stay open.", examples=["too_wide"])
+
+
+class Plan(Response):
+    """What a job would do; nothing was started."""
+
+    mesh_id: MeshId
+    model: ResolvedModel = Field(description="The model version it would be pinned to.")
+    holes: list[PlannedHole] = Field(description="All holes of the mesh, longest rim first.")
+    selected: int = Field(ge=0, description="How many would be filled.", examples=[38])
+    limits: Limits = Field(description="The ceilings that would hold.")

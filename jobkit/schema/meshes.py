@@ -1,0 +1,73 @@
+"""Meshes and their holes as clients see them. Lengths are in mesh units; `unit` names them where the file does."""
+
+from typing import Annotated
+
+from pydantic import Field
+
+from jobkit.schema.base import MeshId, Moment, Response
+from jobkit.schema.spec import Format
+from jobkit.schema.states import MeshState
+
+Point = Annotated[list[float], Field(min_length=3, max_length=3)]
+
+
+class Hole(Response):
+    """One boundary loop."""
+
+    id: int = Field(ge=0, description="Counts from 0, longest rim first.", examples=[3])
+    perimeter: float = Field(ge=0, description="Length of the rim, in mesh units.", examples=[31.4])
+    diameter: float = Field(ge=0, description="Largest distance within the rim, in mesh units.", examples=[10.0])
+    area: float = Field(ge=0, description="Area on the rim's best plane, in square mesh units.", examples=[78.5])
+    planarity: float = Field(ge=0, description="Distance of the rim from its plane by its diameter; 0 is flat.")
+    edges: int = Field(ge=0, description="Edges of the rim.", examples=[36])
+    is_manifold: bool = Field(default=True, description="False where the rim can't be filled.")
+
+
+class BoundingBox(Response):
+    """Corners of the box around all vertices, in mesh units."""
+
+    min: Point = Field(description="Smallest coordinates.", examples=[[-1.0, -1.0, 0.0]])
+    max: Point = Field(description="Largest coordinates.", examples=[[1.0, 1.0, 2.0]])
+
+
+class MeshFacts(Response):
+    """What the analysis found."""
+
+    format: Format = Field(description="Format that the file was read as.", examples=["ply"])
+    unit: str | None = Field(
+        default=None, description="Length unit that the file states; null: it states none.", examples=["millimeter"]
+    )
+    vertices: int = Field(ge=0, description="Vertices in the file.", examples=[85_182])
+    triangles: int = Field(ge=0, description="Triangles, polygons cut.", examples=[168_702])
+    bounding_box: BoundingBox = Field(description="Box around all vertices.")
+    diagonal: float = Field(ge=0, description="Diagonal of the bounding box, in mesh units.", examples=[3.46])
+    mean_edge_length: float = Field(ge=0, description="Mean length of an edge, in mesh units.", examples=[0.02])
+    holes: list[Hole] = Field(description="Boundary loops, longest rim first.")
+
+
+class MeshProblem(Response):
+    """Why a mesh was rejected."""
+
+    code: str = Field(description="Stable code.", examples=["unreadable_mesh"])
+    message: str = Field(description="A sentence for people.", examples=["the header promises 10 vertices, 3 follow"])
+
+
+class MeshLinks(Response):
+    """Paths on this service."""
+
+    self: str = Field(description="This mesh.")
+    content: str = Field(description="Its bytes, as uploaded.")
+
+
+class Mesh(Response):
+    """An uploaded mesh."""
+
+    id: MeshId
+    state: MeshState = Field(description="Whether a worker has analysed the file.", examples=["ready"])
+    filename: str | None = Field(default=None, description="As the sender named it.", examples=["face000.ply"])
+    format: Format | None = Field(default=None, description="As stated or seen; null: unknown.", examples=["ply"])
+    size_bytes: int = Field(ge=0, description="Size of the file, in bytes.", examples=[3_212_000])
+    created_at: Moment = Field(description="When it was first uploaded, RFC 3339.")
+    facts: MeshFacts | None = Field(default=None, description="Set once the state is `ready`.")
+    problem: MeshProblem | None = Field(default=None, description="Set once the state is `rejected`.")
+    links: MeshLinks = Field(description="Paths on this service.")

@@ -1,0 +1,132 @@
+"""What a job is asked to do. `{"mesh_id": …}` alone is a whole job."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from jobkit.schema.base import REFERENCE_PATTERN, TEXT_PATTERN, MeshId, ModelReference, Request
+
+Format = Literal["ply", "stl", "obj", "off", "glb", "gltf", "3mf"]
+OutputFormat = Literal["ply", "stl", "obj", "off", "glb", "3mf"]
+DEFAULT_MODEL = "default"
+DEFAULT_NETWORK = "default-network"
+SELF = "self"
+
+Text = Annotated[str, Field(max_length=200, pattern=TEXT_PATTERN)]
+MetadataKey = Annotated[str, Field(pattern=r"^[A-Za-z0-9_.-]{1,64}$")]
+
+
+class PatchOptions(Request):
+    """How patches are laid out. Null means: chosen from the mesh's edge length and the sizes of its holes."""
+
+    length: float | None = Field(
+        default=None, gt=0, le=1e12, description="Side of a patch, in mesh units.", examples=[4.5]
+    )
+    resolution: int | None = Field(
+        default=None, ge=8, le=128, description="Bins along one side of a patch.", examples=[24]
+    )
+    overlap: int | None = Field(
+        default=None,
+        ge=0,
+        le=8,
+        description="k of the paper: every quad carries its centre patch and 4 k offset ones.",
+        examples=[2],
+    )
+
+
+class DictionaryMethod(Request):
+    """Sparse coding over a dictionary of patches."""
+
+    method: Literal["dictionary"] = Field(description="Sparse coding over a dictionary.", examples=["dictionary"])
+    model: str = Field(
+        default=DEFAULT_MODEL,
+        pattern=REFERENCE_PATTERN,
+        description="`name@version`, `name` (its latest version), an alias, or `self`: learn a dictionary from the "
+        "undamaged part of the uploaded mesh.",
+        examples=["self"],
+    )
+    patches: PatchOptions = Field(default_factory=PatchOptions, description="How patches are laid out.")
+
+
+class CnnMethod(Request):
+    """A convolutional network, run by ONNX Runtime."""
+
+    method: Literal["cnn"] = Field(description="A convolutional network.", examples=["cnn"])
+    model: ModelReference = DEFAULT_NETWORK
+    patches: PatchOptions = Field(default_factory=PatchOptions, description="How patches are laid out.")
+
+
+class SmoothMethod(Request):
+    """No learned model: triangulate, refine and fair every hole (thin plate)."""
+
+    method: Literal["smooth"] = Field(description="Thin-plate fill without a model.", examples=["smooth"])
+
+
+Method = Annotated[DictionaryMethod | CnnMethod | SmoothMethod, Field(discriminator="method")]
+
+
+class HoleSelection(Request):
+    """Which holes to fill. With none of these, loops wider than a quarter of the scan's diagonal stay open."""
+
+    max_diameter: float | None = Field(
+        default=None, gt=0, le=1e12, description="Leave wider holes open, in mesh units.", examples=[25.0]
+    )
+    max_perimeter: float | None = Field(
+        default=None, gt=0, le=1e12, description="Leave holes with a longer rim open, in mesh units.", examples=[80.0]
+    )
+    all_but_largest: bool = Field(
+        default=False, description="Leave the loop with the longest rim open: the border of an open scan."
+    )
+    ids: list[Annotated[int, Field(ge=0, le=2**31 - 1)]] | None = Field(
+        default=None,
+        min_length=1,
+        max_length=100_000,
+        description="Just these holes, by the ids of the mesh's hole list.",
+        examples=[[0, 3, 4]],
+    )
+
+
+class Output(Request):
+    """What the job hands back."""
+
+    format: OutputFormat | None = Field(
+        default=None, description="Format of the repaired mesh; null: that of the upload.", examples=["ply"]
+    )
+    preview: bool = Field(default=True, description="Whether to draw a before/after picture.")
+
+
+class Limits(Request):
+    """Ceilings of one attempt, at most those of the service. Null: those of the service."""
+
+    time_s: float | None = Field(default=None, ge=1, le=86_400, description="Wall-clock seconds.", examples=[120.0])
+    memory_mb: int | None = Field(
+        default=None, ge=256, le=1_048_576, description="Memory of the engine, in MiB.", examples=[2048]
+    )
+
+
+def default_method() -> DictionaryMethod:
+    """Return the method of a job that names none."""
+    return DictionaryMethod(method="dictionary")
+
+
+class RepairSpec(Request):
+    """What to do with a mesh."""
+
+    method: Method = Field(default_factory=default_method, description="How holes are filled.")
+    holes: HoleSelection = Field(default_factory=HoleSelection, description="Which holes are filled.")
+    output: Output = Field(default_factory=Output, description="What is handed back.")
+    limits: Limits = Field(default_factory=Limits, description="Ceilings of one attempt.")
+    seed: int = Field(default=0, ge=0, le=2**32 - 1, description="Starts every random choice.", examples=[0])
+    label: Text | None = Field(default=None, description="A name for people.", examples=["station 4, part 1187"])
+    metadata: dict[MetadataKey, Text] = Field(
+        default_factory=dict,
+        max_length=16,
+        description="Up to 16 facts of the sender's own, handed back unread.",
+        examples=[{"order": "A-17"}],
+    )
+
+
+class JobSpec(RepairSpec):
+    """A whole job: a mesh, and what to do with it."""
+
+    mesh_id: MeshId

@@ -1,0 +1,121 @@
+"""Settings from environment variables, all with the prefix QUADPATCH_.
+
+An unknown name with that prefix stops the start: a mistyped limit that is silently ignored is worse than none.
+Names that start with QUADPATCH_CLIENT_ belong to the client and are left alone.
+"""
+
+import difflib
+import os
+from collections.abc import Iterable
+from pathlib import Path
+
+from pydantic import Field, SecretStr, ValidationError
+from pydantic_settings import BaseSettings, SettingsConfigDict
+
+from jobkit.errors import SettingsError
+
+PREFIX = "QUADPATCH_"
+CLIENT_PREFIX = "QUADPATCH_CLIENT_"
+MIN_KEY_LENGTH = 16
+
+
+class Settings(BaseSettings):
+    """Every setting of the service and of the workers."""
+
+    model_config = SettingsConfigDict(env_prefix=PREFIX, extra="forbid", frozen=True)
+
+    data_dir: Path = Field(
+        default=Path("data"), description="Folder for everything that has no place of its own below."
+    )
+    database_url: str = Field(
+        default="", description="SQLAlchemy URL; empty: SQLite in `data_dir`, sqlite:///DATA_DIR/quadpatch.db."
+    )
+    redis_url: SecretStr = Field(
+        default=SecretStr("redis://127.0.0.1:6379/0"), description="Redis or Valkey of the queue; may hold a password."
+    )
+    object_store_url: str = Field(
+        default="", description="Store of meshes, results and models; empty: file://DATA_DIR/objects."
+    )
+    queue_name: str = Field(
+        default="quadpatch", pattern=r"^[a-z0-9-]+$", description="Queue that all tasks go through."
+    )
+    host: str = Field(default="127.0.0.1", description="Address to listen on; any but loopback needs api_keys.")
+    port: int = Field(default=8000, ge=0, le=65_535, description="Port to listen on; 0: any free one.")
+    api_keys: SecretStr = Field(
+        default=SecretStr(""),
+        description=f"Keys of clients, comma-separated, {MIN_KEY_LENGTH} characters or more each.",
+    )
+    max_upload_mb: int = Field(default=1024, ge=1, description="Largest mesh or model, in MiB.")
+    max_json_kb: int = Field(default=1024, ge=1, description="Largest JSON body, in KiB.")
+    max_wait_s: float = Field(default=30.0, ge=0, le=300, description="Longest that a request may wait, in seconds.")
+    job_time_limit_s: float = Field(default=900.0, ge=1, description="Most wall-clock seconds of one attempt.")
+    job_memory_limit_mb: int = Field(default=4096, ge=256, description="Most memory of one attempt, in MiB.")
+    max_attempts: int = Field(default=3, ge=1, le=20, description="Attempts before a job is given up.")
+    lease_s: float = Field(default=30.0, ge=1, description="Seconds without a heartbeat until an attempt is lost.")
+    heartbeat_s: float = Field(default=5.0, gt=0, description="Seconds between two heartbeats of an attempt.")
+    reconcile_s: float = Field(default=5.0, gt=0, description="Seconds between two looks for lost jobs.")
+    models_dir: Path | None = Field(
+        default=None, description="Folder of models to register at start; empty: those that ship with the project."
+    )
+    log_level: str = Field(
+        default="info", pattern="^(debug|info|warning|error)$", description="Least level that is logged."
+    )
+
+    @property
+    def effective_database_url(self) -> str:
+        """The database URL with its default filled in."""
+        return self.database_url or f"sqlite:///{self.data_dir.resolve() / 'quadpatch.db'}"
+
+    @property
+    def effective_object_store_url(self) -> str:
+        """The object store URL with its default filled in."""
+        return self.object_store_url or f"file://{self.data_dir.resolve() / 'objects'}"
+
+    @property
+    def key_list(self) -> list[str]:
+        """The API keys, one by one."""
+        return [key.strip() for key in self.api_keys.get_secret_value().split(",") if key.strip()]
+
+
+def load_settings() -> Settings:
+    """Read the settings from the environment.
+
+    Raises
+    ------
+    SettingsError
+        If a value is wrong, a QUADPATCH_ name is unknown, a key is short, or the lease is shorter than two heartbeats.
+    """
+    refuse_unknown_names(os.environ)
+    try:
+        settings = Settings()
+    except ValidationError as error:
+        # Only the place and the kind of the error: a value may be a secret.
+        lines = [f"{PREFIX}{str(e['loc'][0]).upper()}: {e['msg']}" for e in error.errors(include_input=False)]
+        raise SettingsError("; ".join(lines)) from None
+    if any(len(key) < MIN_KEY_LENGTH for key in settings.key_list):
+        raise SettingsError(f"{PREFIX}API_KEYS: every key needs at least {MIN_KEY_LENGTH} characters")
+    if settings.lease_s < 2 * settings.heartbeat_s:
+        raise SettingsError(
+            f"{PREFIX}LEASE_S: {settings.lease_s} s is less than two heartbeats of {settings.heartbeat_s} s"
+        )
+    return settings
+
+
+def refuse_unknown_names(names: Iterable[str]) -> None:
+    """Raise SettingsError for the first name with the prefix that is no setting."""
+    known = [PREFIX + name.upper() for name in Settings.model_fields]
+    for name in sorted(names):
+        if not name.startswith(PREFIX) or name.startswith(CLIENT_PREFIX) or name in known:
+            continue
+        closest = difflib.get_close_matches(name, known, n=1, cutoff=0.0)
+        raise SettingsError(f"{name} is no setting; the closest one is {closest[0]}")
+
+
+def settings_table() -> str:
+    """Return all settings as a Markdown table: name, default, meaning."""
+    lines = ["| variable | default | meaning |", "| --- | --- | --- |"]
+    for name, field in Settings.model_fields.items():
+        default = field.default.get_secret_value() if isinstance(field.default, SecretStr) else field.default
+        shown = "" if default in (None, "") else f"`{default}`"
+        lines.append(f"| `{PREFIX}{name.upper()}` | {shown} | {field.description} |")
+    return "\n".join(lines) + "\n"

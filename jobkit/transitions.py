@@ -1,0 +1,64 @@
+"""One conditional update moves a job from state to state, and logs it in the same transaction."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from datetime import datetime
+from types import MappingProxyType
+from typing import Any
+
+from sqlalchemy import ColumnElement, CursorResult, update
+from sqlalchemy.orm import Session
+
+from jobkit.events import append_event
+from jobkit.schema import TRANSITIONS, EventType, JobState
+from jobkit.tables import JobRow
+
+_NOTHING: Mapping[str, Any] = MappingProxyType({})
+
+
+@dataclass(frozen=True)
+class Move:
+    """A step in a job's life.
+
+    Attributes
+    ----------
+    source, target : JobState
+        The step; only those of `TRANSITIONS` exist.
+    event : str
+        Type of the event that logs it.
+    values : mapping
+        Columns to write besides state, revision and times.
+    data : mapping
+        Facts for the event.
+    """
+
+    source: JobState
+    target: JobState
+    event: EventType
+    values: Mapping[str, Any] = field(default=_NOTHING)
+    data: Mapping[str, Any] = field(default=_NOTHING)
+
+    def __post_init__(self) -> None:
+        if self.target not in TRANSITIONS[self.source]:
+            raise ValueError(f"a job never goes from {self.source} to {self.target}")
+
+
+def make_move(session: Session, job_id: str, move: Move, at: datetime, *fences: ColumnElement[bool]) -> bool:
+    """Move a job if it is in the move's source state and within the fences; return whether it was."""
+    values: dict[str, Any] = {"state": move.target.value, "revision": JobRow.revision + 1, "updated_at": at}
+    if move.source in (JobState.RUNNING, JobState.CANCELING) and move.target != JobState.CANCELING:
+        values |= {"lease_until": None, "worker": None}
+    if move.target.is_terminal:
+        values |= {"finished_at": at, "stage": None}
+    if not update_job(session, job_id, {**values, **move.values}, JobRow.state == move.source.value, *fences):
+        return False
+    append_event(session, job_id, move.event, at, {"state": move.target.value, **move.data})
+    return True
+
+
+def update_job(session: Session, job_id: str, values: Mapping[str, Any], *fences: ColumnElement[bool]) -> bool:
+    """Write columns of a job if all fences hold; return whether they did."""
+    result = session.execute(
+        update(JobRow).where(JobRow.id == job_id, *fences).values(**values).execution_options(synchronize_session=False)
+    )
+    return isinstance(result, CursorResult) and result.rowcount == 1
