@@ -5,6 +5,7 @@ import time
 
 JOB_ID_PATTERN = r"^job_[0-9a-hjkmnp-tv-z]{26}$"
 SHA256_PATTERN = r"^[0-9a-f]{64}$"
+MODEL_NAME = r"[a-z0-9][a-z0-9._-]{0,63}"
 
 # Crockford's alphabet: no i, l, o, u, so that an id survives being read aloud.
 _ALPHABET = "0123456789abcdefghjkmnpqrstvwxyz"

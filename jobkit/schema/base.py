@@ -9,12 +9,12 @@ from typing import Annotated
 
 from pydantic import BaseModel, ConfigDict, Field, PlainSerializer
 
-from jobkit.ids import JOB_ID_PATTERN, SHA256_PATTERN
+from jobkit.ids import JOB_ID_PATTERN, MODEL_NAME, SHA256_PATTERN
 
 # Without control characters: PostgreSQL stores no NUL, and a line break in a label breaks every log.
 TEXT_PATTERN = r"^[^\x00-\x1f\x7f]*$"
-NAME_PATTERN = r"^[a-z0-9][a-z0-9._-]{0,63}$"
-REFERENCE_PATTERN = r"^[a-z0-9][a-z0-9._-]{0,63}(@[1-9][0-9]{0,8})?$"
+NAME_PATTERN = rf"^{MODEL_NAME}$"
+REFERENCE_PATTERN = rf"^{MODEL_NAME}(@[1-9][0-9]{{0,8}})?$"
 EXAMPLE_SHA256 = "3b1f5b1a4c6e5d7a9f0c2b4d6e8f10213243546576879809a1b2c3d4e5f60718"
 EXAMPLE_JOB_ID = "job_01jd7z3v5qk8m2x4c6b8n0a9de"
 

@@ -1,0 +1,218 @@
+"""Registry of models: versions never change, aliases move.
+
+Versions of a name count up from 1. The same bytes under the same name are the same version. Names and aliases share
+one namespace, so a reference means one thing only.
+"""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal, cast
+
+from sqlalchemy import func, select
+from sqlalchemy.exc import IntegrityError
+from sqlalchemy.orm import Session
+
+from jobkit.clock import utc_now
+from jobkit.database import Database
+from jobkit.errors import ModelNotFoundError, NameTakenError, UnusableModelError
+from jobkit.model_header import Card, artifact_format, read_dictionary_card, to_wire_card
+from jobkit.schema import SELF, Alias, Model, ModelKind, ModelLinks, ModelList, ModelVersion
+from jobkit.store import CHUNK_BYTES, ObjectStore, StoredObject
+from jobkit.tables import AliasRow, ModelRow
+
+MODEL_PREFIX = "models"
+RESERVED_NAMES = frozenset({SELF, "smooth", "none", "latest"})
+
+
+@dataclass(frozen=True)
+class Artifact:
+    """Where the bytes of a model version lie."""
+
+    key: str
+    format: Literal["safetensors", "onnx"]
+    sha256: str
+    size_bytes: int
+
+
+class Registry:
+    """All models of a database, their artifacts in the store."""
+
+    def __init__(self, database: Database, store: ObjectStore) -> None:
+        self._database = database
+        self._store = store
+
+    def publish(
+        self, name: str, stored: StoredObject, card: Card | None = None, version: int | None = None
+    ) -> tuple[ModelVersion, bool]:
+        """Make bytes that lie in the store a version of a model.
+
+        Parameters
+        ----------
+        name : str
+        stored : StoredObject
+            Written with the prefix MODEL_PREFIX; removed again if it is no model.
+        card : dict, optional
+            Of a network; a dictionary brings its own.
+        version : int, optional
+            Number to take; None: the next one.
+
+        Returns
+        -------
+        ModelVersion, bool
+            The version, and whether it is new.
+
+        Raises
+        ------
+        NameTakenError
+            If an alias has that name, or the name is reserved, or the version number is taken.
+        UnusableModelError
+            If the bytes are no model.
+        """
+        try:
+            kind, artifact, whole_card = self._inspect(stored, card)
+        except UnusableModelError:
+            self._store.delete(stored.key)
+            raise
+        wire_card = to_wire_card(whole_card).model_dump(mode="json")
+        row = ModelRow(
+            name=name,
+            kind=kind,
+            format=artifact.format,
+            sha256=stored.sha256,
+            size_bytes=stored.size_bytes,
+            key=stored.key,
+            card=wire_card,
+            created_at=utc_now(),
+        )
+        try:
+            return self._insert(row, version)
+        except IntegrityError:
+            # Two versions were published at the same moment: now the next number is another one.
+            return self._insert(row, version)
+
+    def publish_file(
+        self, name: str, path: Path, card: Card | None = None, version: int | None = None
+    ) -> tuple[ModelVersion, bool]:
+        """Store a local file and publish it; returns and raises as `publish`."""
+        with path.open("rb") as source, self._store.writer(MODEL_PREFIX) as writer:
+            while chunk := source.read(CHUNK_BYTES):
+                writer.write(chunk)
+            stored = writer.commit()
+        return self.publish(name, stored, card, version)
+
+    def resolve(self, reference: str) -> ModelVersion:
+        """Return the version that `name@version`, `name` or an alias means now; raise ModelNotFoundError."""
+        with self._database.read() as session:
+            return _to_version(session, _resolve(session, reference))
+
+    def get(self, name: str) -> Model:
+        """Return a model with all its versions; raise ModelNotFoundError."""
+        with self._database.read() as session:
+            return _to_model(session, name)
+
+    def artifact(self, name: str, version: int) -> Artifact:
+        """Return where the bytes of a version lie; raise ModelNotFoundError."""
+        with self._database.read() as session:
+            row = _version_row(session, name, version)
+            return Artifact(row.key, cast('Literal["safetensors", "onnx"]', row.format), row.sha256, row.size_bytes)
+
+    def list_all(self) -> ModelList:
+        """Return all models and aliases."""
+        with self._database.read() as session:
+            names = session.scalars(select(ModelRow.name).distinct().order_by(ModelRow.name)).all()
+            aliases = session.scalars(select(AliasRow).order_by(AliasRow.alias))
+            return ModelList(
+                models=[_to_model(session, name) for name in names], aliases=[_to_alias(row) for row in aliases]
+            )
+
+    def has_kind(self, kind: ModelKind) -> bool:
+        """Return whether any model of that kind is registered."""
+        with self._database.read() as session:
+            return session.scalars(select(ModelRow.name).where(ModelRow.kind == kind).limit(1)).first() is not None
+
+    def set_alias(self, alias: str, reference: str) -> Alias:
+        """Point an alias to the version that the reference means now.
+
+        Raises
+        ------
+        ModelNotFoundError
+            If the reference means nothing.
+        NameTakenError
+            If a model has that name, or the name is reserved.
+        """
+        with self._database.write() as session:
+            target = _resolve(session, reference)
+            if alias in RESERVED_NAMES or session.scalars(select(ModelRow).where(ModelRow.name == alias)).first():
+                raise NameTakenError(f"{alias!r} is the name of a model, or reserved")
+            row = session.get(AliasRow, alias) or AliasRow(alias=alias)
+            row.name, row.version, row.updated_at = target.name, target.version, utc_now()
+            session.add(row)
+            return _to_alias(row)
+
+    def _inspect(self, stored: StoredObject, card: Card | None) -> tuple[ModelKind, Artifact, Card]:
+        with self._store.local_file(stored.key) as path:
+            kind_of_file = artifact_format(path)
+            artifact = Artifact(stored.key, kind_of_file, stored.sha256, stored.size_bytes)
+            if kind_of_file == "onnx":
+                return "autoencoder", artifact, card or {}
+            return "dictionary", artifact, read_dictionary_card(path)
+
+    def _insert(self, row: ModelRow, version: int | None) -> tuple[ModelVersion, bool]:
+        with self._database.write() as session:
+            if row.name in RESERVED_NAMES or session.get(AliasRow, row.name) is not None:
+                raise NameTakenError(f"{row.name!r} is an alias, or reserved")
+            same = session.scalars(
+                select(ModelRow).where(ModelRow.name == row.name, ModelRow.sha256 == row.sha256)
+            ).one_or_none()
+            if same is not None:
+                return _to_version(session, same), False
+            if version is None:
+                latest = session.scalar(select(func.max(ModelRow.version)).where(ModelRow.name == row.name))
+                version = (latest or 0) + 1
+            elif session.get(ModelRow, (row.name, version)) is not None:
+                raise NameTakenError(f"{row.name}@{version} is taken by other bytes; versions never change")
+            fresh = ModelRow(**{c.key: getattr(row, c.key) for c in ModelRow.__table__.columns} | {"version": version})
+            session.add(fresh)
+            session.flush()
+            return _to_version(session, fresh), True
+
+
+def _resolve(session: Session, reference: str) -> ModelRow:
+    name, _, number = reference.partition("@")
+    if number:
+        return _version_row(session, name, int(number))
+    alias = session.get(AliasRow, name)
+    if alias is not None:
+        return _version_row(session, alias.name, alias.version)
+    query = select(ModelRow).where(ModelRow.name == name).order_by(ModelRow.version.desc()).limit(1)
+    row = session.scalars(query).first()
+    if row is None:
+        raise ModelNotFoundError(f"there is no model and no alias {name!r}")
+    return row
+
+
+def _version_row(session: Session, name: str, version: int) -> ModelRow:
+    row = session.get(ModelRow, (name, version))
+    if row is None:
+        raise ModelNotFoundError(f"there is no model {name}@{version}")
+    return row
+
+
+def _to_model(session: Session, name: str) -> Model:
+    rows = session.scalars(select(ModelRow).where(ModelRow.name == name).order_by(ModelRow.version.desc())).all()
+    if not rows:
+        raise ModelNotFoundError(f"there is no model {name!r}")
+    return Model(name=name, latest=rows[0].version, versions=[_to_version(session, row) for row in rows])
+
+
+def _to_version(session: Session, row: ModelRow) -> ModelVersion:
+    path = f"/v1/models/{row.name}/versions/{row.version}"
+    query = select(AliasRow.alias).where(AliasRow.name == row.name, AliasRow.version == row.version)
+    aliases = session.scalars(query.order_by(AliasRow.alias)).all()
+    values = {name: getattr(row, name) for name in ModelVersion.model_fields.keys() - {"aliases", "links"}}
+    links = ModelLinks(self=path, artifact=f"{path}/artifact")
+    return ModelVersion.model_validate({**values, "aliases": list(aliases), "links": links})
+
+
+def _to_alias(row: AliasRow) -> Alias:
+    return Alias(alias=row.alias, name=row.name, version=row.version, updated_at=row.updated_at)

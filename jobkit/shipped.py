@@ -1,0 +1,63 @@
+"""Registers the models that ship with the project, as often as one likes."""
+
+import json
+import logging
+import re
+from pathlib import Path
+
+from jobkit.errors import ModelNotFoundError, NameTakenError
+from jobkit.ids import MODEL_NAME
+from jobkit.registry import Registry
+from jobkit.schema import DEFAULT_MODEL, DEFAULT_NETWORK, ModelVersion
+
+_FILE = re.compile(rf"^(?P<name>{MODEL_NAME})@(?P<version>[1-9][0-9]*)\.(?:safetensors|onnx)$")
+_logger = logging.getLogger(__name__)
+
+
+def seed_shipped(registry: Registry, folder: Path) -> list[ModelVersion]:
+    """Register every `name@version.safetensors` and `name@version.onnx` of a folder.
+
+    A network's card lies beside it as `name@version.json`. Where the aliases `default` and `default-network` point to
+    nothing yet, they are pointed to the first dictionary and the first network.
+
+    Parameters
+    ----------
+    registry : Registry
+    folder : Path
+        One that does not exist holds no models.
+
+    Returns
+    -------
+    list of ModelVersion
+        By file name, whether new or registered before.
+
+    Raises
+    ------
+    UnusableModelError
+        If a file is no model.
+    """
+    versions = []
+    for path in sorted(folder.glob("*@*")) if folder.is_dir() else []:
+        match = _FILE.match(path.name)
+        if match is None:
+            continue
+        card_path = path.with_suffix(".json")
+        card = json.loads(card_path.read_text("utf-8")) if path.suffix == ".onnx" and card_path.is_file() else None
+        try:
+            version, _ = registry.publish_file(match["name"], path, card, int(match["version"]))
+        except NameTakenError as error:
+            # Jobs are pinned to what is registered; a changed file without a new number must not change them.
+            _logger.warning("shipped model %s is not registered: %s", path.name, error)
+            continue
+        versions.append(version)
+    _point_default(registry, DEFAULT_MODEL, [v for v in versions if v.kind == "dictionary"])
+    _point_default(registry, DEFAULT_NETWORK, [v for v in versions if v.kind == "autoencoder"])
+    return versions
+
+
+def _point_default(registry: Registry, alias: str, versions: list[ModelVersion]) -> None:
+    try:
+        registry.resolve(alias)
+    except ModelNotFoundError:
+        if versions:
+            registry.set_alias(alias, f"{versions[0].name}@{versions[0].version}")
