@@ -3,7 +3,6 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from datetime import datetime
-from types import MappingProxyType
 from typing import Any
 
 from sqlalchemy import ColumnElement, CursorResult, update
@@ -12,8 +11,6 @@ from sqlalchemy.orm import Session
 from jobkit.events import append_event
 from jobkit.schema import TRANSITIONS, EventType, JobState
 from jobkit.tables import JobRow
-
-_NOTHING: Mapping[str, Any] = MappingProxyType({})
 
 
 @dataclass(frozen=True)
@@ -35,8 +32,8 @@ class Move:
     source: JobState
     target: JobState
     event: EventType
-    values: Mapping[str, Any] = field(default=_NOTHING)
-    data: Mapping[str, Any] = field(default=_NOTHING)
+    values: Mapping[str, Any] = field(default_factory=dict)
+    data: Mapping[str, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         if self.target not in TRANSITIONS[self.source]:
