@@ -1,0 +1,178 @@
+import contextlib
+import itertools
+import threading
+from datetime import timedelta
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from jobkit.attempts import Attempt, Attempts
+from jobkit.clock import utc_now
+from jobkit.database import Database
+from jobkit.errors import JobFinishedError, JobNotFoundError, StaleAttemptError
+from jobkit.jobs import Jobs, NewJob
+from jobkit.schema import TRANSITIONS, Job, JobError, JobResult, JobState
+
+LOST = JobError(code="engine_crashed", message="the engine died", stage="fill", retryable=True)
+RESULT = JobResult(format="ply")
+
+
+def test_starting_raises_the_attempt_and_leases_the_job(database: Database, job: Job) -> None:
+    started = Attempts(database).start(job.id, "worker-1", 30)
+    assert started.attempt == Attempt(job.id, 1)
+    assert started.job.state == JobState.RUNNING
+    assert started.job.started_at is not None
+
+
+def test_a_job_that_is_not_there_cannot_be_started(database: Database) -> None:
+    with pytest.raises(JobNotFoundError):
+        Attempts(database).start("job_none", "worker-1", 30)
+
+
+def test_of_many_workers_that_take_one_job_exactly_one_gets_it(database: Database, job: Job) -> None:
+    outcomes: list[str] = []
+
+    def take(worker: str) -> None:
+        try:
+            Attempts(database).start(job.id, worker, 30)
+            outcomes.append("started")
+        except StaleAttemptError:
+            outcomes.append("stale")
+
+    threads = [threading.Thread(target=take, args=(f"worker-{i}",)) for i in range(8)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert sorted(outcomes) == ["stale"] * 7 + ["started"]
+    assert Jobs(database).get(job.id).attempt == 1
+
+
+def test_publishing_ends_the_job_with_its_result(database: Database, job: Job) -> None:
+    attempts = Attempts(database)
+    attempt = attempts.start(job.id, "w", 30).attempt
+    attempts.report_progress(attempt, "inpaint", 62.5)
+    assert Jobs(database).get(job.id).stage == "inpaint"
+    assert attempts.publish(attempt, RESULT) == JobState.SUCCEEDED
+    ended = Jobs(database).get(job.id)
+    assert (ended.state, ended.percent, ended.stage, ended.result) == (JobState.SUCCEEDED, 100.0, None, RESULT)
+    assert ended.finished_at is not None
+
+
+def test_warnings_show_in_the_state(database: Database, job: Job) -> None:
+    attempts = Attempts(database)
+    attempt = attempts.start(job.id, "w", 30).attempt
+    state = attempts.publish(attempt, JobResult(format="ply", warnings=["unit unknown"]))
+    assert state == JobState.SUCCEEDED_WITH_WARNINGS == Jobs(database).get(job.id).state
+
+
+def test_a_late_twin_can_write_nothing(database: Database, job: Job) -> None:
+    attempts = Attempts(database)
+    late = attempts.start(job.id, "w1", 30).attempt
+    assert attempts.requeue(late, LOST) == JobState.QUEUED
+    fresh = attempts.start(job.id, "w2", 30).attempt
+    assert fresh.number == 2
+    for write in (
+        lambda: attempts.publish(late, RESULT),
+        lambda: attempts.fail(late, LOST),
+        lambda: attempts.requeue(late, LOST),
+        lambda: attempts.heartbeat(late, 30),
+        lambda: attempts.report_progress(late, "fill", 10.0),
+        lambda: attempts.acknowledge_cancel(late),
+    ):
+        before = Jobs(database).get(job.id)
+        with pytest.raises(StaleAttemptError):
+            write()
+        assert Jobs(database).get(job.id) == before
+    assert attempts.publish(fresh, RESULT) == JobState.SUCCEEDED
+
+
+def test_publishing_twice_is_refused(database: Database, job: Job) -> None:
+    attempts = Attempts(database)
+    attempt = attempts.start(job.id, "w", 30).attempt
+    attempts.publish(attempt, RESULT)
+    with pytest.raises(StaleAttemptError):
+        attempts.publish(attempt, RESULT)
+
+
+def test_the_last_attempt_that_is_lost_fails_the_job(database: Database, job: Job) -> None:
+    attempts = Attempts(database)
+    for expected in (JobState.QUEUED, JobState.FAILED):
+        attempt = attempts.start(job.id, "w", 30).attempt
+        assert attempts.requeue(attempt, LOST) == expected
+    ended = Jobs(database).get(job.id)
+    assert ended.error == LOST
+    assert ended.attempt == ended.max_attempts == 2
+
+
+def test_a_heartbeat_brings_the_cancel_flag(database: Database, job: Job) -> None:
+    attempts = Attempts(database)
+    attempt = attempts.start(job.id, "w", 30).attempt
+    assert attempts.heartbeat(attempt, 30) is False
+    Jobs(database).request_cancel(job.id)
+    assert attempts.heartbeat(attempt, 30) is True
+    attempts.acknowledge_cancel(attempt)
+    assert Jobs(database).get(job.id).state == JobState.CANCELED
+
+
+@pytest.mark.parametrize("ending", ["publish", "fail", "requeue"])
+def test_whatever_ends_an_attempt_after_a_cancel_ends_in_canceled(database: Database, job: Job, ending: str) -> None:
+    attempts = Attempts(database)
+    attempt = attempts.start(job.id, "w", 30).attempt
+    Jobs(database).request_cancel(job.id)
+    state = attempts.publish(attempt, RESULT) if ending == "publish" else getattr(attempts, ending)(attempt, LOST)
+    ended = Jobs(database).get(job.id)
+    assert state == ended.state == JobState.CANCELED
+    assert ended.result is None
+
+
+def test_an_expired_lease_goes_back_and_a_renewed_one_stays(database: Database, job: Job, new_job: NewJob) -> None:
+    attempts = Attempts(database)
+    other = Jobs(database).create(new_job)[0]
+    lost = attempts.start(job.id, "w1", 30).attempt
+    kept = attempts.start(other.id, "w2", 30).attempt
+    later = utc_now() + timedelta(seconds=40)
+    attempts.heartbeat(kept, 60)
+    assert attempts.take_back_expired(later) == [(job.id, JobState.QUEUED)]
+    assert Jobs(database).get(other.id).state == JobState.RUNNING
+    with pytest.raises(StaleAttemptError):
+        attempts.heartbeat(lost, 30)
+
+
+def test_a_lost_worker_that_was_to_cancel_leaves_a_canceled_job(database: Database, job: Job) -> None:
+    attempts = Attempts(database)
+    attempts.start(job.id, "w", 30)
+    Jobs(database).request_cancel(job.id)
+    assert attempts.take_back_expired(utc_now() + timedelta(seconds=31)) == [(job.id, JobState.CANCELED)]
+
+
+STEPS = st.lists(st.sampled_from(["start", "progress", "publish", "fail", "requeue", "cancel", "expire"]), max_size=14)
+
+
+@settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(steps=STEPS)
+def test_no_order_of_calls_leaves_the_drawn_life_of_a_job(
+    database: Database, new_job: NewJob, steps: list[str]
+) -> None:
+    """Events count up from 1 without a gap, and every change of state is one that design allows."""
+    attempts, jobs = Attempts(database), Jobs(database)
+    job_id = jobs.create(new_job)[0].id
+    states = [JobState.QUEUED]
+    for step in steps:
+        attempt = Attempt(job_id, jobs.get(job_id).attempt)
+        calls = {
+            "start": lambda: attempts.start(job_id, "w", 30),
+            "progress": lambda a=attempt: attempts.report_progress(a, "fill", 5.0),
+            "publish": lambda a=attempt: attempts.publish(a, RESULT),
+            "fail": lambda a=attempt: attempts.fail(a, LOST),
+            "requeue": lambda a=attempt: attempts.requeue(a, LOST),
+            "cancel": lambda: jobs.request_cancel(job_id),
+            "expire": lambda: attempts.take_back_expired(utc_now() + timedelta(seconds=60)),
+        }
+        with contextlib.suppress(StaleAttemptError, JobFinishedError):
+            calls[step]()
+        states.append(jobs.get(job_id).state)
+    assert all(new == old or new in TRANSITIONS[old] for old, new in itertools.pairwise(states))
+    events = jobs.events(job_id).items
+    assert [event.sequence for event in events] == list(range(1, jobs.get(job_id).revision + 1))
