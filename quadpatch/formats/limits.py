@@ -1,0 +1,98 @@
+"""How much a reader takes in before it says no.
+
+Counts that a header declares are held against these limits and against the bytes that are really there before any
+array of that size is made, so a file of 300 bytes that claims 10**12 faces costs nothing.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from quadpatch.errors import EmptyMeshError, IndexRangeError, NotFiniteError, TooLargeError
+from quadpatch.types import IntArray, Triangles, Vertices
+
+# Products of four lengths (squared areas) of coordinates below this stay finite in float64.
+LARGEST_COORDINATE = 1e60
+
+
+@dataclass(frozen=True)
+class ReadLimits:
+    """Upper bounds of what is read.
+
+    Attributes
+    ----------
+    max_bytes : int
+        Size of the file; for zip containers also the sum of the unpacked sizes.
+    max_vertices, max_triangles : int
+        Counts, polygons and strips counted as the triangles they become.
+    """
+
+    max_bytes: int = 2 * 1024**3
+    max_vertices: int = 20_000_000
+    max_triangles: int = 40_000_000
+
+    def check_bytes(self, n_bytes: int) -> None:
+        """Raise TooLargeError for more bytes than allowed."""
+        _check("bytes", n_bytes, self.max_bytes)
+
+    def check_vertices(self, n_vertices: int) -> None:
+        """Raise TooLargeError for more vertices than allowed."""
+        _check("vertices", n_vertices, self.max_vertices)
+
+    def check_triangles(self, n_triangles: int) -> None:
+        """Raise TooLargeError for more triangles than allowed."""
+        _check("triangles", n_triangles, self.max_triangles)
+
+
+def _check(what: str, count: int, limit: int) -> None:
+    if count > limit:
+        raise TooLargeError(f"the file has {count:,} {what}; the limit is {limit:,}")
+
+
+def check_vertices(vertices: Vertices) -> None:
+    """Refuse a mesh without vertices or with coordinates that can't be computed with.
+
+    A bad coordinate is refused even where no face uses its vertex: bounding boxes and search trees would swallow it.
+
+    Parameters
+    ----------
+    vertices : (n, 3) float64
+
+    Raises
+    ------
+    EmptyMeshError, NotFiniteError
+    """
+    if len(vertices) == 0:
+        raise EmptyMeshError("the file has no vertex")
+    # One pass: a NaN fails the comparison as an infinity does.
+    usable = (np.abs(vertices) <= LARGEST_COORDINATE).all(axis=1)
+    if not usable.all():
+        bad = int(np.argmin(usable))
+        raise NotFiniteError(
+            f"vertex {bad} of {len(vertices):,} has the coordinates {vertices[bad].tolist()}; "
+            f"{int((~usable).sum()):,} vertices are infinite, NaN or beyond {LARGEST_COORDINATE:g}"
+        )
+
+
+def check_indices(corners: IntArray, n_vertices: int) -> None:
+    """Raise IndexRangeError where a face names a vertex that is not there.
+
+    Parameters
+    ----------
+    corners : (...) int64
+        Zero-based vertex indices.
+    n_vertices : int
+    """
+    if corners.size == 0:
+        return
+    low, high = int(corners.min()), int(corners.max())
+    if low < 0 or high >= n_vertices:
+        wrong = low if low < 0 else high
+        raise IndexRangeError(f"a face names vertex {wrong}, but the file has the vertices 0 to {n_vertices - 1}")
+
+
+def check_triangles(triangles: Triangles, limits: ReadLimits) -> None:
+    """Raise EmptyMeshError or TooLargeError for no triangle or too many."""
+    if len(triangles) == 0:
+        raise EmptyMeshError("the file has vertices but no face")
+    limits.check_triangles(len(triangles))

@@ -1,0 +1,124 @@
+"""Reading PLY: ascii and both binary orders, any elements and properties, polygons and triangle strips.
+
+The vertices are the `vertex` element; the triangles are those of `face` and of `tristrips`, in the order in which the
+file holds them. Everything else in the file is kept as bytes, and the writer hands it back (see `ply_writer`).
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from quadpatch.errors import EmptyMeshError, FormatError, ReadError
+from quadpatch.formats.limits import ReadLimits, check_indices, check_triangles, check_vertices
+from quadpatch.formats.ply_ascii import read_ascii_body
+from quadpatch.formats.ply_binary import read_binary_body
+from quadpatch.formats.ply_header import Element, Header, parse_header
+from quadpatch.formats.ply_rows import Rows
+from quadpatch.formats.polygons import triangulate_polygons, triangulate_strips
+from quadpatch.formats.scan import Scan
+from quadpatch.types import IntArray, Triangles, Vertices
+
+INDEX_NAMES = ("vertex_indices", "vertex_index")
+
+
+@dataclass(frozen=True)
+class PlySource:
+    """A PLY file as it was read.
+
+    Attributes
+    ----------
+    data : bytes
+        The whole file.
+    header : Header
+    rows : tuple of Rows
+        One for each element of the header.
+    carrier : str
+        Element that holds the triangles and takes further ones: `face` or `tristrips`, the later one in the file.
+    triangle_row : (m,) int64
+        Row of `face` that each triangle was cut from, -1 for triangles of strips.
+    """
+
+    data: bytes
+    header: Header
+    rows: tuple[Rows, ...]
+    carrier: str
+    triangle_row: IntArray
+
+    def element(self, name: str) -> Rows | None:
+        """Rows of an element, None where the file has none of that name."""
+        return next((rows for rows in self.rows if rows.element.name == name), None)
+
+
+def read_ply(data: bytes, limits: ReadLimits) -> Scan:
+    """Read a PLY file.
+
+    Parameters
+    ----------
+    data : bytes
+        The whole file.
+    limits : ReadLimits
+
+    Raises
+    ------
+    MeshError
+        ReadError, FormatError, EmptyMeshError, NotFiniteError, IndexRangeError or TooLargeError.
+    """
+    header = parse_header(data)
+    for element in header.elements:
+        _check_count(element, limits)
+    rows = read_ascii_body(data, header) if header.is_ascii else read_binary_body(data, header)
+    by_name = {read.element.name: read for read in rows}
+    vertices = _vertices(by_name.get("vertex"))
+    check_vertices(vertices)
+    triangles, triangle_row, carrier = _triangles(by_name, vertices)
+    check_triangles(triangles, limits)
+    source = PlySource(data, header, rows, carrier, triangle_row)
+    return Scan(vertices, triangles, "ply", source=source)
+
+
+def _check_count(element: Element, limits: ReadLimits) -> None:
+    if element.name == "vertex":
+        limits.check_vertices(element.count)
+    else:
+        limits.check_triangles(element.count)
+
+
+def _vertices(rows: Rows | None) -> Vertices:
+    if rows is None:
+        raise EmptyMeshError("the PLY file has no element `vertex`")
+    columns = [rows.scalar(name) for name in "xyz"]
+    if any(column is None for column in columns):
+        raise ReadError("the PLY element `vertex` lacks a number x, y or z")
+    return np.stack(columns, axis=1, dtype=np.float64)  # type: ignore[arg-type]
+
+
+def _triangles(by_name: dict[str, Rows], vertices: Vertices) -> tuple[Triangles, IntArray, str]:
+    pieces: list[Triangles] = []
+    face_rows: list[IntArray] = []
+    carrier = ""
+    for name, rows in by_name.items():
+        if name not in ("face", "tristrips"):
+            continue
+        corners = rows.list_column(*INDEX_NAMES)
+        if corners is None:
+            raise ReadError(f"the PLY element `{name}` has no list {' or '.join(INDEX_NAMES)}")
+        carrier = name
+        indices = corners.values.astype(np.int64)
+        if name == "face":
+            check_indices(indices, len(vertices))
+            triangles, row = triangulate_polygons(vertices, corners.counts, indices)
+        else:
+            check_indices(indices[indices >= 0], len(vertices))
+            triangles = triangulate_strips(corners.counts, indices)
+            row = np.full(len(triangles), -1, dtype=np.int64)
+        pieces.append(triangles)
+        face_rows.append(row)
+    if not pieces:
+        _raise_no_faces(by_name)
+    return np.concatenate(pieces), np.concatenate(face_rows), carrier
+
+
+def _raise_no_faces(by_name: dict[str, Rows]) -> None:
+    if "range_grid" in by_name:
+        raise FormatError("the PLY file holds a range grid and no faces: triangulate it before it is sent")
+    raise EmptyMeshError("the PLY file has vertices but no element `face` or `tristrips`: a point cloud is no mesh")

@@ -1,0 +1,86 @@
+"""The rows of one PLY element, however the file stores them.
+
+A row is found by where it ends, counted in bytes of the file for binary bodies and in words of the body for ascii
+ones. Rows of one length everywhere, which is what nearly all files hold, are read as one structured array.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from quadpatch.errors import ReadError
+from quadpatch.formats.ply_header import Element
+from quadpatch.types import IntArray
+
+Values = NDArray[Any]
+
+
+@dataclass(frozen=True)
+class ListColumn:
+    """Lists of one property: `counts` (n,) int64, and `values` of all rows one behind the other."""
+
+    counts: IntArray
+    values: Values
+
+    @property
+    def starts(self) -> IntArray:
+        """Where each row's values begin, (n,) int64."""
+        return np.cumsum(self.counts) - self.counts
+
+
+@dataclass(frozen=True)
+class Rows:
+    """All rows of one element.
+
+    Attributes
+    ----------
+    element : Element
+    start, stop : int
+        Range in bytes of the file, or in words of an ascii body.
+    ends : (n,) int64 or None
+        Where each row ends, None where all rows are equally long.
+    columns : tuple
+        One array (n,) or one ListColumn for each property, in the file's own type.
+    """
+
+    element: Element
+    start: int
+    stop: int
+    ends: IntArray | None
+    columns: tuple[Values | ListColumn, ...]
+
+    def row_ends(self) -> IntArray:
+        """Where each row ends, (n,) int64."""
+        if self.ends is not None:
+            return self.ends
+        stride = (self.stop - self.start) // max(self.element.count, 1)
+        return self.start + stride * np.arange(1, self.element.count + 1, dtype=np.int64)
+
+    def scalar(self, name: str) -> Values | None:
+        """Column of a property that is no list, None where there is none of that name."""
+        index = self.element.find(name)
+        column = None if index is None else self.columns[index]
+        return None if isinstance(column, ListColumn) else column
+
+    def list_column(self, *names: str) -> ListColumn | None:
+        """Column of a list property, None where there is none of these names."""
+        index = self.element.find(*names)
+        column = None if index is None else self.columns[index]
+        return column if isinstance(column, ListColumn) else None
+
+
+def check_room(element: Element, smallest_row: int, room: int, unit: str) -> None:
+    """Raise ReadError where a declared count can't fit what is left of the file, before anything is allocated."""
+    if element.count * smallest_row > room:
+        raise ReadError(
+            f"PLY element {element.name[:40]!r} declares {element.count:,} rows of at least {smallest_row} {unit}; "
+            f"{room:,} {unit} are left in the file"
+        )
+
+
+def list_range(starts: IntArray, counts: IntArray) -> IntArray:
+    """Number the items of all lists, list by list: each begins at its `starts` and has `counts` items."""
+    first_of_each = np.repeat(starts - (np.cumsum(counts) - counts), counts)
+    return first_of_each + np.arange(len(first_of_each), dtype=np.int64)
