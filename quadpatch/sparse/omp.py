@@ -19,6 +19,7 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
+from quadpatch.sparse.parallel import map_batches
 from quadpatch.types import BoolArray, FloatArray, IntArray
 
 # An atom counts as dependent on the chosen ones when less than this part of its visible length points elsewhere.
@@ -65,7 +66,9 @@ def masked_omp(
     """
     codes = np.zeros((len(signals), atoms.shape[1]))
     squares = atoms**2
-    for members, gram in _batches(known, atoms, n_nonzero):
+
+    def code_batch(batch: tuple[IntArray, FloatArray | None]) -> None:
+        members, gram = batch
         mask = known[members]
         visible = np.where(mask, signals[members], 0.0)
         norms = np.sqrt(mask.astype(np.float64) @ squares)
@@ -73,6 +76,8 @@ def masked_omp(
         pursuit = _Pursuit(visible, norms, visible @ atoms, min(n_nonzero, atoms.shape[1]))
         rows = _masked_rows(mask, atoms) if gram is None else _shared_rows(gram)
         codes[members] = pursuit.run(rows, n_known, tolerance**2 * n_known)
+
+    map_batches(code_batch, _batches(known, atoms, n_nonzero))
     return codes
 
 
