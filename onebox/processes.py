@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from onebox.errors import StartError
-from onebox.leash import leash
+from worker.leash import leash
 from onebox.logs import log_tail
 
 _TICK_S = 0.1
@@ -132,7 +132,7 @@ class Supervisor:
                     stdout=log,
                     stderr=subprocess.STDOUT,
                     env={**os.environ, **child.program.environment},
-                    preexec_fn=leash(),  # noqa: PLW1509 - there is one thread only
+                    preexec_fn=leash(os.getpid()),  # noqa: PLW1509 - there is one thread only
                     start_new_session=True,  # Ctrl-C reaches the supervisor alone, which ends them in order
                 )
             except OSError as error:

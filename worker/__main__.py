@@ -1,0 +1,75 @@
+"""`python -m worker`: take tasks from the queue until SIGTERM.
+
+Settings come from the environment, see `jobkit.settings`. The first SIGTERM or SIGINT drains: a task that is nearly
+done is finished, another one is handed back to the queue.
+"""
+
+import logging
+import os
+import sys
+from contextlib import ExitStack, closing
+
+from jobkit.database import Database
+from jobkit.errors import SettingsError
+from jobkit.queue import TaskQueue
+from jobkit.settings import Settings, load_settings
+from jobkit.store import open_store
+from worker.context import Context, use_context, worker_name
+from worker.executor import Executor
+from worker.folders import worker_folder
+from worker.nursing import Nursery
+from worker.upkeep import Upkeep
+
+THREADS_VARIABLE = "OMP_NUM_THREADS"
+_EXIT_SETTINGS = 2
+
+
+def main() -> int:
+    """Run one worker; returns the exit code."""
+    try:
+        settings = load_settings()
+        store = open_store(settings.effective_object_store_url)
+    except SettingsError as error:
+        print(f"worker: {error}", file=sys.stderr)  # noqa: T201 - the log is not set up yet
+        return _EXIT_SETTINGS
+    logging.basicConfig(
+        level=settings.log_level.upper(), format="%(asctime)s %(levelname)s %(name)s: %(message)s", stream=sys.stderr
+    )
+    n_threads = _n_threads()
+    with ExitStack() as stack:
+        database = stack.enter_context(closing(Database(settings.effective_database_url)))
+        database.migrate()
+        context = Context(
+            name=worker_name(os.getpid()),
+            settings=settings,
+            database=database,
+            store=store,
+            queue=stack.enter_context(closing(_open_queue(settings))),
+            nursery=stack.enter_context(Nursery(n_threads)),
+            n_threads=n_threads,
+        )
+        stack.enter_context(worker_folder(context.work_folder))
+        upkeep_queue = stack.enter_context(closing(_open_queue(settings)))
+        stack.enter_context(Upkeep(database, upkeep_queue, settings.reconcile_s))
+        stack.enter_context(use_context(context))
+        context.nursery.warm_up()
+        Executor(context.queue, settings.queue_name, context.name, context.draining).work(
+            logging_level=settings.log_level.upper()
+        )
+    return 0
+
+
+def _open_queue(settings: Settings) -> TaskQueue:
+    return TaskQueue(settings.redis_url.get_secret_value(), settings.queue_name, settings.job_time_limit_s)
+
+
+def _n_threads() -> int:
+    """Threads of an engine: what the variable says that numerical libraries obey, else one per core."""
+    stated = os.environ.get(THREADS_VARIABLE, "")
+    if stated.isdecimal() and int(stated) > 0:
+        return int(stated)
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,98 @@
+"""What every task of a worker process shares: opened once at start, handed to the tasks by name.
+
+RQ calls tasks by their dotted path with plain arguments, so the context has to be found rather than passed; it is set
+by `python -m worker` and by nobody else.
+"""
+
+import socket
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from jobkit.attempts import Attempts
+from jobkit.database import Database
+from jobkit.jobs import Jobs
+from jobkit.meshes import Meshes
+from jobkit.queue import TaskQueue
+from jobkit.registry import Registry
+from jobkit.settings import Settings
+from jobkit.store import ObjectStore
+from worker.nursing import Nursery
+
+
+@dataclass(frozen=True)
+class Context:
+    """Open connections and folders of one worker process.
+
+    Attributes
+    ----------
+    name : str
+        Of this worker, for people.
+    draining : threading.Event
+        Set once the worker is asked to stop.
+    """
+
+    name: str
+    settings: Settings
+    database: Database
+    store: ObjectStore
+    queue: TaskQueue
+    nursery: Nursery
+    n_threads: int
+    draining: threading.Event = field(default_factory=threading.Event)
+
+    @property
+    def attempts(self) -> Attempts:
+        """Attempts at jobs."""
+        return Attempts(self.database)
+
+    @property
+    def jobs(self) -> Jobs:
+        """Jobs as clients see them."""
+        return Jobs(self.database)
+
+    @property
+    def meshes(self) -> Meshes:
+        """Uploaded meshes."""
+        return Meshes(self.database)
+
+    @property
+    def registry(self) -> Registry:
+        """Models."""
+        return Registry(self.database, self.store)
+
+    @property
+    def work_folder(self) -> Path:
+        """Where engine children work; one folder per request, removed afterwards."""
+        return self.settings.data_dir.resolve() / "work" / self.name
+
+    @property
+    def cache_folder(self) -> Path:
+        """Where models lie that were fetched from the store."""
+        return self.settings.data_dir.resolve() / "cache"
+
+
+_CURRENT: ContextVar[Context] = ContextVar("worker context")
+
+
+def current_context() -> Context:
+    """Return the context of this worker process; raise LookupError outside of one."""
+    return _CURRENT.get()
+
+
+@contextmanager
+def use_context(context: Context) -> Iterator[None]:
+    """Make the context the current one for the length of a `with` block."""
+    token = _CURRENT.set(context)
+    try:
+        yield
+    finally:
+        _CURRENT.reset(token)
+
+
+def worker_name(pid: int) -> str:
+    """Name a worker by machine and process."""
+    return f"{socket.gethostname()}-{pid}"

@@ -1,0 +1,84 @@
+"""Everything that can end an attempt without a result, told in a code and a sentence.
+
+Nothing above this module sees a traceback: clients get `{code, message, stage, retryable}`, the log gets the rest.
+
+::
+
+    EngineFailedError           the attempt failed; `failure` says why
+    EngineStoppedError          the parent wanted it to end; `reason` says why
+
+Codes made here, besides those of `quadpatch.errors`, which pass through:
+
+    out_of_memory               more memory than the limit
+    time_limit_exceeded         more wall-clock time than the limit
+    engine_crashed              the engine died of a signal, or without a word; another attempt may succeed
+    engine_error                an error that nobody foresaw
+    no_space                    the disk of the worker is full; another attempt may succeed
+    mesh_missing                the mesh is gone from the store
+    model_missing               the model is gone from the registry or the store
+    model_damaged               the bytes of the model are not those that were published
+    result_too_large            a file of the result is over the limit
+"""
+
+import enum
+import errno
+from dataclasses import dataclass
+
+
+class StopReason(enum.Enum):
+    """Why a parent ends its engine."""
+
+    CANCELED = "canceled"
+    DRAINED = "drained"
+    LOST = "lost"  # the attempt belongs to somebody else by now
+
+
+@dataclass(frozen=True)
+class Failure:
+    """Why an attempt failed: a stable code, a sentence for people, the stage, and whether to try once more."""
+
+    code: str
+    message: str
+    stage: str | None = None
+    retryable: bool = False
+
+
+class EngineFailedError(Exception):
+    """The engine ended without a result."""
+
+    def __init__(self, failure: Failure) -> None:
+        super().__init__(f"{failure.code}: {failure.message}")
+        self.failure = failure
+
+
+class EngineStoppedError(Exception):
+    """The engine was ended on purpose."""
+
+    def __init__(self, reason: StopReason) -> None:
+        super().__init__(reason.value)
+        self.reason = reason
+
+
+def over_time(limit_s: float, stage: str | None) -> Failure:
+    """Describe an engine that was ended at its time limit."""
+    return Failure("time_limit_exceeded", f"the work took longer than the limit of {limit_s:g} s", stage)
+
+
+def over_memory(limit_mb: int, stage: str | None) -> Failure:
+    """Describe an engine that wanted more memory than its limit."""
+    return Failure("out_of_memory", f"the work needs more memory than the limit of {limit_mb} MiB", stage)
+
+
+def crashed(signal_name: str | None, stage: str | None) -> Failure:
+    """Describe an engine that died by itself."""
+    how = f"was ended by {signal_name}" if signal_name else "ended without a word"
+    return Failure("engine_crashed", f"the engine {how}", stage, retryable=True)
+
+
+def from_os_error(error: OSError, stage: str | None) -> Failure:
+    """Describe an operating system error; a full disk may have room again later, paths stay out of the message."""
+    if error.errno in (errno.ENOSPC, errno.EDQUOT):
+        return Failure("no_space", "the worker has no disk space left", stage, retryable=True)
+    if error.errno == errno.EFBIG:
+        return Failure("result_too_large", "a file of the result is larger than the limit", stage)
+    return Failure("engine_error", f"the worker could not read or write a file: {error.strerror}", stage)

@@ -1,0 +1,40 @@
+"""Processes that never outlive the process that started them.
+
+A parent that is killed with SIGKILL can't clean up; the kernel can. On Linux a child asks for a signal on its
+parent's death. Elsewhere only the orderly way out, a signal passed on by the parent, stops the children.
+"""
+
+import ctypes
+import os
+import signal
+import sys
+from collections.abc import Callable
+
+_PR_SET_PDEATHSIG = 1
+
+
+def leash(parent: int, death_signal: signal.Signals = signal.SIGTERM) -> Callable[[], None]:
+    """Make a function that ties the process it is called in to its parent.
+
+    It is fit to be a `preexec_fn`: the C library is loaded here, before the fork, and nothing but two system calls
+    is left to do between fork and exec. The kernel watches the *thread* that forks, so start children from a thread
+    that lives as long as the parent does.
+
+    Parameters
+    ----------
+    parent : int
+        Process id of the parent-to-be.
+    death_signal : signal.Signals
+        What the child gets when its parent is gone.
+    """
+    libc = ctypes.CDLL(None, use_errno=True) if sys.platform == "linux" else None
+
+    def tie() -> None:
+        if libc is None:
+            return
+        libc.prctl(_PR_SET_PDEATHSIG, int(death_signal), 0, 0, 0)
+        # The parent may have died before the call above: no signal will come any more.
+        if os.getppid() != parent:
+            os._exit(1)
+
+    return tie

@@ -1,0 +1,117 @@
+"""A process that has loaded the method once and forks an engine child per request.
+
+A fresh interpreter needs more than a second to import numpy, scipy and the mesh libraries; a fork of this process
+needs none of it. It never touches a mesh itself, has one thread, and holds no onnxruntime session, which must not
+cross a fork.
+
+Requests come over a socket, one at a time: a JSON line with the folder of the request, and the write end of the
+pipe for the child's reports. The answers are `{"pid"}` when the child runs and `{"pid", "status"}` when it is gone.
+"""
+
+import contextlib
+import gc
+import importlib
+import json
+import os
+import signal
+import socket
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+from worker.leash import leash
+
+MESSAGE_BYTES = 65536
+# Loaded before the first fork; onnxruntime is not among them.
+_PRELOADED = ("quadpatch.repair", "quadpatch.picture", "worker.engine")
+
+
+def main(arguments: list[str]) -> int:
+    """Serve until the worker hangs up.
+
+    Parameters
+    ----------
+    arguments : list of str
+        Descriptor of the socket, process id of the worker.
+    """
+    leash(int(arguments[1]), signal.SIGKILL)()
+    # Ctrl-C and the like are for the worker to handle; it ends this process when it is done.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)
+    for name in _PRELOADED:
+        importlib.import_module(name)
+    tie = leash(os.getpid(), signal.SIGKILL)
+    # What is loaded by now lives for ever: the collector would only unshare its pages.
+    gc.collect()
+    gc.freeze()
+    with socket.socket(fileno=int(arguments[0])) as connection:
+        while _serve_one(connection, tie):
+            pass
+    return 0
+
+
+def _serve_one(connection: socket.socket, tie: Callable[[], None]) -> bool:
+    message, descriptors, _, _ = socket.recv_fds(connection, MESSAGE_BYTES, 1)
+    if not message:
+        return False
+    (reports,) = descriptors
+    folder = Path(json.loads(message)["folder"])
+    pid = os.fork()
+    if pid == 0:
+        _become_engine(connection, folder, reports, tie)
+    os.close(reports)
+    _answer(connection, {"pid": pid})
+    _answer(connection, {"pid": pid, "status": _wait(pid)})
+    return True
+
+
+def _wait(pid: int) -> int:
+    """Wait for a child and end whatever it started; its id can't be taken by another process before it is reaped."""
+    os.waitid(os.P_PID, pid, os.WEXITED | os.WNOWAIT)
+    # It may have died before it had a group of its own.
+    with contextlib.suppress(ProcessLookupError, PermissionError):
+        os.killpg(pid, signal.SIGKILL)
+    return os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1])
+
+
+def _answer(connection: socket.socket, answer: dict[str, int]) -> None:
+    connection.sendall(json.dumps(answer).encode() + b"\n")
+
+
+def _become_engine(connection: socket.socket, folder: Path, reports: int, tie: Callable[[], None]) -> None:
+    """Turn the forked process into an engine child; never returns."""
+    status = 1
+    try:
+        os.setsid()
+        tie()
+        connection.close()
+        for number in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(number, signal.SIG_DFL)
+        _redirect(folder)
+        from worker.engine import run_request  # noqa: PLC0415 - loaded before the fork; the name is needed here only
+
+        run_request(folder, reports)
+        status = 0
+    finally:
+        sys.stdout.flush()
+        sys.stderr.flush()
+        # Not sys.exit: the parent's exit handlers are not this process's to run.
+        os._exit(status)
+
+
+def _redirect(folder: Path) -> None:
+    """Send everything that native libraries print into the log of the request."""
+    os.chdir(folder)
+    os.umask(0o077)
+    os.environ["TMPDIR"] = str(folder)
+    log = os.open("engine.log", os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600)
+    nothing = os.open(os.devnull, os.O_RDONLY)
+    os.dup2(nothing, 0)
+    os.dup2(log, 1)
+    os.dup2(log, 2)
+    os.close(log)
+    os.close(nothing)
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

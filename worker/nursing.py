@@ -1,0 +1,142 @@
+"""The worker's end of the nursery: start an engine child, listen to it, end it."""
+
+import json
+import os
+import socket
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Self
+
+from worker.limits import thread_environment
+from worker.nursery import MESSAGE_BYTES
+
+# Loading the method takes about a second on an idle machine, more where all cores are busy.
+_START_TIMEOUT_S = 120.0
+
+
+class NurseryLostError(Exception):
+    """The nursery ended; the next child needs a new one."""
+
+
+@dataclass(frozen=True)
+class EngineChild:
+    """A running engine: its process id, which is also its group's, and the pipe that it reports through."""
+
+    pid: int
+    reports: int
+
+
+class Nursery:
+    """A lazily started nursery process; started anew when it is found dead.
+
+    Start children from the main thread: the nursery is tied to the thread that starts it.
+
+    Parameters
+    ----------
+    n_threads : int
+        Threads that numerical libraries may use in every child.
+    """
+
+    def __init__(self, n_threads: int) -> None:
+        self._n_threads = n_threads
+        self._process: subprocess.Popen[bytes] | None = None
+        self._connection: socket.socket | None = None
+        self._buffer = b""
+
+    def warm_up(self) -> None:
+        """Start the nursery now, without waiting for it, so that the first child need not wait for the imports."""
+        if self._connection is None:
+            self._start()
+
+    def start_child(self, folder: Path) -> EngineChild:
+        """Fork an engine for the request in `folder`.
+
+        Raises
+        ------
+        NurseryLostError
+            If no child could be started, twice in a row.
+        """
+        reports, write_end = os.pipe()
+        try:
+            try:
+                return EngineChild(self._ask(folder, write_end), reports)
+            except NurseryLostError:
+                self.close()
+                return EngineChild(self._ask(folder, write_end), reports)
+        except NurseryLostError:
+            os.close(reports)
+            raise
+        finally:
+            os.close(write_end)
+
+    def wait_child(self, child: EngineChild, timeout_s: float) -> int | None:
+        """Return how the child ended, negative for a signal; None if it is still there, or the nursery is not.
+
+        Parameters
+        ----------
+        child : EngineChild
+        timeout_s : float
+            How long to wait, in seconds.
+        """
+        try:
+            answer = self._read_answer(timeout_s)
+        except (NurseryLostError, TimeoutError):
+            return None
+        return int(answer["status"]) if answer.get("pid") == child.pid else None
+
+    def close(self) -> None:
+        """End the nursery, and with it whatever child is left."""
+        if self._connection is not None:
+            self._connection.close()
+        if self._process is not None:
+            self._process.kill()
+            self._process.wait()
+        self._connection, self._process, self._buffer = None, None, b""
+
+    def __enter__(self) -> Self:
+        """Start nothing yet."""
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """Close."""
+        self.close()
+
+    def _ask(self, folder: Path, write_end: int) -> int:
+        connection = self._connection or self._start()
+        try:
+            socket.send_fds(connection, [json.dumps({"folder": str(folder)}).encode()], [write_end])
+            return int(self._read_answer(_START_TIMEOUT_S)["pid"])
+        except (OSError, TimeoutError) as error:
+            raise NurseryLostError("the nursery does not answer") from error
+
+    def _start(self) -> socket.socket:
+        here, there = socket.socketpair(socket.AF_UNIX, socket.SOCK_STREAM)
+        with there:
+            self._process = subprocess.Popen(
+                [sys.executable, "-m", "worker.nursery", str(there.fileno()), str(os.getpid())],
+                pass_fds=(there.fileno(),),
+                stdin=subprocess.DEVNULL,
+                env={**os.environ, **thread_environment(self._n_threads)},
+                start_new_session=True,
+            )
+        self._connection = here
+        return here
+
+    def _read_answer(self, timeout_s: float) -> dict[str, Any]:
+        connection = self._connection
+        if connection is None:
+            raise NurseryLostError("there is no nursery")
+        connection.settimeout(timeout_s)
+        while b"\n" not in self._buffer:
+            try:
+                chunk = connection.recv(MESSAGE_BYTES)
+            except ConnectionError:
+                chunk = b""
+            if not chunk:
+                raise NurseryLostError("the nursery has ended")
+            self._buffer += chunk
+        line, _, self._buffer = self._buffer.partition(b"\n")
+        answer: dict[str, Any] = json.loads(line)
+        return answer

@@ -1,0 +1,57 @@
+"""How a task ended: with a value, a failure, or because somebody wanted it to end."""
+
+import logging
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TypeVar
+
+from jobkit.errors import NotFoundError
+from jobkit.meshes import MeshSource
+from worker.context import Context
+from worker.failures import EngineFailedError, EngineStoppedError, Failure, StopReason
+from worker.folders import request_folder
+from worker.spec import source_name
+
+T = TypeVar("T")
+
+_log = logging.getLogger("quadpatch.worker")
+
+
+def outcome_of(work: Callable[[], T], subject: str) -> T | Failure | StopReason:
+    """Do the work; nothing above this frame sees a traceback.
+
+    Parameters
+    ----------
+    work : callable
+    subject : str
+        What is worked on, for the log.
+    """
+    try:
+        return work()
+    except EngineFailedError as error:
+        _log.warning("%s: %s", subject, error)
+        return error.failure
+    except EngineStoppedError as error:
+        return error.reason
+    except Exception:  # noqa: BLE001 - the worker's outermost frame: the client gets a code, the log the traceback
+        _log.exception("%s failed", subject)
+        return Failure("engine_error", "the worker met an error that nobody foresaw")
+
+
+@contextmanager
+def folder_with_mesh(context: Context, source: MeshSource) -> Iterator[Path]:
+    """Make the folder of a request with the mesh in it, under a name that states its format.
+
+    Raises
+    ------
+    EngineFailedError
+        If the mesh is gone from the store.
+    """
+    with request_folder(context.work_folder) as folder:
+        try:
+            with context.store.local_file(source.key) as path:
+                (folder / source_name(source)).symlink_to(path)
+                yield folder
+        except NotFoundError as error:
+            raise EngineFailedError(Failure("mesh_missing", "the mesh is gone from the store")) from error

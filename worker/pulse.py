@@ -1,0 +1,96 @@
+"""The heartbeat of one attempt: a thread that keeps the lease, writes progress and brings the cancel flag back.
+
+It alone talks to the database while the engine works, so a slow disk never holds up the watch over the engine.
+"""
+
+import logging
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Self
+
+from sqlalchemy.exc import SQLAlchemyError
+
+from jobkit.errors import StaleAttemptError
+from worker.failures import StopReason
+from worker.progress import Progress
+
+# How soon a cancel is noticed, and how often progress is written at most.
+_TICK_S = 0.5
+
+_log = logging.getLogger("quadpatch.worker.pulse")
+
+
+@dataclass(frozen=True)
+class Vitals:
+    """How an attempt shows that it is alive.
+
+    Attributes
+    ----------
+    renew : callable
+        Renews the lease; raises StaleAttemptError.
+    is_canceled : callable
+        Reads whether somebody asked for the end.
+    report : callable
+        Writes stage and percent; raises StaleAttemptError.
+    heartbeat_s, lease_s : float
+        Time between two renewals, and how long one lasts.
+    """
+
+    renew: Callable[[], object]
+    is_canceled: Callable[[], bool]
+    report: Callable[[str, float], None]
+    heartbeat_s: float
+    lease_s: float
+
+
+class Pulse:
+    """Beats from entering a `with` block until leaving it."""
+
+    def __init__(self, vitals: Vitals) -> None:
+        self._vitals = vitals
+        self._progress = Progress()
+        self._written = ("", 0.0)
+        self._ended = threading.Event()
+        self._renewed_at = time.monotonic()
+        self._thread = threading.Thread(target=self._beat, name="pulse", daemon=True)
+        self.stop_reason: StopReason | None = None
+
+    def reach(self, stage: str, fraction: float) -> None:
+        """Take note of progress; it is written with the next beat."""
+        self._progress.reach(stage, fraction)
+
+    def __enter__(self) -> Self:
+        """Start beating."""
+        self._thread.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """Stop, and wait for a write that is under way."""
+        self._ended.set()
+        self._thread.join()
+
+    def _beat(self) -> None:
+        while not self._ended.wait(_TICK_S) and self.stop_reason is None:
+            try:
+                self._keep_alive()
+            except StaleAttemptError as error:
+                _log.warning("the attempt was taken away: %s", error)
+                self.stop_reason = StopReason.LOST
+            except SQLAlchemyError:
+                _log.warning("a heartbeat failed", exc_info=True)
+                if time.monotonic() - self._renewed_at > self._vitals.lease_s:
+                    self.stop_reason = StopReason.LOST
+
+    def _keep_alive(self) -> None:
+        if time.monotonic() - self._renewed_at >= self._vitals.heartbeat_s:
+            self._vitals.renew()
+            self._renewed_at = time.monotonic()
+        if self._vitals.is_canceled():
+            self.stop_reason = StopReason.CANCELED
+            return
+        reached = (self._progress.stage, self._progress.percent)
+        if reached != self._written:
+            self._vitals.report(*reached)
+            self._written = reached

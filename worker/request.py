@@ -1,0 +1,64 @@
+"""What a worker asks of its engine child: a folder with the request in it, and names of files in that folder.
+
+::
+
+    request.json     this request
+    source.ply       the mesh, under a name that states its format
+    repaired.ply     the repaired mesh
+    report.json      what was done to every hole
+    preview.png      the before/after picture
+    facts.json       what an inspection found
+    engine.log       all that the child prints
+"""
+
+import json
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any, Literal, Self
+
+from worker.limits import EngineLimits
+
+REQUEST_NAME = "request.json"
+REPORT_NAME = "report.json"
+FACTS_NAME = "facts.json"
+PREVIEW_NAME = "preview.png"
+LOG_NAME = "engine.log"
+
+
+@dataclass(frozen=True)
+class EngineRequest:
+    """One task of the engine.
+
+    Attributes
+    ----------
+    task : "repair" or "inspect"
+    source : str
+        Name of the mesh file in the request's folder.
+    limits : EngineLimits
+    output : str
+        Name of the repaired file.
+    model : str
+        As `quadpatch.repair.repair_file` takes it: `smooth`, `self` or the path of a model file.
+    options : dict
+        As `quadpatch.options.RepairOptions.from_dict` takes it.
+    with_preview : bool
+        Whether to draw a before/after picture.
+    """
+
+    task: Literal["repair", "inspect"]
+    source: str
+    limits: EngineLimits
+    output: str = ""
+    model: str = ""
+    options: dict[str, Any] = field(default_factory=dict)
+    with_preview: bool = False
+
+    def save(self, folder: Path) -> None:
+        """Write the request into its folder."""
+        (folder / REQUEST_NAME).write_text(json.dumps(asdict(self)), encoding="utf-8")
+
+    @classmethod
+    def load(cls, folder: Path) -> Self:
+        """Read back what `save` wrote."""
+        values = json.loads((folder / REQUEST_NAME).read_text(encoding="utf-8"))
+        return cls(**{**values, "limits": EngineLimits(**values["limits"])})

@@ -1,0 +1,79 @@
+"""The one place where the wire schema of a job becomes a request to the method."""
+
+from pathlib import PurePath
+from typing import Any, get_args
+
+from jobkit.meshes import MeshSource
+from jobkit.schema import Format, JobSpec, OutputFormat, SmoothMethod
+from worker.limits import EngineLimits
+from worker.request import EngineRequest
+
+# Formats that are read, but handed back as another one: a glTF with its side files is no single file.
+_WRITTEN_AS: dict[str, OutputFormat] = {"gltf": "glb"}
+_DEFAULT_OUTPUT: OutputFormat = "ply"
+
+
+def source_name(source: MeshSource) -> str:
+    """Name the mesh file so that its suffix states the format, which the reader goes by."""
+    suffix = source.format or _suffix(source.filename)
+    return f"source.{suffix}" if suffix else "source"
+
+
+def output_format(spec: JobSpec, source: MeshSource) -> OutputFormat:
+    """Return the format that the job hands back: the one asked for, else that of the upload."""
+    if spec.output.format is not None:
+        return spec.output.format
+    known = source.format or _suffix(source.filename)
+    if known in _WRITTEN_AS:
+        return _WRITTEN_AS[known]
+    return next((form for form in get_args(OutputFormat) if form == known), _DEFAULT_OUTPUT)
+
+
+def repair_request(spec: JobSpec, source: MeshSource, model: str, limits: EngineLimits) -> EngineRequest:
+    """Translate a job.
+
+    Parameters
+    ----------
+    spec : JobSpec
+    source : MeshSource
+        The job's mesh.
+    model : str
+        `smooth`, `self`, or the path of the pinned version's file.
+    limits : EngineLimits
+        Of the worker; the spec may only lower them.
+    """
+    return EngineRequest(
+        task="repair",
+        source=source_name(source),
+        output=f"repaired.{output_format(spec, source)}",
+        model=model,
+        options=method_options(spec),
+        limits=lowered(limits, spec),
+        with_preview=spec.output.preview,
+    )
+
+
+def inspect_request(source: MeshSource, limits: EngineLimits) -> EngineRequest:
+    """Translate the analysis of an upload."""
+    return EngineRequest(task="inspect", source=source_name(source), limits=limits)
+
+
+def method_options(spec: JobSpec) -> dict[str, Any]:
+    """Return the options as `quadpatch.options.RepairOptions.from_dict` reads them."""
+    patches = {} if isinstance(spec.method, SmoothMethod) else spec.method.patches.model_dump()
+    return {"holes": spec.holes.model_dump(), "patches": patches, "seed": spec.seed}
+
+
+def lowered(limits: EngineLimits, spec: JobSpec) -> EngineLimits:
+    """Return the tighter of the worker's limits and the job's."""
+    return EngineLimits(
+        time_s=min(limits.time_s, spec.limits.time_s or limits.time_s),
+        memory_mb=min(limits.memory_mb, spec.limits.memory_mb or limits.memory_mb),
+        file_mb=limits.file_mb,
+        n_threads=limits.n_threads,
+    )
+
+
+def _suffix(filename: str | None) -> str:
+    suffix = PurePath(filename or "").suffix.lower().removeprefix(".")
+    return suffix if suffix in get_args(Format) else ""

@@ -1,0 +1,175 @@
+"""Watch over one engine child: pass on its progress, keep its limits, end it when asked, tell how it ended."""
+
+import contextlib
+import json
+import logging
+import os
+import selectors
+import signal
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import psutil
+
+from worker.failures import EngineFailedError, EngineStoppedError, Failure, StopReason, crashed, over_memory, over_time
+from worker.limits import EngineLimits
+from worker.nursing import EngineChild, Nursery, NurseryLostError
+from worker.request import LOG_NAME, EngineRequest
+
+_TICK_S = 0.1
+_CHUNK_BYTES = 65536
+# A report is some hundred bytes; a child that sends endless lines is out of its mind.
+_LINE_LIMIT_BYTES = 1 << 20
+_LOG_TAIL_BYTES = 8000
+# The child closes its pipe in its last breath; the kernel then frees its memory, which takes a while for gigabytes.
+_EXIT_TIMEOUT_S = 30.0
+
+_log = logging.getLogger("quadpatch.worker.engine")
+
+
+@dataclass(frozen=True)
+class Observer:
+    """What a watched engine means to its worker.
+
+    Attributes
+    ----------
+    on_progress : callable
+        Called with the stage and the done fraction of that stage.
+    stop_reason : callable
+        Asked ten times a second whether to end the engine, and why.
+    """
+
+    on_progress: Callable[[str, float], None]
+    stop_reason: Callable[[], StopReason | None]
+
+
+def run_engine(nursery: Nursery, request: EngineRequest, folder: Path, observer: Observer) -> None:
+    """Run a request to its end; results lie in `folder` afterwards.
+
+    Raises
+    ------
+    EngineFailedError
+        If there is no result, with the reason.
+    EngineStoppedError
+        If the observer wanted it to end.
+    """
+    request.save(folder)
+    try:
+        child = nursery.start_child(folder)
+    except NurseryLostError as error:
+        _log.error("no engine could be started: %s", error)
+        raise EngineFailedError(crashed(None, None)) from error
+    watch = _Watch(nursery, child, request.limits, observer)
+    try:
+        watch.listen()
+    finally:
+        status = watch.end()
+    if watch.failure is not None or not watch.is_done:
+        _log_last_words(folder / LOG_NAME)
+    if watch.failure is not None:
+        raise EngineFailedError(watch.failure)
+    if not watch.is_done:
+        raise EngineFailedError(_diagnose(status, watch.stage, request.limits, folder / LOG_NAME))
+
+
+class _Watch:
+    def __init__(self, nursery: Nursery, child: EngineChild, limits: EngineLimits, observer: Observer) -> None:
+        self._nursery = nursery
+        self._child = child
+        self._limits = limits
+        self._observer = observer
+        self._deadline = time.monotonic() + limits.time_s
+        self._buffer = b""
+        self.stage: str | None = None
+        self.failure: Failure | None = None
+        self.is_done = False
+
+    def listen(self) -> None:
+        """Read reports until the child hangs up or has to be ended."""
+        with selectors.DefaultSelector() as selector:
+            selector.register(self._child.reports, selectors.EVENT_READ)
+            while self.failure is None:
+                if selector.select(_TICK_S) and not self._read():
+                    return
+                self._keep_limits()
+                reason = self._observer.stop_reason()
+                if reason is not None:
+                    raise EngineStoppedError(reason)
+
+    def end(self) -> int | None:
+        """Make sure that the child and all it started are gone; return how it ended, None if nobody knows."""
+        os.close(self._child.reports)
+        if not self.is_done:
+            self._kill()
+        status = self._nursery.wait_child(self._child, _EXIT_TIMEOUT_S)
+        if status is None:
+            # Without an answer the nursery itself is gone or stuck; its end is the end of its children.
+            self._kill()
+            self._nursery.close()
+        return status
+
+    def _kill(self) -> None:
+        # In its first moments the child is not yet the head of a group; later the group is what has to go.
+        for kill in (os.killpg, os.kill):
+            with contextlib.suppress(ProcessLookupError, PermissionError):
+                kill(self._child.pid, signal.SIGKILL)
+
+    def _read(self) -> bool:
+        chunk = os.read(self._child.reports, _CHUNK_BYTES)
+        self._buffer += chunk
+        if len(self._buffer) > _LINE_LIMIT_BYTES:
+            self.failure = crashed(None, self.stage)
+        while b"\n" in self._buffer and not self.is_done:
+            line, _, self._buffer = self._buffer.partition(b"\n")
+            self._take(json.loads(line))
+        return bool(chunk) and not self.is_done
+
+    def _take(self, report: dict[str, Any]) -> None:
+        if "stage" in report:
+            self.stage = str(report["stage"])
+            self._observer.on_progress(self.stage, float(report["fraction"]))
+        elif report["ok"]:
+            self.is_done = True
+        else:
+            self.failure = Failure(**report["failure"])
+
+    def _keep_limits(self) -> None:
+        if time.monotonic() > self._deadline:
+            self.failure = over_time(self._limits.time_s, self.stage)
+        elif _resident_mb(self._child.pid) > self._limits.memory_mb:
+            self.failure = over_memory(self._limits.memory_mb, self.stage)
+
+
+def _resident_mb(pid: int) -> float:
+    try:
+        return float(psutil.Process(pid).memory_info().rss) / 2**20
+    except psutil.Error:
+        return 0.0  # gone already; the pipe will tell
+
+
+def _diagnose(status: int | None, stage: str | None, limits: EngineLimits, log: Path) -> Failure:
+    """Tell why a child ended without a word."""
+    # Native code that is refused memory throws, and a throw that nobody catches ends in SIGABRT.
+    if b"bad_alloc" in _tail(log):
+        return over_memory(limits.memory_mb, stage)
+    if status == -signal.SIGXCPU:
+        return over_time(limits.time_s, stage)
+    name = signal.Signals(-status).name if status is not None and status < 0 else None
+    return crashed(name, stage)
+
+
+def _log_last_words(log: Path) -> None:
+    words = _tail(log).decode(errors="replace").strip()
+    if words:
+        _log.warning("the engine's last words:\n%s", words)
+
+
+def _tail(log: Path) -> bytes:
+    if not log.exists():
+        return b""
+    with log.open("rb") as file:
+        file.seek(max(0, log.stat().st_size - _LOG_TAIL_BYTES))
+        return file.read()
