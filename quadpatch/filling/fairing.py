@@ -1,0 +1,94 @@
+"""Fairing: the smoothest surface that continues the one around the hole.
+
+New vertices minimise an energy of the surface while every measured vertex stays where it is. The thin plate
+minimises curvature, ``L M^-1 L x = 0`` with L the cotangent Laplacian and M the vertex areas; the minimum variation
+surface minimises the change of curvature, ``L M^-1 L M^-1 L x = 0``, and so carries the curvature of the rim on into
+the hole (M. Botsch and L. Kobbelt, "An intuitive framework for real-time freeform modeling", 2004). The first needs two
+rings of measured vertices at the rim, the second three. Alone, the second magnifies noise at the rim; blended, the
+thin plate rules over detail shorter than `PLATE_LENGTH` and the minimum variation over the rest.
+"""
+
+import numpy as np
+from scipy import sparse
+from scipy.sparse.linalg import splu
+
+from quadpatch.types import BoolArray, FloatArray, IntArray, Triangles, Vertices
+
+# Where thin plate and minimum variation weigh the same, in mean edge lengths of the fill (see docs/method.md).
+PLATE_LENGTH = 4.5
+
+# Cotangents beyond this come from slivers and would drown every other weight.
+_MAX_COTANGENT = 50.0
+
+
+def fair(
+    vertices: Vertices, triangles: Triangles, free: BoolArray, plate_length: float, *, uniform: bool = False
+) -> Vertices:
+    """Move the free vertices to where the surface is smoothest.
+
+    Parameters
+    ----------
+    vertices : (n, 3) float64
+    triangles : (m, 3) int64
+        The fill and three rings of triangles around its rim.
+    free : (n,) bool
+        Vertices that may move.
+    plate_length : float
+        In mean edge lengths; 0 is the pure thin plate.
+    uniform : bool
+        The graph Laplacian in place of the cotangent one: for a start too crumpled to take weights from.
+
+    Returns
+    -------
+    (n, 3) float64
+        A copy; fixed vertices keep their bits.
+    """
+    result = vertices.copy()
+    if not free.any():
+        return result
+    laplacian, area = _laplacian(vertices, triangles, uniform=uniform)
+    step = sparse.diags_array(1.0 / area) @ laplacian
+    # Rows of free vertices only: those of the outermost ring have lost triangles at the cut.
+    energy = laplacian[free] @ step
+    if plate_length:
+        energy = energy + (plate_length**2 * area[free].mean()) * (energy @ step)
+    energy = energy.tocsc()
+    inner, right = energy[:, free], -(energy[:, ~free] @ vertices[~free])
+    factors = splu(inner, permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True}, diag_pivot_thresh=0.0)
+    result[free] = factors.solve(right)
+    return result
+
+
+def _laplacian(vertices: Vertices, triangles: Triangles, *, uniform: bool) -> tuple[sparse.csr_array, FloatArray]:
+    """Cotangent (or graph) Laplacian (n, n), rows summing to zero, and vertex areas (n,)."""
+    n = len(vertices)
+    corners = vertices[triangles]
+    rows, columns, weights = [], [], []
+    double_area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    tiny = 1e-12 * double_area.mean() + 1e-300
+    for k in range(3):
+        i, j = triangles[:, (k + 1) % 3], triangles[:, (k + 2) % 3]
+        u, v = corners[:, (k + 1) % 3] - corners[:, k], corners[:, (k + 2) % 3] - corners[:, k]
+        cotangent = np.einsum("ij,ij->i", u, v) / np.maximum(double_area, tiny)
+        weight = np.full(len(i), 0.5) if uniform else 0.5 * cotangent.clip(-_MAX_COTANGENT, _MAX_COTANGENT)
+        rows += [i, j]
+        columns += [j, i]
+        weights += [weight, weight]
+    adjacency = sparse.csr_array(
+        (np.concatenate(weights), (np.concatenate(rows), np.concatenate(columns))), shape=(n, n)
+    )
+    laplacian = (sparse.diags_array(adjacency.sum(axis=1)) - adjacency).tocsr()
+    area = np.bincount(triangles.ravel(), np.repeat(double_area / 6, 3), minlength=n)
+    area = np.ones(n) if uniform else np.maximum(area, 1e-6 * area[area > 0].mean())
+    return laplacian, area
+
+
+def triangles_around(triangles: Triangles, core: IntArray, n_vertices: int, n_rings: int) -> IntArray:
+    """Triangles with a corner among `core` or less than `n_rings` rings away from it: indices (k,) int64, ascending."""
+    inside = np.zeros(n_vertices, bool)
+    inside[core] = True
+    touched = np.zeros(len(triangles), bool)
+    for _ in range(n_rings):
+        touched = inside[triangles].any(axis=1)
+        inside[triangles[touched]] = True
+    return np.flatnonzero(touched)

@@ -1,0 +1,183 @@
+"""Refinement of a hole's triangulation to the density of the surface around it.
+
+P. Liepa, "Filling Holes in Meshes", 2003, section 4: a triangle whose centroid lies far from its corners, compared with the
+edge lengths at the rim, is split there; after every round, interior edges are flipped until they are locally
+Delaunay. All holes are refined at once, so every step is one pass over arrays.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from quadpatch.filling.triangulation import EdgeSet
+from quadpatch.mesh.normals import vertex_normals
+from quadpatch.mesh.smoothing import neighbour_average
+from quadpatch.types import BoolArray, FloatArray, IntArray, Triangles, Vertices
+
+# Liepa's density factor: larger gives more vertices. With sqrt(2) the fill has about as many vertices as were lost.
+DENSITY = np.sqrt(2.0)
+
+_MAX_ROUNDS = 24
+_MAX_FLIP_PASSES = 40
+# An edge counts as Delaunay while cot(alpha) + cot(beta) is above minus this.
+_DELAUNAY_SLACK = 1e-9
+
+
+@dataclass(frozen=True)
+class Refined:
+    """Triangulations of all holes, being refined.
+
+    Attributes
+    ----------
+    vertices : (n, 3) float64
+        Input vertices first; only those after them are ever added or moved.
+    triangles : (m, 3) int64
+    hole : (m,) int64
+        Position of each triangle's hole in the list of loops.
+    spacing : (n,) float64
+        Wanted edge length at each vertex; 0 where no hole touches it.
+    n_measured : int
+        Count of input vertices.
+    """
+
+    vertices: Vertices
+    triangles: Triangles
+    hole: IntArray
+    spacing: FloatArray
+    n_measured: int
+
+    @property
+    def is_new(self) -> BoolArray:
+        """(n,) bool, True = added by the refinement."""
+        return np.arange(len(self.vertices)) >= self.n_measured
+
+
+def refine(patch: Refined, taken: EdgeSet) -> Refined:
+    """Split and flip until every triangle is about as large as the surface around its hole is dense."""
+    patch = flip_to_delaunay(patch, taken)
+    for _ in range(_MAX_ROUNDS):
+        large = _too_large(patch)
+        if not large.any():
+            break
+        patch = flip_to_delaunay(_split_at_centroid(patch, large), taken)
+    return patch
+
+
+def _too_large(patch: Refined) -> BoolArray:
+    corners = patch.vertices[patch.triangles]
+    reach = DENSITY * np.linalg.norm(corners - corners.mean(axis=1, keepdims=True), axis=2)
+    wanted = patch.spacing[patch.triangles]
+    large: BoolArray = ((reach > wanted) & (reach > wanted.mean(axis=1, keepdims=True))).all(axis=1)
+    return large
+
+
+def _split_at_centroid(patch: Refined, large: BoolArray) -> Refined:
+    a, b, c = patch.triangles[large].T
+    new = len(patch.vertices) + np.arange(len(a))
+    inner = np.concatenate([np.stack(t, axis=1) for t in ((a, b, new), (b, c, new), (c, a, new))])
+    corners = patch.triangles[large]
+    return replace(
+        patch,
+        vertices=np.concatenate([patch.vertices, patch.vertices[corners].mean(axis=1)]),
+        triangles=np.concatenate([patch.triangles[~large], inner]),
+        hole=np.concatenate([patch.hole[~large], np.tile(patch.hole[large], 3)]),
+        spacing=np.concatenate([patch.spacing, patch.spacing[corners].mean(axis=1)]),
+    )
+
+
+def relax(patch: Refined, around: Triangles, taken: EdgeSet) -> Refined:
+    """Slide new vertices along the surface to the mean of their neighbours, and flip again: better shaped triangles.
+
+    Parameters
+    ----------
+    patch : Refined
+    around : (k, 3) int64
+        Triangles of the input next to the holes.
+    taken : EdgeSet
+    """
+    triangles = np.concatenate([around, patch.triangles])
+    mean = neighbour_average(triangles, len(patch.vertices)) @ patch.vertices
+    normals = vertex_normals(patch.vertices, triangles)
+    slide = mean - patch.vertices
+    slide -= np.einsum("ij,ij->i", slide, normals)[:, None] * normals
+    slide[~patch.is_new] = 0
+    return flip_to_delaunay(replace(patch, vertices=patch.vertices + slide), taken)
+
+
+def flip_to_delaunay(patch: Refined, taken: EdgeSet) -> Refined:
+    """Flip interior edges until all are locally Delaunay; each pass flips edges that share no triangle."""
+    triangles = patch.triangles.copy()
+    active = np.arange(len(triangles))
+    for _ in range(_MAX_FLIP_PASSES):
+        part = triangles[active]
+        flipped = _flip_once(part, patch.vertices, taken)
+        if not len(flipped):
+            break
+        triangles[active] = part
+        # Edges of one hole never meet triangles of another: a hole without a flip is done.
+        busy = np.zeros(int(patch.hole.max()) + 1, bool)
+        busy[patch.hole[active[flipped]]] = True
+        active = active[busy[patch.hole[active]]]
+    return replace(patch, triangles=triangles)
+
+
+def _flip_once(triangles: Triangles, vertices: Vertices, taken: EdgeSet) -> IntArray:
+    """Flip, in place, edges that are not Delaunay, no two in one triangle; return the triangles that changed."""
+    n_vertices = len(vertices)
+    edges = triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
+    keys = _edge_keys(edges[:, 0], edges[:, 1], n_vertices)
+    order = np.argsort(keys, kind="stable")
+    ranked = keys[order]
+    twin = np.flatnonzero(ranked[1:] == ranked[:-1])
+    left, right = order[twin], order[twin + 1]
+    a, b = edges[left].T
+    c, d = _opposite(triangles, left), _opposite(triangles, right)
+    excess = _cotangent(vertices[a], vertices[c], vertices[b]) + _cotangent(vertices[a], vertices[d], vertices[b])
+    bad = np.flatnonzero(excess < -_DELAUNAY_SLACK)
+    bad = bad[np.argsort(excess[bad], kind="stable")]
+    a, b, c, d, left, right = (row[bad] for row in (a, b, c, d, left, right))
+    allowed = _is_unfolded(*(vertices[row] for row in (a, b, c, d))) & (c != d)
+    allowed &= ~taken.contains(np.stack([c, d], axis=1))
+    crossing = _edge_keys(c, d, n_vertices)
+    allowed &= ranked[np.searchsorted(ranked, crossing).clip(max=max(len(ranked) - 1, 0))] != crossing
+    allowed[allowed] = _is_first_everywhere(left[allowed] // 3, right[allowed] // 3, len(triangles))
+    first = np.unique(crossing[allowed], return_index=True)[1]
+    chosen = np.flatnonzero(allowed)[first]
+    a, b, c, d, left, right = (row[chosen] for row in (a, b, c, d, left // 3, right // 3))
+    triangles[left] = np.stack([a, d, c], axis=1)
+    triangles[right] = np.stack([d, b, c], axis=1)
+    return np.concatenate([left, right])
+
+
+def _edge_keys(start: IntArray, end: IntArray, n_vertices: int) -> IntArray:
+    return np.minimum(start, end) * np.int64(n_vertices) + np.maximum(start, end)
+
+
+def _opposite(triangles: Triangles, half_edges: IntArray) -> IntArray:
+    corners: IntArray = triangles[half_edges // 3, (half_edges % 3 + 2) % 3]
+    return corners
+
+
+def _is_unfolded(a: Vertices, b: Vertices, c: Vertices, d: Vertices) -> BoolArray:
+    """Whether the triangles (a, d, c) and (d, b, c), which the flip makes, look the same way."""
+    unfolded: BoolArray = np.einsum("ij,ij->i", np.cross(d - a, c - a), np.cross(b - d, c - d)) > 0
+    return unfolded
+
+
+def _is_first_everywhere(left: IntArray, right: IntArray, n_triangles: int) -> BoolArray:
+    """Which of some edges, the most urgent first, come first in both of their triangles."""
+    position = np.arange(len(left))
+    rank = np.full(n_triangles, len(left))
+    # Later writes win: in reverse order the most urgent edge of a triangle stays.
+    rank[right[::-1]] = position[::-1]
+    rank_left = np.full(n_triangles, len(left))
+    rank_left[left[::-1]] = position[::-1]
+    rank = np.minimum(rank, rank_left)
+    first: BoolArray = (rank[left] == position) & (rank[right] == position)
+    return first
+
+
+def _cotangent(a: Vertices, apex: Vertices, b: Vertices) -> FloatArray:
+    u, v = a - apex, b - apex
+    cotangent: FloatArray = np.einsum("ij,ij->i", u, v) / np.maximum(np.linalg.norm(np.cross(u, v), axis=1), 1e-300)
+    return cotangent

@@ -1,0 +1,157 @@
+"""Minimum-weight triangulation of boundary loops.
+
+P. Liepa, "Filling Holes in Meshes", Eurographics Symposium on Geometry Processing 2003: among all triangulations of
+a loop, dynamic programming finds the one whose largest dihedral angle, with the surface around the hole counted
+in, is smallest; equal ones are told apart by their area. The table needs O(n^3) triangles for a loop of n vertices, so a
+long loop is triangulated coarsely first, and the slivers between coarse edges and the rim after that.
+"""
+
+import numpy as np
+
+from quadpatch.types import BoolArray, FloatArray, IntArray, Triangles, Vertices
+
+# Coarse loops have at most this many vertices: 128**3 / 6 triangles are weighed in well under 0.1 s.
+MAX_TABLE_SIZE = 128
+
+# Dihedral angles closer than this (as 1 - cos) count as equal; area decides then.
+_ANGLE_STEP = 1e-3
+
+
+def triangulate_loops(
+    loops: list[IntArray], vertices: Vertices, rim_normals: list[FloatArray], taken: "EdgeSet"
+) -> list[Triangles | None]:
+    """Triangulate boundary loops without new vertices.
+
+    Parameters
+    ----------
+    loops : list of (n_loop,) int64
+        With the surface on the left of each loop; the triangles close it from the other side.
+    vertices : (n_vertices, 3) float64
+    rim_normals : list of (n_loop, 3) float64
+        Unit normal of the face at each rim edge, from loop vertex i to i + 1.
+    taken : EdgeSet
+        Edges that exist already: a chord along one of them would give it a third face.
+
+    Returns
+    -------
+    list of (n_loop - 2, 3) int64 or None
+        Vertex indices; None where every triangulation would reuse an existing edge.
+    """
+    result: list[Triangles | None] = [None] * len(loops)
+    by_length: dict[int, list[int]] = {}
+    for i, loop in enumerate(loops):
+        if len(loop) <= MAX_TABLE_SIZE:
+            by_length.setdefault(len(loop), []).append(i)
+        else:
+            result[i] = _triangulate_long(loop, vertices, rim_normals[i], taken)
+    for members in by_length.values():
+        batch = np.stack([loops[i] for i in members])
+        normals = np.stack([rim_normals[i] for i in members])
+        corners, finite = _minimum_weight(vertices[batch], normals, taken.chords(batch))
+        for i, local, found in zip(members, corners, finite, strict=True):
+            result[i] = loops[i][local] if found else None
+    return result
+
+
+class EdgeSet:
+    """Undirected edges of a mesh among some vertices, for "does this edge exist?" in bulk."""
+
+    def __init__(self, edges: IntArray, n_vertices: int) -> None:
+        self._n_vertices = np.int64(n_vertices)
+        self._keys = np.unique(self._key(edges))
+
+    def contains(self, edges: IntArray) -> BoolArray:
+        """Whether each edge (..., 2) is in the set."""
+        keys = self._key(edges)
+        at = np.searchsorted(self._keys, keys).clip(0, max(len(self._keys) - 1, 0))
+        return self._keys[at] == keys if len(self._keys) else np.zeros(keys.shape, bool)
+
+    def chords(self, loops: IntArray) -> BoolArray:
+        """Pairs (b, n, n) of loop vertices (b, n), not neighbours on the loop, that an edge joins already."""
+        n = loops.shape[1]
+        pairs = np.stack(np.broadcast_arrays(loops[:, :, None], loops[:, None, :]), axis=-1)
+        joined = self.contains(pairs)
+        i = np.arange(n)
+        joined[:, i, (i + 1) % n] = joined[:, (i + 1) % n, i] = joined[:, i, i] = False
+        return joined
+
+    def _key(self, edges: IntArray) -> IntArray:
+        start, end = edges[..., 0], edges[..., 1]
+        return np.minimum(start, end) * self._n_vertices + np.maximum(start, end)
+
+
+def _minimum_weight(points: FloatArray, rim_normals: FloatArray, taken: BoolArray) -> tuple[IntArray, BoolArray]:
+    """Triangulate b loops of n points at once: points (b, n, 3) -> corners (b, n - 2, 3), whether each exists (b,)."""
+    b, n, _ = points.shape
+    angle = np.zeros((b, n, n))
+    area = np.zeros((b, n, n))
+    apex = np.full((b, n, n), -1)
+    normal = np.zeros((b, n, n, 3))
+    i = np.arange(n - 1)
+    normal[:, i, i + 1] = rim_normals[:, :-1]
+    size = np.linalg.norm(np.ptp(points, axis=1), axis=1)[:, None, None] ** 2 + 1e-300
+    rows = np.arange(b)[:, None]
+    for gap in range(2, n):
+        i = np.arange(n - gap)
+        j = i + gap
+        k = i[:, None] + np.arange(1, gap)[None, :]  # (n - gap, gap - 1)
+        pi, pj, pk = points[:, i, None], points[:, j, None], points[:, k]
+        cross = np.cross(pk - pj, pi - pj)
+        double_area = np.linalg.norm(cross, axis=-1)
+        unit = cross / np.maximum(double_area, 1e-300)[..., None]
+        ik, kj = (slice(None), i[:, None], k), (slice(None), k, j[:, None])
+        bend = np.maximum(_bend(unit, normal[ik]), _bend(unit, normal[kj]))
+        if gap == n - 1:
+            bend = np.maximum(bend, _bend(unit, rim_normals[:, None, None, -1]))
+        bend = np.maximum(bend, np.maximum(angle[ik], angle[kj]))
+        total = double_area / 2 + area[ik] + area[kj]
+        bend[taken[:, i, j]] = np.inf
+        best = np.argmin(np.round(bend / _ANGLE_STEP) + 1e-3 * total / size, axis=-1)  # (b, n - gap)
+        at = (rows, np.arange(n - gap)[None, :], best)
+        angle[:, i, j], area[:, i, j], normal[:, i, j] = bend[at], total[at], unit[at]
+        apex[:, i, j] = i + 1 + best
+    return _read_off(apex), np.isfinite(angle[:, 0, n - 1])
+
+
+def _bend(a: FloatArray, b: FloatArray) -> FloatArray:
+    return 1.0 - np.einsum("...k,...k->...", a, np.broadcast_to(b, a.shape))
+
+
+def _read_off(apex: IntArray) -> IntArray:
+    """Triangles (b, n - 2, 3) out of the table of apexes."""
+    b, n, _ = apex.shape
+    corners = np.zeros((b, n - 2, 3), np.int64)
+    for row in range(b):
+        table, spans, count = apex[row], [(0, n - 1)], 0
+        while spans:
+            i, j = spans.pop()
+            if j - i < 2:
+                continue
+            k = int(table[i, j])
+            corners[row, count] = j, k, i
+            count += 1
+            spans += [(i, k), (k, j)]
+    return corners
+
+
+def _triangulate_long(loop: IntArray, vertices: Vertices, rim_normals: FloatArray, taken: EdgeSet) -> Triangles | None:
+    n = len(loop)
+    stops = np.unique(np.linspace(0, n, MAX_TABLE_SIZE, endpoint=False).astype(np.int64))
+    ends = np.append(stops[1:], n)
+    normals = np.stack([rim_normals[a:b].mean(axis=0) for a, b in zip(stops, ends, strict=True)])
+    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
+    coarse, found = _minimum_weight(vertices[loop[stops]][None], normals[None], taken.chords(loop[stops][None]))
+    if not found[0]:
+        return None
+    pieces = [loop[stops][coarse[0]]]
+    for a, b in zip(stops.tolist(), ends.tolist(), strict=True):
+        if b - a < 2:
+            continue
+        # The sliver between the coarse edge and the rim; its closing edge borders the coarse triangulation.
+        sliver = loop[np.arange(a, b + 1) % n]
+        normals = np.concatenate([rim_normals[a:b], rim_normals[a:b].mean(axis=0, keepdims=True)])
+        inner, found = _minimum_weight(vertices[sliver][None], normals[None], taken.chords(sliver[None]))
+        if not found[0]:
+            return None
+        pieces.append(sliver[inner[0]])
+    return np.concatenate(pieces)

@@ -1,0 +1,132 @@
+"""Boundary loops of a triangle mesh.
+
+An edge with exactly one face is a boundary edge. Boundary edges keep the direction of their face, so every loop
+runs with the surface on its left.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from quadpatch.types import BoolArray, IntArray, Triangles
+
+
+@dataclass(frozen=True)
+class Boundary:
+    """All boundary loops of a mesh.
+
+    Attributes
+    ----------
+    loops : list of (n_loop,) int64
+        Vertex indices of each simple loop: no vertex comes twice.
+    is_manifold : list of bool
+        False where a loop touches an edge with three or more faces, or where the faces around it disagree about
+        the direction; such a rim has no one surface to be continued.
+    """
+
+    loops: list[IntArray]
+    is_manifold: list[bool]
+
+
+def boundary_loops(triangles: Triangles) -> Boundary:
+    """Find the simple boundary loops of a mesh.
+
+    A walk that comes back to a vertex (two holes that share a corner) is cut there, so every loop is simple.
+
+    Parameters
+    ----------
+    triangles : (n_triangles, 3) int64
+        Vertex indices, counter-clockwise seen from outside.
+
+    Returns
+    -------
+    Boundary
+        Loops in the order of their lowest vertex index, each starting there. Empty for a closed mesh.
+    """
+    edges, bad_vertices = _boundary_edges(triangles)
+    walks, open_walks = _walk(edges)
+    loops = [(loop, True) for walk in walks for loop in _simple_loops(walk)]
+    # A chain that can't be closed in the direction of its faces: the faces around it disagree.
+    loops += [(chain, False) for chain in open_walks]
+    loops = [
+        (np.roll(loop, -int(np.argmin(loop))), good and not np.isin(loop, bad_vertices).any()) for loop, good in loops
+    ]
+    loops.sort(key=lambda item: tuple(item[0][:2]))
+    return Boundary([loop for loop, _ in loops], [good for _, good in loops])
+
+
+def directed_edges(triangles: Triangles) -> IntArray:
+    """Directed edges of all triangles, (3 n_triangles, 2) int64; edge ``3 t + k`` runs from corner k of triangle t."""
+    return triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
+
+
+def edge_keys(edges: IntArray, n_vertices: int) -> IntArray:
+    """One int64 for every edge, the same in both directions; ``n_vertices`` squared must fit 63 bits."""
+    start, end = edges[:, 0], edges[:, 1]
+    return np.minimum(start, end) * np.int64(n_vertices) + np.maximum(start, end)
+
+
+def boundary_edge_mask(triangles: Triangles) -> BoolArray:
+    """Which of the `directed_edges` have exactly one face, (3 n_triangles,) bool."""
+    counts = _edge_counts(triangles)
+    return counts == 1
+
+
+def _edge_counts(triangles: Triangles) -> IntArray:
+    edges = directed_edges(triangles)
+    keys = edge_keys(edges, int(triangles.max(initial=0)) + 1)
+    order = np.argsort(keys)
+    ranked = keys[order]
+    first = np.concatenate([[True], ranked[1:] != ranked[:-1]]) if len(keys) else np.zeros(0, bool)
+    counts_of_unique = np.diff(np.concatenate([np.flatnonzero(first), [len(keys)]]))
+    counts = np.zeros(len(keys), np.int64)
+    counts[order] = np.repeat(counts_of_unique, counts_of_unique)
+    return counts
+
+
+def _boundary_edges(triangles: Triangles) -> tuple[IntArray, IntArray]:
+    """Directed boundary edges (b, 2), and the vertices on edges of three or more faces."""
+    edges = directed_edges(triangles)
+    counts = _edge_counts(triangles)
+    return edges[counts == 1], np.unique(edges[counts > 2])
+
+
+def _walk(edges: IntArray) -> tuple[list[list[int]], list[IntArray]]:
+    """Follow boundary edges head to tail; a Python loop over boundary vertices only."""
+    following: dict[int, list[int]] = {}
+    for start, end in edges[np.lexsort((-edges[:, 1], edges[:, 0]))].tolist():
+        following.setdefault(start, []).append(end)
+    closed: list[list[int]] = []
+    chains: list[IntArray] = []
+    # Chains that can't close begin where more edges leave than arrive: walk those first, or they would eat loops.
+    n_vertices = int(edges.max(initial=-1)) + 1
+    surplus = np.bincount(edges[:, 0], minlength=n_vertices) - np.bincount(edges[:, 1], minlength=n_vertices)
+    starts = np.repeat(np.arange(n_vertices), np.maximum(surplus, 0)).tolist()
+    for start in [*starts, *sorted(following)]:
+        while following.get(start):
+            walk, at = [start], start
+            while following.get(at):
+                at = following[at].pop()
+                walk.append(at)
+            if at == start:
+                closed.append(walk[:-1])
+            else:
+                chains.append(np.unique(np.array(walk, np.int64)))
+    return closed, chains
+
+
+def _simple_loops(walk: list[int]) -> list[IntArray]:
+    """Cut a closed walk at every vertex that it passes twice."""
+    loops: list[IntArray] = []
+    stack: list[int] = []
+    on_stack: dict[int, int] = {}
+    for vertex in [*walk, walk[0]]:
+        if vertex in on_stack:
+            at = on_stack[vertex]
+            loops.append(np.array(stack[at:], np.int64))
+            for gone in stack[at:]:
+                del on_stack[gone]
+            del stack[at:]
+        on_stack[vertex] = len(stack)
+        stack.append(vertex)
+    return [loop for loop in loops if len(loop) >= 3]

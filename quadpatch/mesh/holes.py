@@ -1,0 +1,159 @@
+"""Holes: boundary loops with their measures, and the rule that says which of them to fill."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial import ConvexHull, QhullError
+from scipy.spatial.distance import pdist
+
+from quadpatch.errors import OptionError
+from quadpatch.mesh.boundary import boundary_loops
+from quadpatch.options import HoleOptions
+from quadpatch.types import IntArray, TriangleMesh, Vertices
+
+# An open scan has an outer border that nobody wants closed: without a rule from the user, loops wider than this
+# share of the bounding box's diagonal stay open.
+AUTO_DIAMETER_SHARE = 0.25
+
+# Up to here, all pairwise distances of a loop are cheaper than its convex hull.
+_SMALL_LOOP = 400
+
+
+@dataclass(frozen=True)
+class Hole:
+    """One boundary loop.
+
+    Attributes
+    ----------
+    id : int
+        Position in the list of holes, longest perimeter first.
+    loop : (n_edges,) int64
+        Vertices, with the surface on the left of the loop.
+    perimeter, diameter : float
+        Length of the loop and the largest distance between two of its vertices, in mesh units.
+    area : float
+        Area of the loop's projection onto its best plane, in square mesh units.
+    planarity : float
+        Root mean square distance of the loop from its best plane, divided by the diameter: 0 is flat.
+    is_manifold : bool
+        False where the rim touches an edge of three or more faces or faces that disagree about their direction.
+    """
+
+    id: int
+    loop: IntArray
+    perimeter: float
+    diameter: float
+    area: float
+    planarity: float
+    is_manifold: bool
+
+    @property
+    def n_edges(self) -> int:
+        """Edges, and vertices, of the loop."""
+        return len(self.loop)
+
+
+@dataclass(frozen=True)
+class Selection:
+    """What to do with every hole: an empty reason means that it is to be filled.
+
+    Attributes
+    ----------
+    chosen : list of Hole
+    skipped : dict of int to (str, str)
+        Hole id to a stable code and a sentence for people.
+    """
+
+    chosen: list[Hole]
+    skipped: dict[int, tuple[str, str]]
+
+
+def find_holes(mesh: TriangleMesh) -> list[Hole]:
+    """Find and measure every boundary loop.
+
+    Returns
+    -------
+    list of Hole
+        Longest perimeter first; equal ones in the order of their first vertex. Ids count up from 0.
+    """
+    boundary = boundary_loops(mesh.triangles)
+    measured = []
+    for loop, is_manifold in zip(boundary.loops, boundary.is_manifold, strict=True):
+        points = mesh.vertices[loop]
+        perimeter = float(np.linalg.norm(np.roll(points, -1, axis=0) - points, axis=1).sum())
+        measured.append((perimeter, loop, points, is_manifold))
+    measured.sort(key=lambda item: -item[0])
+    return [
+        Hole(i, loop, perimeter, _diameter(points), *_area_and_planarity(points), is_manifold)
+        for i, (perimeter, loop, points, is_manifold) in enumerate(measured)
+    ]
+
+
+def select_holes(holes: list[Hole], options: HoleOptions, diagonal: float) -> Selection:
+    """Apply the user's rule, or the automatic one, to every hole.
+
+    Parameters
+    ----------
+    holes : list of Hole
+    options : HoleOptions
+    diagonal : float
+        Of the mesh's bounding box, in mesh units; the automatic rule is relative to it.
+
+    Raises
+    ------
+    OptionError
+        If an explicit id names no hole.
+    """
+    if options.ids is not None:
+        unknown = sorted(set(options.ids) - {hole.id for hole in holes})
+        if unknown:
+            raise OptionError(f"no hole has the id {unknown[0]}; this mesh has {len(holes)} holes, counted from 0")
+    limit = options.max_diameter
+    if options.is_automatic:
+        limit = AUTO_DIAMETER_SHARE * diagonal
+    chosen, skipped = [], {}
+    for hole in holes:
+        reason = _reason_to_skip(hole, options, limit)
+        if reason is None:
+            chosen.append(hole)
+        else:
+            skipped[hole.id] = reason
+    return Selection(chosen, skipped)
+
+
+def _reason_to_skip(hole: Hole, options: HoleOptions, max_diameter: float | None) -> tuple[str, str] | None:
+    if not hole.is_manifold:
+        return "non_manifold_rim", "the rim touches an edge of three or more faces, or faces of opposite direction"
+    if options.ids is not None and hole.id not in options.ids:
+        return "not_chosen", "not among the chosen ids"
+    if options.all_but_largest and hole.id == 0:
+        return "largest", "the largest loop is taken for the border of the scan"
+    if max_diameter is not None and hole.diameter > max_diameter:
+        rule = "a quarter of the scan's diagonal" if options.is_automatic else "the given maximum"
+        return "too_wide", f"diameter {hole.diameter:.6g} is over {max_diameter:.6g}, {rule}"
+    if options.max_perimeter is not None and hole.perimeter > options.max_perimeter:
+        return "too_long", f"perimeter {hole.perimeter:.6g} is over the given maximum {options.max_perimeter:.6g}"
+    return None
+
+
+def _diameter(points: Vertices) -> float:
+    if len(points) > _SMALL_LOOP:
+        try:
+            points = points[ConvexHull(points).vertices]
+        except QhullError:
+            # A flat loop has no hull in space; its extreme points along many directions bound it as well.
+            angles = np.linspace(0, np.pi, 180, endpoint=False)
+            _, _, axes = np.linalg.svd(points - points.mean(axis=0), full_matrices=False)
+            directions = np.outer(np.cos(angles), axes[0]) + np.outer(np.sin(angles), axes[1])
+            along = points @ directions.T
+            points = points[np.unique(np.concatenate([along.argmin(axis=0), along.argmax(axis=0)]))]
+    return float(pdist(points).max())
+
+
+def _area_and_planarity(points: Vertices) -> tuple[float, float]:
+    centred = points - points.mean(axis=0)
+    # The vector area is the same for every surface spanned by the loop; its length is the largest projected area.
+    area = float(np.linalg.norm(np.cross(centred, np.roll(centred, -1, axis=0)).sum(axis=0)) / 2)
+    distance = np.linalg.svd(centred, compute_uv=False)[-1] / np.sqrt(len(points))
+    diameter = float(np.linalg.norm(centred, axis=1).max()) * 2
+    return area, float(distance / diameter) if diameter > 0 else 0.0

@@ -1,0 +1,34 @@
+"""Normals of triangles and vertices."""
+
+import numpy as np
+
+from quadpatch.types import FloatArray, Triangles, Vertices
+
+_TINY = 1e-300
+
+
+def triangle_normals(vertices: Vertices, triangles: Triangles) -> FloatArray:
+    """Unit normals (n_triangles, 3); zero where a triangle has no area."""
+    return unit(area_vectors(vertices, triangles))
+
+
+def vertex_normals(vertices: Vertices, triangles: Triangles) -> FloatArray:
+    """Unit normals (n_vertices, 3), the mean of the triangles around weighted by area; zero where there is none."""
+    vectors = area_vectors(vertices, triangles)
+    corners = triangles.ravel()
+    return unit(
+        np.stack([np.bincount(corners, np.repeat(vectors[:, k], 3), minlength=len(vertices)) for k in range(3)], axis=1)
+    )
+
+
+def area_vectors(vertices: Vertices, triangles: Triangles) -> FloatArray:
+    """Vectors (n_triangles, 3) along the normals, twice as long as the areas."""
+    a, b, c = (vertices[triangles[:, k]] for k in range(3))
+    return np.cross(b - a, c - a)
+
+
+def unit(vectors: FloatArray) -> FloatArray:
+    """Divide vectors (n, 3) by their lengths; zero vectors stay zero."""
+    lengths = np.linalg.norm(vectors, axis=1, keepdims=True)
+    scaled: FloatArray = vectors / np.maximum(lengths, _TINY)
+    return scaled

@@ -1,0 +1,93 @@
+"""Options of every stage. Frozen; each default stands here and nowhere else. None means: the automatic rule."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from quadpatch.errors import OptionError
+
+RESOLUTION_RANGE = (8, 128)
+OVERLAP_RANGE = (0, 8)
+
+
+@dataclass(frozen=True)
+class HoleOptions:
+    """Which holes to fill; all None: every one but those wider than a quarter of the bounding box's diagonal.
+
+    Attributes
+    ----------
+    max_diameter, max_perimeter : float, optional
+        In mesh units.
+    all_but_largest : bool
+        Leave the loop with the longest perimeter open.
+    ids : tuple of int, optional
+        Just these.
+    """
+
+    max_diameter: float | None = None
+    max_perimeter: float | None = None
+    all_but_largest: bool = False
+    ids: tuple[int, ...] | None = None
+
+    def __post_init__(self) -> None:
+        for name in ("max_diameter", "max_perimeter"):
+            value = getattr(self, name)
+            if value is not None and not value > 0:
+                raise OptionError(f"holes.{name} must be greater than 0; it is {value}")
+
+    @property
+    def is_automatic(self) -> bool:
+        """Whether the user gave no rule at all."""
+        return self == HoleOptions()
+
+
+@dataclass(frozen=True)
+class PatchOptions:
+    """How patches are laid out.
+
+    Attributes
+    ----------
+    length : float, optional
+        Side of a patch in mesh units.
+    resolution : int, optional
+        Bins along one side; a learned model brings its own.
+    overlap : int, optional
+        k of the paper: besides its centre, every quad carries 4 k offset patches.
+    """
+
+    length: float | None = None
+    resolution: int | None = None
+    overlap: int | None = None
+
+    def __post_init__(self) -> None:
+        if self.length is not None and not self.length > 0:
+            raise OptionError(f"patches.length must be greater than 0; it is {self.length}")
+        _check_range("patches.resolution", self.resolution, RESOLUTION_RANGE)
+        _check_range("patches.overlap", self.overlap, OVERLAP_RANGE)
+
+
+@dataclass(frozen=True)
+class RepairOptions:
+    """Everything that a repair can be told; `seed` starts every random choice."""
+
+    holes: HoleOptions = field(default_factory=HoleOptions)
+    patches: PatchOptions = field(default_factory=PatchOptions)
+    seed: int = 0
+
+    @classmethod
+    def from_dict(cls, values: Mapping[str, Any]) -> "RepairOptions":
+        """Build from nested plain values; an unknown name raises OptionError."""
+        try:
+            holes = dict(values.get("holes") or {})
+            if holes.get("ids") is not None:
+                holes["ids"] = tuple(int(i) for i in holes["ids"])
+            patches = dict(values.get("patches") or {})
+            rest = {name: value for name, value in values.items() if name not in ("holes", "patches")}
+            return cls(HoleOptions(**holes), PatchOptions(**patches), **rest)
+        except (TypeError, ValueError) as error:
+            raise OptionError(f"options don't fit: {error}") from error
+
+
+def _check_range(name: str, value: int | None, limits: tuple[int, int]) -> None:
+    if value is not None and not limits[0] <= value <= limits[1]:
+        raise OptionError(f"{name} must lie between {limits[0]} and {limits[1]}; it is {value}")
