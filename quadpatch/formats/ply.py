@@ -86,10 +86,10 @@ def _check_count(element: Element, limits: ReadLimits) -> None:
 def _vertices(rows: Rows | None) -> Vertices:
     if rows is None:
         raise EmptyMeshError("the PLY file has no element `vertex`")
-    columns = [rows.scalar(name) for name in "xyz"]
-    if any(column is None for column in columns):
+    columns = [column for name in "xyz" if (column := rows.scalar(name)) is not None]
+    if len(columns) < 3:
         raise ReadError("the PLY element `vertex` lacks a number x, y or z")
-    return np.stack(columns, axis=1, dtype=np.float64)  # type: ignore[arg-type]
+    return np.stack(columns, axis=1, dtype=np.float64)
 
 
 def _triangles(by_name: dict[str, Rows], vertices: Vertices) -> tuple[Triangles, IntArray, str]:

@@ -102,10 +102,15 @@ def parse_header(data: bytes) -> Header:
             raise ReadError(f"PLY header line {number + 1}: unknown keyword {keyword[:40]!r}")
     if order is None:
         raise ReadError("the PLY header has no format line")
-    names = [element.name for element in elements]
-    if len(set(names)) < len(names):
-        raise ReadError(f"the PLY header declares an element twice: {', '.join(names)[:200]}")
+    _check_names("elements", [element.name for element in elements])
+    for element in elements:
+        _check_names(f"properties of {element.name[:40]!r}", [prop.name for prop in element.properties])
     return Header(tuple(lines), line_end, order, tuple(elements), sum(map(len, lines)))
+
+
+def _check_names(what: str, names: list[str]) -> None:
+    if len(set(names)) < len(names):
+        raise ReadError(f"two {what} in the PLY header have the same name: {', '.join(names)[:200]}")
 
 
 def _header_lines(data: bytes) -> tuple[list[bytes], bytes]:

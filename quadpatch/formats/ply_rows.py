@@ -81,6 +81,6 @@ def check_room(element: Element, smallest_row: int, room: int, unit: str) -> Non
 
 
 def list_range(starts: IntArray, counts: IntArray) -> IntArray:
-    """Number the items of all lists, list by list: each begins at its `starts` and has `counts` items."""
+    """Return the place of every item of lists that begin at `starts` and hold `counts` items, list by list."""
     first_of_each = np.repeat(starts - (np.cumsum(counts) - counts), counts)
     return first_of_each + np.arange(len(first_of_each), dtype=np.int64)

@@ -56,7 +56,7 @@ def test_vertices_inside_a_surface_are_never_joined() -> None:
     # Two pyramids over square rims, their tips at one point.
     rim = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
     tip = np.array([[0.5, 0.5, 1]])
-    vertices = np.concatenate([rim, tip, rim + [0, 0, 2], tip])
+    vertices = np.concatenate([rim, tip, rim + np.array([0, 0, 2]), tip])
     pyramid = np.array([[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]], dtype=np.int64)
     welded = weld(vertices, np.concatenate([pyramid, pyramid[:, ::-1] + 5]))
     assert len(welded.mesh.vertices) == 10

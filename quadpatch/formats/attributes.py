@@ -1,0 +1,117 @@
+"""Attributes of invented vertices and triangles, taken from the measured ones around the hole.
+
+Continuous attributes (colours, texture coordinates, qualities) are spread harmonically from the rim; labels (flags,
+materials, texture numbers) are those of the nearest rim vertex or rim triangle; normals are those of the new surface.
+"""
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from quadpatch.formats.harmonic import extend_harmonically
+from quadpatch.formats.scan import Fill, Scan
+from quadpatch.types import FloatArray, IntArray, Triangles, Vertices
+
+
+def triangle_edges(triangles: Triangles) -> IntArray:
+    """Directed edges of triangles, (3 m, 2) int64."""
+    return np.stack([triangles.ravel(), triangles[:, [1, 2, 0]].ravel()], axis=1)
+
+
+def spread_over_vertices(fill: Fill, values: FloatArray) -> FloatArray:
+    """Spread values of measured vertices over the new ones.
+
+    Parameters
+    ----------
+    fill : Fill
+    values : (n_measured, d) float64
+        NaN and infinities count as unknown.
+
+    Returns
+    -------
+    (n_new, d) float64
+        Within the range of the rim's values; 0 where no rim vertex has one.
+    """
+    n_measured, n_new = len(values), len(fill.vertices)
+    # Only the vertices that the fill touches take part.
+    used, local = np.unique(fill.triangles, return_inverse=True)
+    measured = used < n_measured
+    table = np.full((len(used), values.shape[1]), np.nan)
+    table[measured] = values[used[measured]]
+    edges = triangle_edges(local.reshape(-1, 3))
+    known = np.isfinite(table)
+    spread = np.zeros_like(table)
+    # Columns that are known at the same vertices, usually all of them, share one factorisation.
+    patterns, pattern = np.unique(known, axis=1, return_inverse=True)
+    for number in range(patterns.shape[1]):
+        columns = np.flatnonzero(pattern.reshape(-1) == number)
+        spread[:, columns] = extend_harmonically(edges, patterns[:, number], table[:, columns])
+    result = np.zeros((n_new, values.shape[1]))
+    result[used[~measured] - n_measured] = np.nan_to_num(spread[~measured])
+    return result
+
+
+def rim_vertices(fill: Fill, n_measured: int) -> IntArray:
+    """Measured vertices that the fill is joined to, sorted."""
+    used = np.unique(fill.triangles)
+    return used[used < n_measured]
+
+
+def nearest_rim_vertex(scan: Scan, fill: Fill) -> IntArray:
+    """Measured vertex next to each new one, (n_new,) int64; 0 for a fill that touches no measured vertex."""
+    rim = rim_vertices(fill, len(scan.vertices))
+    if len(rim) == 0 or len(fill.vertices) == 0:
+        return np.zeros(len(fill.vertices), dtype=np.int64)
+    _, nearest = cKDTree(scan.vertices[rim]).query(fill.vertices)
+    return np.asarray(rim[nearest], dtype=np.int64)
+
+
+def rim_triangles(scan: Scan, fill: Fill) -> IntArray:
+    """Measured triangles with a corner on a rim, sorted."""
+    on_rim = np.zeros(len(scan.vertices), dtype=bool)
+    on_rim[rim_vertices(fill, len(scan.vertices))] = True
+    return np.flatnonzero(on_rim[scan.triangles].any(axis=1))
+
+
+def nearest_rim_triangle(scan: Scan, fill: Fill) -> IntArray:
+    """Measured triangle next to each new one, by centroid, (l,) int64; 0 where no measured triangle is near."""
+    near = rim_triangles(scan, fill)
+    if len(near) == 0 or len(fill.triangles) == 0:
+        return np.zeros(len(fill.triangles), dtype=np.int64)
+    centroids = joined_vertices(scan, fill)[fill.triangles].mean(axis=1)
+    _, nearest = cKDTree(scan.vertices[scan.triangles[near]].mean(axis=1)).query(centroids)
+    return np.asarray(near[nearest], dtype=np.int64)
+
+
+def joined_vertices(scan: Scan, fill: Fill) -> Vertices:
+    """Measured vertices followed by the new ones."""
+    return np.concatenate([scan.vertices, fill.vertices])
+
+
+def triangle_normals(scan: Scan, fill: Fill) -> FloatArray:
+    """Return unit normals of the new triangles, (l, 3); zero for triangles without area."""
+    return _unit(_area_vectors(scan, fill))
+
+
+def vertex_normals(scan: Scan, fill: Fill) -> FloatArray:
+    """Return unit normals of the new vertices, (n_new, 3): the mean over their triangles, weighted by area.
+
+    All triangles around a new vertex are new, so the fill alone gives the whole normal.
+    """
+    corners = fill.triangles.ravel() - len(scan.vertices)
+    new = corners >= 0
+    areas = np.repeat(_area_vectors(scan, fill), 3, axis=0)[new]
+    sums = [np.bincount(corners[new], areas[:, axis], minlength=len(fill.vertices)) for axis in range(3)]
+    return _unit(np.stack(sums, axis=1, dtype=np.float64))
+
+
+def _area_vectors(scan: Scan, fill: Fill) -> FloatArray:
+    a, b, c = np.moveaxis(joined_vertices(scan, fill)[fill.triangles], 1, 0)
+    return np.asarray(np.cross(b - a, c - a))
+
+
+def _unit(vectors: FloatArray) -> FloatArray:
+    # Scaling first keeps the squares of very long and very short vectors in range.
+    largest = np.abs(vectors).max(axis=1, keepdims=True, initial=0.0)
+    scaled = np.divide(vectors, largest, out=np.zeros_like(vectors), where=largest > 0)
+    lengths = np.linalg.norm(scaled, axis=1, keepdims=True)
+    return np.asarray(np.divide(scaled, lengths, out=np.zeros_like(scaled), where=lengths > 0))

@@ -1,0 +1,57 @@
+"""Harmonic extension: known values of some nodes of a graph, spread over the others.
+
+The unknown values solve the uniform graph Laplace equation, that is, every unknown node holds the mean of its
+neighbours. Hence no value leaves the range of the known ones (discrete maximum principle), and one sparse solve
+serves all holes at once, because holes are separate components.
+"""
+
+import numpy as np
+from scipy.sparse import coo_array, csr_array, diags_array
+from scipy.sparse.csgraph import connected_components
+from scipy.sparse.linalg import splu
+
+from quadpatch.types import BoolArray, FloatArray, IntArray
+
+
+def extend_harmonically(edges: IntArray, known: BoolArray, values: FloatArray) -> FloatArray:
+    """Spread known node values over the unknown nodes of a graph.
+
+    Parameters
+    ----------
+    edges : (n_edges, 2) int64
+        Pairs of nodes, repeats and both directions allowed.
+    known : (n_nodes,) bool
+    values : (n_nodes, d) float64
+        Ignored where not known.
+
+    Returns
+    -------
+    (n_nodes, d) float64
+        Known values unchanged; NaN in components without any known node.
+    """
+    n_nodes = len(known)
+    result = np.where(known[:, np.newaxis], values, np.nan)
+    adjacency = _adjacency(edges, n_nodes)
+    _, component = connected_components(adjacency, directed=False)
+    reached = np.zeros(n_nodes, dtype=bool)
+    reached[component[known]] = True
+    solved = ~known & reached[component]
+    if not solved.any():
+        return result
+    degree = diags_array(adjacency.sum(axis=1)).tocsr()
+    laplacian = csr_array((degree - adjacency)[solved])
+    factors = splu(laplacian[:, solved].tocsc(), permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
+    spread = factors.solve(np.ascontiguousarray(-(laplacian[:, known] @ values[known])))
+    # Rounding may step over the range by a few units in the last place.
+    result[solved] = np.clip(spread, values[known].min(axis=0), values[known].max(axis=0))
+    return result
+
+
+def _adjacency(edges: IntArray, n_nodes: int) -> csr_array:
+    both = np.concatenate([edges, edges[:, ::-1]])
+    matrix = coo_array((np.ones(len(both)), (both[:, 0], both[:, 1])), shape=(n_nodes, n_nodes)).tocsr()
+    matrix.sum_duplicates()
+    matrix.data[:] = 1.0
+    matrix.setdiag(0.0)
+    matrix.eliminate_zeros()
+    return matrix

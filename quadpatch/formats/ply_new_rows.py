@@ -1,0 +1,131 @@
+"""Values of the rows that a fill adds to the elements of a PLY file."""
+
+import re
+
+import numpy as np
+
+from quadpatch.errors import FormatError
+from quadpatch.formats.attributes import (
+    nearest_rim_triangle,
+    nearest_rim_vertex,
+    spread_over_vertices,
+    triangle_normals,
+    vertex_normals,
+)
+from quadpatch.formats.ply import INDEX_NAMES, PlySource
+from quadpatch.formats.ply_encoding import Table
+from quadpatch.formats.ply_header import Property, value_range
+from quadpatch.formats.ply_rows import ListColumn, Rows, Values
+from quadpatch.formats.scan import Fill, Scan
+from quadpatch.formats.texture import spread_over_corners
+from quadpatch.types import FloatArray, IntArray
+
+# PLY type word, numpy code, name, and the value of a measured row.
+MARKS = (("uchar", "u1", "filled", 0), ("int", "i4", "hole_id", -1), ("float", "f4", "confidence", 1))
+
+_COLOUR = re.compile(r"((diffuse|ambient|specular)_)?(red|green|blue|alpha|gray|grey|intensity|r|g|b|a)")
+_NORMALS = ("nx", "ny", "nz")
+
+
+def new_vertex_rows(scan: Scan, source: PlySource, fill: Fill) -> list[Table]:
+    """Rows of the new vertices, as one table.
+
+    Numbers that vary smoothly are spread from the rim, normals are those of the new surface, and integers that are
+    no colours, which may be flags or labels, are those of the nearest rim vertex.
+    """
+    rows = source.element("vertex")
+    assert rows is not None  # read_ply refuses a file without vertices
+    marks = _marks(fill.vertex_hole, fill.vertex_confidence)
+    given: dict[str, Values] = {name: fill.vertices[:, axis] for axis, name in enumerate("xyz")}
+    normals = vertex_normals(scan, fill)
+    given |= {name: normals[:, axis] for axis, name in enumerate(_NORMALS)} | marks
+    given |= _spread_columns(rows, fill, given)
+    nearest = nearest_rim_vertex(scan, fill)
+    columns = [_column(rows, index, given, nearest) for index in range(len(rows.columns))]
+    return [Table(len(fill.vertices), tuple(columns), marks)]
+
+
+def _spread_columns(rows: Rows, fill: Fill, given: dict[str, Values]) -> dict[str, Values]:
+    names = [
+        prop.name
+        for prop in rows.element.properties
+        if prop.count_code is None and prop.name not in given and _is_continuous(prop)
+    ]
+    if not names:
+        return {}
+    values = np.stack([column for name in names if (column := rows.scalar(name)) is not None], axis=1)
+    return dict(zip(names, spread_over_vertices(fill, values.astype(np.float64)).T, strict=True))
+
+
+def _is_continuous(prop: Property) -> bool:
+    return prop.code[0] == "f" or _COLOUR.fullmatch(prop.name) is not None
+
+
+def _column(rows: Rows, index: int, given: dict[str, Values], like: IntArray) -> Values:
+    """Column of new rows: given by name, else empty lists, else that of the row it is like."""
+    prop, old = rows.element.properties[index], rows.columns[index]
+    if prop.count_code is not None:
+        values = given.get(prop.name)
+        return values if values is not None and values.ndim == 2 else np.zeros((len(like), 0))
+    if prop.name in given and given[prop.name].ndim == 1:
+        return given[prop.name]
+    assert not isinstance(old, ListColumn)
+    return old[like]
+
+
+def _marks(hole: IntArray, confidence: FloatArray) -> dict[str, Values]:
+    filled = np.ones(len(hole), dtype=np.uint8)
+    return {"filled": filled, "hole_id": hole.astype(np.int32), "confidence": confidence.astype(np.float32)}
+
+
+def new_carrier_rows(scan: Scan, source: PlySource, fill: Fill) -> list[Table]:
+    """Rows of the new triangles: one table for `face`, one for each hole for `tristrips`."""
+    rows = source.element(source.carrier)
+    assert rows is not None  # read_ply refuses a file without triangles
+    index = rows.element.find(*INDEX_NAMES) or 0
+    _check_index_type(rows.element.properties[index], len(scan.vertices) + len(fill.vertices))
+    name = rows.element.properties[index].name
+    if source.carrier == "tristrips":
+        return [_strip_row(rows, name, fill, hole) for hole in np.unique(fill.triangle_hole)]
+    marks = _marks(fill.triangle_hole, fill.triangle_confidence)
+    normals = triangle_normals(scan, fill)
+    given: dict[str, Values] = {axis: normals[:, i] for i, axis in enumerate(_NORMALS)}
+    given |= marks | {name: fill.triangles} | _texture(scan, source, rows, fill)
+    like = np.maximum(source.triangle_row[nearest_rim_triangle(scan, fill)], 0)
+    columns = [_column(rows, i, given, like) for i in range(len(rows.columns))]
+    return [Table(len(fill.triangles), tuple(columns), marks)]
+
+
+def _check_index_type(prop: Property, n_vertices: int) -> None:
+    if prop.code[0] != "f" and n_vertices - 1 > value_range(prop.code)[1]:
+        raise FormatError(
+            f"the PLY file numbers vertices in {8 * int(prop.code[1])} bits, too few for the {n_vertices:,} vertices "
+            "of the repaired mesh: send it with int indices"
+        )
+
+
+def _strip_row(rows: Rows, name: str, fill: Fill, hole: int) -> Table:
+    """One row of strips with all triangles of a hole, its confidence their mean."""
+    chosen = fill.triangle_hole == hole
+    triangles = fill.triangles[chosen]
+    strips = np.column_stack([triangles, np.full(len(triangles), -1)]).reshape(1, -1)[:, :-1]
+    confidence = np.atleast_1d(fill.triangle_confidence[chosen].mean())
+    marks = _marks(np.atleast_1d(np.int64(hole)), confidence)
+    given: dict[str, Values] = marks | {name: strips}
+    columns = [_column(rows, i, given, np.zeros(1, dtype=np.int64)) for i in range(len(rows.columns))]
+    return Table(1, tuple(columns), marks)
+
+
+def _texture(scan: Scan, source: PlySource, rows: Rows, fill: Fill) -> dict[str, Values]:
+    """Per-wedge texture coordinates, as MeshLab writes them: six numbers a triangle."""
+    texture = rows.list_column("texcoord")
+    if texture is None:
+        return {}
+    row = source.triangle_row
+    # Polygons and faces without six numbers count as untextured.
+    wedged = (row >= 0) & (texture.counts[row] == 6)
+    coordinates = np.full((len(scan.triangles), 3, 2), np.nan)
+    places = texture.starts[row[wedged]][:, np.newaxis] + np.arange(6)
+    coordinates[wedged] = texture.values[places].reshape(-1, 3, 2)
+    spread = spread_over_corners(scan, fill, coordinates)
+    return {"texcoord": np.nan_to_num(spread.reshape(-1, 6))}
