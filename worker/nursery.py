@@ -22,8 +22,8 @@ from pathlib import Path
 from worker.leash import leash
 
 MESSAGE_BYTES = 65536
-# Loaded before the first fork; onnxruntime is not among them.
-_PRELOADED = ("quadpatch.repair", "quadpatch.picture", "worker.engine")
+# Called with the folder of the request and the write end of the pipe for reports.
+Engine = Callable[[Path, int], None]
 
 
 def main(arguments: list[str]) -> int:
@@ -32,25 +32,24 @@ def main(arguments: list[str]) -> int:
     Parameters
     ----------
     arguments : list of str
-        Descriptor of the socket, process id of the worker.
+        Descriptor of the socket, process id of the worker, dotted name of the engine's module.
     """
     leash(int(arguments[1]), signal.SIGKILL)()
     # Ctrl-C and the like are for the worker to handle; it ends this process when it is done.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, signal.SIG_IGN)
-    for name in _PRELOADED:
-        importlib.import_module(name)
+    engine: Engine = importlib.import_module(arguments[2]).run_request
     tie = leash(os.getpid(), signal.SIGKILL)
     # What is loaded by now lives for ever: the collector would only unshare its pages.
     gc.collect()
     gc.freeze()
     with socket.socket(fileno=int(arguments[0])) as connection:
-        while _serve_one(connection, tie):
+        while _serve_one(connection, engine, tie):
             pass
     return 0
 
 
-def _serve_one(connection: socket.socket, tie: Callable[[], None]) -> bool:
+def _serve_one(connection: socket.socket, engine: Engine, tie: Callable[[], None]) -> bool:
     message, descriptors, _, _ = socket.recv_fds(connection, MESSAGE_BYTES, 1)
     if not message:
         return False
@@ -58,7 +57,8 @@ def _serve_one(connection: socket.socket, tie: Callable[[], None]) -> bool:
     folder = Path(json.loads(message)["folder"])
     pid = os.fork()
     if pid == 0:
-        _become_engine(connection, folder, reports, tie)
+        connection.close()
+        _become_engine(lambda: engine(folder, reports), folder, tie)
     os.close(reports)
     _answer(connection, {"pid": pid})
     _answer(connection, {"pid": pid, "status": _wait(pid)})
@@ -78,19 +78,16 @@ def _answer(connection: socket.socket, answer: dict[str, int]) -> None:
     connection.sendall(json.dumps(answer).encode() + b"\n")
 
 
-def _become_engine(connection: socket.socket, folder: Path, reports: int, tie: Callable[[], None]) -> None:
+def _become_engine(run: Callable[[], None], folder: Path, tie: Callable[[], None]) -> None:
     """Turn the forked process into an engine child; never returns."""
     status = 1
     try:
         os.setsid()
         tie()
-        connection.close()
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, signal.SIG_DFL)
         _redirect(folder)
-        from worker.engine import run_request  # noqa: PLC0415 - loaded before the fork; the name is needed here only
-
-        run_request(folder, reports)
+        run()
         status = 0
     finally:
         sys.stdout.flush()

@@ -37,10 +37,13 @@ class Nursery:
     ----------
     n_threads : int
         Threads that numerical libraries may use in every child.
+    engine : str
+        Module whose `run_request` does the work; loaded once, before the first fork.
     """
 
-    def __init__(self, n_threads: int) -> None:
+    def __init__(self, n_threads: int, engine: str = "worker.engine") -> None:
         self._n_threads = n_threads
+        self._engine = engine
         self._process: subprocess.Popen[bytes] | None = None
         self._connection: socket.socket | None = None
         self._buffer = b""
@@ -115,7 +118,7 @@ class Nursery:
         here, there = socket.socketpair(socket.AF_UNIX, socket.SOCK_STREAM)
         with there:
             self._process = subprocess.Popen(
-                [sys.executable, "-m", "worker.nursery", str(there.fileno()), str(os.getpid())],
+                [sys.executable, "-m", "worker.nursery", str(there.fileno()), str(os.getpid()), self._engine],
                 pass_fds=(there.fileno(),),
                 stdin=subprocess.DEVNULL,
                 env={**os.environ, **thread_environment(self._n_threads)},

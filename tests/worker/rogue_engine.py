@@ -1,0 +1,77 @@
+"""An engine that does whatever the options of its request say, above all wrong things."""
+
+import ctypes
+import json
+import os
+import signal
+import subprocess
+import time
+from pathlib import Path
+
+from quadpatch.errors import ReadError
+from worker.engine_frame import run_framed
+from worker.engine_reports import Reporter
+from worker.request import EngineRequest
+
+
+def run_request(folder: Path, descriptor: int) -> None:
+    def do_the_deed(request: EngineRequest, reporter: Reporter) -> None:
+        reporter.progress("fill", 0.5)
+        getattr(Deeds, request.options["deed"])(folder)
+        (folder / "facts.json").write_text(json.dumps({"cwd": os.getcwd(), "pid": os.getpid()}))
+
+    run_framed(folder, descriptor, do_the_deed)
+
+
+class Deeds:
+    @staticmethod
+    def behave(folder: Path) -> None:
+        os.system("echo this goes to the log")
+
+    @staticmethod
+    def hang_in_native_code(folder: Path) -> None:
+        # PyDLL keeps the interpreter lock, so no Python signal handler could ever run.
+        ctypes.PyDLL(None).sleep(600)
+
+    @staticmethod
+    def hog_memory(folder: Path) -> None:
+        hoard = []
+        while True:
+            hoard.append(bytearray(16 << 20))
+            time.sleep(0.01)
+
+    @staticmethod
+    def ask_for_too_much_at_once(folder: Path) -> None:
+        bytearray(1 << 40)
+
+    @staticmethod
+    def crash(folder: Path) -> None:
+        ctypes.string_at(0)
+
+    @staticmethod
+    def leave_silently(folder: Path) -> None:
+        os._exit(3)
+
+    @staticmethod
+    def fill_the_disk(folder: Path) -> None:
+        with (folder / "huge").open("wb") as file:
+            while True:
+                file.write(bytes(1 << 20))
+
+    @staticmethod
+    def start_a_grandchild(folder: Path) -> None:
+        grandchild = subprocess.Popen(["sleep", "600"])
+        (folder.parent / "grandchild").write_text(str(grandchild.pid))
+
+    @staticmethod
+    def ignore_signals_and_hang(folder: Path) -> None:
+        signal.signal(signal.SIGTERM, signal.SIG_IGN)
+        time.sleep(600)
+
+    @staticmethod
+    def raise_an_error_with_a_path(folder: Path) -> None:
+        raise ReadError(f"cannot read {folder / 'source.ply'}")
+
+    @staticmethod
+    def raise_something_unforeseen(folder: Path) -> None:
+        raise KeyError("secret detail")

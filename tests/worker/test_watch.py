@@ -1,0 +1,167 @@
+import json
+import os
+import signal
+import threading
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import psutil
+import pytest
+
+from worker.failures import EngineFailedError, EngineStoppedError, Failure, StopReason
+from worker.limits import EngineLimits
+from worker.nursing import Nursery
+from worker.request import EngineRequest
+from worker.watch import Observer, run_engine
+
+LIMITS = EngineLimits(time_s=60.0, memory_mb=1024, n_threads=1)
+
+
+def never() -> StopReason | None:
+    return None
+
+
+def request(deed: str, limits: EngineLimits = LIMITS) -> EngineRequest:
+    return EngineRequest(task="inspect", source="source.ply", limits=limits, options={"deed": deed})
+
+
+def failure_of(nursery: Nursery, folder: Path, deed: str, limits: EngineLimits = LIMITS) -> Failure:
+    with pytest.raises(EngineFailedError) as caught:
+        run_engine(nursery, request(deed, limits), folder, Observer(lambda stage, fraction: None, never))
+    return caught.value.failure
+
+
+def engines() -> list[psutil.Process]:
+    """Children of the nursery of this process that are alive."""
+    return [
+        engine
+        for nursery in psutil.Process().children()
+        if "worker.nursery" in nursery.cmdline()
+        for engine in nursery.children(recursive=True)
+        if engine.status() != psutil.STATUS_ZOMBIE
+    ]
+
+
+def wait_until(condition: Callable[[], bool]) -> None:
+    deadline = time.monotonic() + 20
+    while not condition():
+        assert time.monotonic() < deadline
+        time.sleep(0.02)
+
+
+def test_an_engine_works_in_its_folder_and_reports_progress(rogue_nursery: Nursery, tmp_path: Path) -> None:
+    seen: list[tuple[str, float]] = []
+    observer = Observer(lambda stage, fraction: seen.append((stage, fraction)), never)
+    run_engine(rogue_nursery, request("behave"), tmp_path, observer)
+    assert seen == [("fill", 0.5)]
+    assert json.loads((tmp_path / "facts.json").read_text())["cwd"] == str(tmp_path)
+    assert "this goes to the log" in (tmp_path / "engine.log").read_text()
+    assert engines() == []
+
+
+def test_every_request_gets_a_fresh_process(rogue_nursery: Nursery, tmp_path: Path) -> None:
+    pids = set()
+    for number in range(3):
+        folder = tmp_path / str(number)
+        folder.mkdir()
+        run_engine(rogue_nursery, request("behave"), folder, Observer(lambda stage, fraction: None, never))
+        pids.add(json.loads((folder / "facts.json").read_text())["pid"])
+    assert len(pids) == 3
+
+
+def test_an_engine_over_its_time_is_ended(rogue_nursery: Nursery, tmp_path: Path) -> None:
+    limits = EngineLimits(time_s=0.5, memory_mb=1024, n_threads=1)
+    failure = failure_of(rogue_nursery, tmp_path, "hang_in_native_code", limits)
+    assert (failure.code, failure.stage, failure.retryable) == ("time_limit_exceeded", "fill", False)
+    assert engines() == []
+
+
+@pytest.mark.parametrize("deed", ["hog_memory", "ask_for_too_much_at_once"])
+def test_an_engine_over_its_memory_is_ended(rogue_nursery: Nursery, tmp_path: Path, deed: str) -> None:
+    limits = EngineLimits(time_s=60.0, memory_mb=300, n_threads=1)
+    failure = failure_of(rogue_nursery, tmp_path, deed, limits)
+    assert (failure.code, failure.retryable) == ("out_of_memory", False)
+    assert engines() == []
+
+
+def test_a_crash_in_native_code_costs_the_engine_only(rogue_nursery: Nursery, tmp_path: Path) -> None:
+    failure = failure_of(rogue_nursery, tmp_path, "crash")
+    assert failure == Failure("engine_crashed", "the engine was ended by SIGSEGV", "fill", retryable=True)
+    assert not list(tmp_path.glob("core*"))
+    (tmp_path / "next").mkdir()
+    run_engine(rogue_nursery, request("behave"), tmp_path / "next", Observer(lambda stage, fraction: None, never))
+
+
+def test_an_engine_that_leaves_silently_has_crashed(rogue_nursery: Nursery, tmp_path: Path) -> None:
+    assert failure_of(rogue_nursery, tmp_path, "leave_silently").message == "the engine ended without a word"
+
+
+def test_a_foreseen_error_passes_through_without_the_workers_paths(rogue_nursery: Nursery, tmp_path: Path) -> None:
+    failure = failure_of(rogue_nursery, tmp_path, "raise_an_error_with_a_path")
+    assert failure == Failure("unreadable_mesh", "cannot read source.ply", "fill")
+
+
+def test_the_details_of_an_unforeseen_error_stay_in_the_log(
+    rogue_nursery: Nursery, tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    failure = failure_of(rogue_nursery, tmp_path, "raise_something_unforeseen")
+    assert failure == Failure("engine_error", "the engine met an error that nobody foresaw", "fill")
+    assert "secret detail" in caplog.text
+
+
+def test_an_engine_can_not_fill_the_disk(rogue_nursery: Nursery, tmp_path: Path) -> None:
+    limits = EngineLimits(time_s=60.0, memory_mb=1024, file_mb=4, n_threads=1)
+    failure = failure_of(rogue_nursery, tmp_path, "fill_the_disk", limits)
+    assert failure.code == "result_too_large"
+    assert (tmp_path / "huge").stat().st_size == 4 << 20
+
+
+def test_what_an_engine_started_ends_with_it(rogue_nursery: Nursery, tmp_path: Path) -> None:
+    folder = tmp_path / "request"
+    folder.mkdir()
+    run_engine(rogue_nursery, request("start_a_grandchild"), folder, Observer(lambda stage, fraction: None, never))
+    pid = int((tmp_path / "grandchild").read_text())
+    wait_until(lambda: not psutil.pid_exists(pid) or psutil.Process(pid).status() == psutil.STATUS_ZOMBIE)
+
+
+@pytest.mark.parametrize("deed", ["hang_in_native_code", "ignore_signals_and_hang"])
+@pytest.mark.parametrize("reason", list(StopReason))
+def test_an_engine_is_ended_when_asked_whatever_it_does(
+    rogue_nursery: Nursery, tmp_path: Path, deed: str, reason: StopReason
+) -> None:
+    is_at_work = threading.Event()
+
+    def stop_reason() -> StopReason | None:
+        return reason if is_at_work.is_set() else None
+
+    observer = Observer(lambda stage, fraction: is_at_work.set(), stop_reason)
+    with pytest.raises(EngineStoppedError) as caught:
+        run_engine(rogue_nursery, request(deed), tmp_path, observer)
+    assert caught.value.reason is reason
+    assert engines() == []
+
+
+def test_an_engine_killed_from_outside_is_a_crash_that_may_be_tried_again(
+    rogue_nursery: Nursery, tmp_path: Path
+) -> None:
+    def kill(stage: str, fraction: float) -> None:
+        (engine,) = engines()
+        os.kill(engine.pid, signal.SIGKILL)
+
+    with pytest.raises(EngineFailedError) as caught:
+        run_engine(rogue_nursery, request("hang_in_native_code"), tmp_path, Observer(kill, never))
+    assert caught.value.failure == Failure("engine_crashed", "the engine was ended by SIGKILL", "fill", retryable=True)
+
+
+def test_a_killed_nursery_takes_its_engine_along_and_is_replaced(rogue_nursery: Nursery, tmp_path: Path) -> None:
+    def kill(stage: str, fraction: float) -> None:
+        (engine,) = engines()
+        os.kill(engine.ppid(), signal.SIGKILL)
+
+    with pytest.raises(EngineFailedError) as caught:
+        run_engine(rogue_nursery, request("hang_in_native_code"), tmp_path, Observer(kill, never))
+    assert caught.value.failure.code == "engine_crashed"
+    assert engines() == []
+    (tmp_path / "next").mkdir()
+    run_engine(rogue_nursery, request("behave"), tmp_path / "next", Observer(lambda stage, fraction: None, never))

@@ -1,0 +1,45 @@
+"""The outermost frame of an engine child: sets the limits, and turns whatever is raised into a report."""
+
+import os
+import traceback
+from collections.abc import Callable
+from pathlib import Path
+
+from quadpatch.errors import QuadpatchError
+from worker.engine_reports import Reporter
+from worker.failures import Failure, from_os_error, over_memory
+from worker.request import EngineRequest
+
+
+def run_framed(folder: Path, descriptor: int, task: Callable[[EngineRequest, Reporter], None]) -> None:
+    """Load the request in `folder`, do the task under its limits, and report how it went.
+
+    Parameters
+    ----------
+    folder : Path
+    descriptor : int
+        Write end of the pipe for reports.
+    task : callable
+    """
+    reporter = Reporter(descriptor)
+    request = EngineRequest.load(folder)
+    try:
+        request.limits.apply()
+        task(request, reporter)
+    except QuadpatchError as error:
+        reporter.failed(Failure(error.code, _without_paths(str(error), folder), reporter.stage))
+    except MemoryError:
+        reporter.failed(over_memory(request.limits.memory_mb, reporter.stage))
+    except OSError as error:
+        traceback.print_exc()
+        reporter.failed(from_os_error(error, reporter.stage))
+    except Exception:  # noqa: BLE001 - nothing above may see a traceback; the log gets it
+        traceback.print_exc()
+        reporter.failed(Failure("engine_error", "the engine met an error that nobody foresaw", reporter.stage))
+    else:
+        reporter.done()
+
+
+def _without_paths(message: str, folder: Path) -> str:
+    """Take the worker's own folder out of a message that goes to a client."""
+    return message.replace(f"{folder}{os.sep}", "").replace(str(folder), "")
