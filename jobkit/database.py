@@ -15,9 +15,10 @@ from alembic import command
 from alembic.config import Config
 from sqlalchemy import Connection, Engine, create_engine, event, text
 from sqlalchemy.engine import make_url
+from sqlalchemy.exc import OperationalError
 from sqlalchemy.orm import Session
 
-from jobkit.errors import SettingsError
+from jobkit.errors import DatabaseUnavailableError, SettingsError
 
 BUSY_TIMEOUT_MS = 20_000
 # Any number will do, as long as all processes of this project take the same one.
@@ -46,18 +47,18 @@ class Database:
     @contextmanager
     def read(self) -> Iterator[Session]:
         """Open a session that sees one moment and writes nothing."""
-        with Session(self._engine, expire_on_commit=False) as session:
+        with _translated(), Session(self._engine, expire_on_commit=False) as session:
             yield session
 
     @contextmanager
     def write(self) -> Iterator[Session]:
         """Open a session that commits at its end, or rolls back when an error leaves it."""
-        with Session(self._writer, expire_on_commit=False) as session, session.begin():
+        with _translated(), Session(self._writer, expire_on_commit=False) as session, session.begin():
             yield session
 
     def ping(self) -> None:
-        """Raise if the database does not answer."""
-        with self._engine.connect() as connection:
+        """Raise DatabaseUnavailableError if the database does not answer."""
+        with _translated(), self._engine.connect() as connection:
             connection.execute(text("SELECT 1"))
 
     def migrate(self) -> None:
@@ -92,6 +93,15 @@ def migration_config() -> Config:
     config = Config()
     config.set_main_option("script_location", str(Path(__file__).parent / "migrations"))
     return config
+
+
+@contextmanager
+def _translated() -> Iterator[None]:
+    try:
+        yield
+    except OperationalError as error:
+        # The driver's text may name hosts and users, so it stays in the log.
+        raise DatabaseUnavailableError("the database does not answer") from error
 
 
 def _upgrade(connection: Connection) -> None:

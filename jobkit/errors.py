@@ -24,6 +24,8 @@
     ├── TooLargeError               body_too_large        more bytes than the limit
     ├── UnusableModelError          unusable_model        the artifact is no model
     ├── QueueUnavailableError       queue_unavailable     Redis or Valkey does not answer
+    ├── DatabaseUnavailableError    database_unavailable  the database does not answer, or is locked for too long
+    ├── StoreUnavailableError       store_unavailable     the object store can't be written
     └── StaleAttemptError           stale_attempt         the job has moved on; this attempt may write no more
 """
 
@@ -158,6 +160,18 @@ class QueueUnavailableError(JobkitError):
     """Redis or Valkey does not answer."""
 
     code = "queue_unavailable"
+
+
+class DatabaseUnavailableError(JobkitError):
+    """The database does not answer, or stays locked for too long."""
+
+    code = "database_unavailable"
+
+
+class StoreUnavailableError(JobkitError):
+    """The object store can't be written."""
+
+    code = "store_unavailable"
 
 
 class StaleAttemptError(JobkitError):

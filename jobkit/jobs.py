@@ -71,6 +71,11 @@ class Jobs:
             # Two requests with one key at the same moment: the other one has won, so its job is the answer.
             return self._create(new, idempotency)
 
+    def earlier(self, idempotency: Idempotency) -> Job | None:
+        """Return the job that came of the key, None where it is new; raise IdempotencyError."""
+        with self._database.read() as session:
+            return _earlier_job(session, idempotency)
+
     def get(self, job_id: str) -> Job:
         """Return a job; raise JobNotFoundError."""
         with self._database.read() as session:

@@ -17,7 +17,7 @@ from types import TracebackType
 from typing import BinaryIO, Protocol, Self
 from urllib.parse import unquote, urlsplit
 
-from jobkit.errors import ObjectNotFoundError, SettingsError, TooLargeError
+from jobkit.errors import ObjectNotFoundError, SettingsError, StoreUnavailableError, TooLargeError
 
 CHUNK_BYTES = 1 << 20
 _KEY = re.compile(r"^[A-Za-z0-9_][A-Za-z0-9._-]*(/[A-Za-z0-9_][A-Za-z0-9._-]*)*$")
@@ -75,6 +75,10 @@ class ObjectStore(Protocol):
 
     def local_file(self, key: str) -> AbstractContextManager[Path]:
         """Give the object as a file that must not be changed, for the length of a with block."""
+        ...
+
+    def check(self) -> None:
+        """Raise StoreUnavailableError if objects can't be written."""
         ...
 
     def delete(self, key: str) -> None:
@@ -136,6 +140,15 @@ class LocalStore:
     def local_file(self, key: str) -> Iterator[Path]:
         """Give the file itself."""
         yield self._existing(key)
+
+    def check(self) -> None:
+        """Write and remove a byte."""
+        path = self.new_incoming()
+        try:
+            path.write_bytes(b"0")
+            path.unlink()
+        except OSError as error:
+            raise StoreUnavailableError("the object store can't be written") from error
 
     def delete(self, key: str) -> None:
         """Remove the object."""

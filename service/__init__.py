@@ -1,0 +1,1 @@
+"""HTTP over the contract: routes, auth, limits, problem responses. Parses no mesh."""

@@ -1,0 +1,37 @@
+"""As which format an upload is to be read, from what the sender says. The bytes themselves are a worker's business."""
+
+import re
+from collections.abc import Mapping
+from pathlib import PurePosixPath
+from typing import get_args
+
+from jobkit.schema import Format
+
+_BY_MEDIA_TYPE: Mapping[str, Format] = {
+    "model/stl": "stl",
+    "application/sla": "stl",
+    "application/vnd.ms-pki.stl": "stl",
+    "model/obj": "obj",
+    "model/ply": "ply",
+    "model/gltf-binary": "glb",
+    "model/gltf+json": "gltf",
+    "model/3mf": "3mf",
+}
+_CONTROL = re.compile(r"[\x00-\x1f\x7f]")
+MAX_FILENAME = 255
+
+
+def stated_format(given: Format | None, filename: str | None, media_type: str) -> Format | None:
+    """Return the format that is stated, that of the file's name, or that of its media type; None where all are mute."""
+    if given is not None:
+        return given
+    suffix = PurePosixPath(filename or "").suffix.removeprefix(".").lower()
+    by_name = next((known for known in get_args(Format) if known == suffix), None)
+    return by_name or _BY_MEDIA_TYPE.get(media_type)
+
+
+def clean_filename(filename: str | None) -> str | None:
+    """Return the last step of a sender's path without control characters, None where nothing is left of it."""
+    last = re.split(r"[/\\]", filename or "")[-1]
+    name = _CONTROL.sub("", last).encode("utf-8", "ignore").decode("utf-8").strip()
+    return name[-MAX_FILENAME:] or None

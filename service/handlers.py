@@ -1,0 +1,70 @@
+"""Exception handlers: whatever goes wrong is answered with a problem document."""
+
+import re
+from http import HTTPStatus
+
+from fastapi import FastAPI
+from fastapi.exceptions import RequestValidationError
+from starlette.exceptions import HTTPException
+from starlette.requests import ClientDisconnect, Request
+from starlette.responses import Response
+
+from jobkit.errors import JobkitError
+from service.problems import ProblemError, invalid_request, problem_response, to_problem_error
+
+_CODES = {
+    HTTPStatus.BAD_REQUEST: "malformed_body",
+    HTTPStatus.NOT_FOUND: "route_not_found",
+    HTTPStatus.METHOD_NOT_ALLOWED: "method_not_allowed",
+}
+
+
+def install_handlers(app: FastAPI) -> None:
+    """Make the app answer every error with a problem document."""
+
+    @app.exception_handler(ProblemError)
+    async def on_problem(request: Request, error: ProblemError) -> Response:
+        return problem_response(request, error)
+
+    @app.exception_handler(JobkitError)
+    async def on_jobkit_error(request: Request, error: JobkitError) -> Response:
+        return problem_response(request, to_problem_error(error))
+
+    @app.exception_handler(RequestValidationError)
+    async def on_invalid_request(request: Request, error: RequestValidationError) -> Response:
+        details = error.errors()
+        if any(detail["type"] == "json_invalid" for detail in details):
+            return problem_response(request, malformed_json(str(details[0].get("ctx", {}).get("error", ""))))
+        return problem_response(request, invalid_request(details))
+
+    @app.exception_handler(ClientDisconnect)
+    async def on_disconnect(request: Request, error: ClientDisconnect) -> Response:
+        # Nobody is there to read it; the status only shows in the access log.
+        return Response(status_code=HTTPStatus.BAD_REQUEST)
+
+    @app.exception_handler(HTTPException)
+    async def on_http_error(request: Request, error: HTTPException) -> Response:
+        status = HTTPStatus(error.status_code)
+        headers = dict(error.headers or {})
+        if status == HTTPStatus.METHOD_NOT_ALLOWED:
+            headers["Allow"] = ", ".join(allowed_methods(app, request.url.path))
+        details = {
+            HTTPStatus.NOT_FOUND: f"there is nothing at {request.url.path}",
+            HTTPStatus.METHOD_NOT_ALLOWED: f"{request.method} is not possible at {request.url.path}",
+        }
+        detail = details.get(status, str(error.detail))
+        return problem_response(request, ProblemError(status, _CODES.get(status, "http_error"), detail, headers))
+
+
+def malformed_json(reason: str) -> ProblemError:
+    """Return the answer to a body that is no JSON."""
+    return ProblemError(HTTPStatus.BAD_REQUEST, "malformed_json", f"the body is no JSON: {reason}")
+
+
+def allowed_methods(app: FastAPI, path: str) -> list[str]:
+    """Return all methods at a path. The router itself only knows those of the first route that fits."""
+    methods: set[str] = set()
+    for template, operations in app.openapi()["paths"].items():
+        if re.fullmatch(re.sub(r"\\\{[^}]+\\\}", "[^/]+", re.escape(template)), path):
+            methods |= {name.upper() for name in operations}
+    return sorted(methods) or ["GET"]

@@ -1,0 +1,126 @@
+"""Multipart bodies as a stream of parts, a chunk at a time: nothing is kept here but headers."""
+
+from collections.abc import AsyncIterator
+from dataclasses import dataclass
+from http import HTTPStatus
+
+from python_multipart.exceptions import FormParserError
+from python_multipart.multipart import MultipartParser, parse_options_header
+
+from service.problems import ProblemError
+
+MAX_PARTS = 8
+
+
+@dataclass(frozen=True)
+class PartStart:
+    """A part begins; `filename` is None for a plain field."""
+
+    name: str
+    filename: str | None
+
+
+@dataclass(frozen=True)
+class PartData:
+    """Bytes of the part that began last."""
+
+    data: bytes
+
+
+@dataclass(frozen=True)
+class PartEnd:
+    """The part is whole."""
+
+
+PartEvent = PartStart | PartData | PartEnd
+
+
+async def read_parts(content_type: str, chunks: AsyncIterator[bytes]) -> AsyncIterator[PartEvent]:
+    """Yield what a multipart body is made of, as it arrives.
+
+    Raises
+    ------
+    ProblemError
+        400 if the body is no multipart body, ends early, or has too many parts.
+    """
+    _, options = parse_options_header(content_type)
+    boundary = options.get(b"boundary")
+    if not boundary:
+        raise malformed_multipart("the content type names no boundary")
+    events: list[PartEvent] = []
+    collector = _Collector(events)
+    try:
+        parser = MultipartParser(boundary, collector.callbacks())
+        async for chunk in chunks:
+            parser.write(chunk)
+            for event in events:
+                yield event
+            events.clear()
+        parser.finalize()
+    except FormParserError as error:
+        raise malformed_multipart("it does not follow the format, or ends early") from error
+    if not collector.is_whole:
+        raise malformed_multipart("it ends early")
+
+
+def malformed_multipart(reason: str) -> ProblemError:
+    """Return the answer to a multipart body that is none."""
+    return ProblemError(HTTPStatus.BAD_REQUEST, "malformed_multipart", f"the multipart body is not valid: {reason}")
+
+
+class _Collector:
+    """Turns the parser's callbacks into events."""
+
+    def __init__(self, events: list[PartEvent]) -> None:
+        self._events = events
+        self._field, self._value = b"", b""
+        self._disposition = b""
+        self._n_parts = 0
+        self.is_whole = False
+
+    def callbacks(self) -> dict[str, object]:
+        """Return what the parser calls."""
+        return {
+            "on_part_begin": self._on_part_begin,
+            "on_header_field": self._on_header_field,
+            "on_header_value": self._on_header_value,
+            "on_header_end": self._on_header_end,
+            "on_headers_finished": self._on_headers_finished,
+            "on_part_data": self._on_part_data,
+            "on_part_end": self._on_part_end,
+            "on_end": self._on_end,
+        }
+
+    def _on_part_begin(self) -> None:
+        self._disposition = b""
+        self._n_parts += 1
+        if self._n_parts > MAX_PARTS:
+            raise malformed_multipart(f"it has more than {MAX_PARTS} parts")
+
+    def _on_header_field(self, data: bytes, start: int, end: int) -> None:
+        self._field += data[start:end]
+
+    def _on_header_value(self, data: bytes, start: int, end: int) -> None:
+        self._value += data[start:end]
+
+    def _on_header_end(self) -> None:
+        if self._field.lower() == b"content-disposition":
+            self._disposition = self._value
+        self._field, self._value = b"", b""
+
+    def _on_headers_finished(self) -> None:
+        _, options = parse_options_header(self._disposition)
+        name, filename = options.get(b"name"), options.get(b"filename")
+        if name is None:
+            raise malformed_multipart("a part has no name")
+        decoded = None if filename is None else filename.decode("utf-8", "replace")
+        self._events.append(PartStart(name.decode("utf-8", "replace"), decoded))
+
+    def _on_part_data(self, data: bytes, start: int, end: int) -> None:
+        self._events.append(PartData(data[start:end]))
+
+    def _on_part_end(self) -> None:
+        self._events.append(PartEnd())
+
+    def _on_end(self) -> None:
+        self.is_whole = True

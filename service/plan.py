@@ -1,0 +1,66 @@
+"""What a job would do: the selection rule, applied to the hole list that a worker found.
+
+The rule is that of `quadpatch.mesh.holes.select_holes`, which this package may not import; a test holds the two
+together.
+"""
+
+from jobkit.errors import UnknownHoleError
+from jobkit.schema import Hole, HoleSelection, JobSpec, Limits, MeshFacts, Plan, PlannedHole, ResolvedModel
+from jobkit.settings import Settings
+
+AUTO_DIAMETER_SHARE = 0.25
+
+
+def make_plan(spec: JobSpec, facts: MeshFacts, model: ResolvedModel, settings: Settings) -> Plan:
+    """Apply a job's spec to what is known of its mesh.
+
+    Raises
+    ------
+    UnknownHoleError
+        If an explicit id names no hole.
+    """
+    check_hole_ids(spec.holes, facts)
+    reasons = [reason_to_skip(hole, spec.holes, facts.diagonal) for hole in facts.holes]
+    holes = [
+        PlannedHole(**hole.model_dump(), selected=reason is None, reason=reason)
+        for hole, reason in zip(facts.holes, reasons, strict=True)
+    ]
+    limits = Limits(
+        time_s=spec.limits.time_s or settings.job_time_limit_s,
+        memory_mb=spec.limits.memory_mb or settings.job_memory_limit_mb,
+    )
+    return Plan(mesh_id=spec.mesh_id, model=model, holes=holes, selected=reasons.count(None), limits=limits)
+
+
+def check_hole_ids(selection: HoleSelection, facts: MeshFacts) -> None:
+    """Raise UnknownHoleError if an explicit id names no hole."""
+    unknown = sorted(set(selection.ids or ()) - {hole.id for hole in facts.holes})
+    if unknown:
+        raise UnknownHoleError(
+            f"no hole has the id {unknown[0]}; this mesh has {len(facts.holes)} holes, counted from 0"
+        )
+
+
+def reason_to_skip(hole: Hole, selection: HoleSelection, diagonal: float) -> str | None:
+    """Return the code of the reason why a hole would stay open, None if it would be filled.
+
+    Parameters
+    ----------
+    hole : Hole
+    selection : HoleSelection
+    diagonal : float
+        Of the mesh's bounding box, in mesh units.
+    """
+    is_automatic = selection == HoleSelection()
+    max_diameter = AUTO_DIAMETER_SHARE * diagonal if is_automatic else selection.max_diameter
+    if not hole.is_manifold:
+        return "non_manifold_rim"
+    if selection.ids is not None and hole.id not in selection.ids:
+        return "not_chosen"
+    if selection.all_but_largest and hole.id == 0:
+        return "largest"
+    if max_diameter is not None and hole.diameter > max_diameter:
+        return "too_wide"
+    if selection.max_perimeter is not None and hole.perimeter > selection.max_perimeter:
+        return "too_long"
+    return None

@@ -1,0 +1,118 @@
+"""Errors that only HTTP knows, and how every error becomes an RFC 9457 problem.
+
+This is the one place where the contract's errors get an HTTP status.
+"""
+
+from collections.abc import Mapping, Sequence
+from http import HTTPStatus
+from typing import Any
+
+from starlette.requests import Request
+from starlette.responses import JSONResponse
+
+from jobkit import errors
+from jobkit.schema import PROBLEM_MEDIA_TYPE, FieldError, Problem
+
+# The narrowest class decides; classes that are not here are faults of this service.
+STATUS_BY_ERROR: Mapping[type[errors.JobkitError], HTTPStatus] = {
+    errors.NotFoundError: HTTPStatus.NOT_FOUND,
+    errors.ConflictError: HTTPStatus.CONFLICT,
+    errors.OverLimitError: HTTPStatus.FORBIDDEN,
+    errors.TooLargeError: HTTPStatus.REQUEST_ENTITY_TOO_LARGE,
+    errors.UnusableModelError: HTTPStatus.UNPROCESSABLE_ENTITY,
+    errors.QueueUnavailableError: HTTPStatus.SERVICE_UNAVAILABLE,
+    errors.DatabaseUnavailableError: HTTPStatus.SERVICE_UNAVAILABLE,
+    errors.StoreUnavailableError: HTTPStatus.SERVICE_UNAVAILABLE,
+}
+_RETRY_LATER = (
+    errors.MeshNotReadyError,
+    errors.JobNotFinishedError,
+    errors.QueueUnavailableError,
+    errors.DatabaseUnavailableError,
+    errors.StoreUnavailableError,
+)
+RETRY_AFTER_S = "2"
+
+
+class ProblemError(Exception):
+    """An error of the request itself, with its status.
+
+    Parameters
+    ----------
+    status : HTTPStatus
+    code : str
+        Stable, meant for programs.
+    detail : str
+        A sentence for people.
+    headers : mapping, optional
+    field_errors : sequence of FieldError, optional
+    """
+
+    def __init__(
+        self,
+        status: HTTPStatus,
+        code: str,
+        detail: str,
+        headers: Mapping[str, str] | None = None,
+        field_errors: Sequence[FieldError] = (),
+    ) -> None:
+        super().__init__(detail)
+        self.status, self.code, self.detail = status, code, detail
+        self.headers, self.field_errors = dict(headers or {}), list(field_errors)
+
+
+def to_problem_error(error: errors.JobkitError) -> ProblemError:
+    """Give an error of the contract its status; one that is no fault of the request becomes a 500 without details."""
+    for kind in type(error).__mro__:
+        status = STATUS_BY_ERROR.get(kind)
+        if status is not None:
+            headers = {"Retry-After": RETRY_AFTER_S} if isinstance(error, _RETRY_LATER) else {}
+            return ProblemError(status, error.code, str(error), headers)
+    return internal_error()
+
+
+def internal_error() -> ProblemError:
+    """Return the answer to a fault of this service; what happened stands in the log under the request's id."""
+    return ProblemError(HTTPStatus.INTERNAL_SERVER_ERROR, "internal_error", "the service failed; its log says why")
+
+
+def problem_response(request: Request, error: ProblemError) -> JSONResponse:
+    """Write the error as a problem document."""
+    problem = Problem(
+        type=f"urn:quadpatch:problem:{error.code}",
+        title=error.status.phrase,
+        status=error.status.value,
+        code=error.code,
+        detail=error.detail,
+        instance=f"urn:quadpatch:request:{getattr(request.state, 'request_id', 'unknown')}",
+        retryable="Retry-After" in error.headers,
+        errors=error.field_errors,
+    )
+    return JSONResponse(
+        problem.model_dump(mode="json"), error.status.value, headers=error.headers, media_type=PROBLEM_MEDIA_TYPE
+    )
+
+
+def invalid_request(details: Sequence[Mapping[str, Any]], root: str | None = None) -> ProblemError:
+    """Turn pydantic's errors into a problem with one entry per field.
+
+    Parameters
+    ----------
+    details : sequence of mapping
+        As pydantic and FastAPI list them.
+    root : str, optional
+        What the locations are relative to; None: they start with `body`, `query`, `path` or `header`.
+    """
+    fields = [_field_error(detail, root) for detail in details]
+    places = ", ".join(dict.fromkeys(f"{field.location} {field.pointer}".strip() for field in fields))
+    return ProblemError(
+        HTTPStatus.UNPROCESSABLE_ENTITY, "invalid_request", f"the request is not valid: {places}", None, fields
+    )
+
+
+def _field_error(detail: Mapping[str, Any], root: str | None) -> FieldError:
+    where = [str(step) for step in detail["loc"]]
+    location = root or where.pop(0)
+    is_body = location == "body"
+    pointer = "".join("/" + step.replace("~", "~0").replace("/", "~1") for step in where) if is_body else where[-1]
+    return FieldError(location=location, pointer=pointer, message=str(detail["msg"]), code=str(detail["type"]))

@@ -1,0 +1,73 @@
+"""Everything that routes need, opened once per process."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, cast
+
+from fastapi import Depends, Request
+
+from jobkit.attempts import Attempts
+from jobkit.database import Database
+from jobkit.jobs import Jobs
+from jobkit.meshes import Meshes
+from jobkit.queue import TaskQueue
+from jobkit.registry import Registry
+from jobkit.settings import Settings
+from jobkit.shipped import seed_shipped
+from jobkit.store import ObjectStore, open_store
+
+
+@dataclass(frozen=True)
+class Services:
+    """Open connections of one process."""
+
+    settings: Settings
+    database: Database
+    store: ObjectStore
+    queue: TaskQueue
+    jobs: Jobs
+    attempts: Attempts
+    meshes: Meshes
+    registry: Registry
+
+    def close(self) -> None:
+        """Close all connections."""
+        self.queue.close()
+        self.database.close()
+
+
+def open_services(settings: Settings) -> Services:
+    """Open database, store and queue, bring the tables up to date, register the models that ship.
+
+    Raises
+    ------
+    SettingsError
+        If a URL names something that is not supported.
+    """
+    database = Database(settings.effective_database_url)
+    database.migrate()
+    store = open_store(settings.effective_object_store_url)
+    registry = Registry(database, store)
+    seed_shipped(registry, settings.models_dir or shipped_models_folder())
+    redis_url = settings.redis_url.get_secret_value()
+    queue = TaskQueue(redis_url, settings.queue_name, settings.job_time_limit_s)
+    return Services(settings, database, store, queue, Jobs(database), Attempts(database), Meshes(database), registry)
+
+
+def shipped_models_folder() -> Path:
+    """Return the folder of the models that ship beside this package; the service reads files there, not code."""
+    return Path(__file__).resolve().parent.parent / "quadpatch" / "shipped_models"
+
+
+def get_services(request: Request) -> Services:
+    """Return what the app's lifespan has opened."""
+    return cast(Services, request.app.state.services)
+
+
+def get_principal(request: Request) -> str:
+    """Return who is calling, as the auth middleware found out."""
+    return cast(str, request.state.principal)
+
+
+ServicesDep = Annotated[Services, Depends(get_services)]
+PrincipalDep = Annotated[str, Depends(get_principal)]

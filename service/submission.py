@@ -1,0 +1,106 @@
+"""From a spec to a queued job: everything that is checked before the promise of a 202."""
+
+import hashlib
+import logging
+from dataclasses import dataclass
+
+from jobkit.errors import MeshNotReadyError, MeshRejectedError, OverLimitError, QueueUnavailableError
+from jobkit.jobs import Idempotency, NewJob
+from jobkit.reconcile import submit_analysis, submit_job
+from jobkit.schema import Job, JobSpec, Limits, Mesh, MeshFacts, MeshState, Plan, ResolvedModel
+from jobkit.selection import resolve_method
+from jobkit.settings import Settings
+from service.plan import check_hole_ids, make_plan
+from service.services import Services
+
+_logger = logging.getLogger("service")
+
+
+@dataclass(frozen=True)
+class Submission:
+    """A spec, and who sends it under which idempotency key; `rerun_of` names the job that it repeats."""
+
+    spec: JobSpec
+    principal: str
+    key: str | None = None
+    rerun_of: str | None = None
+
+    @property
+    def idempotency(self) -> Idempotency | None:
+        """The key with a digest of the request, None where none was sent."""
+        if self.key is None:
+            return None
+        text = f"{self.rerun_of or ''}\n{self.spec.model_dump_json()}"
+        return Idempotency(self.principal, self.key, hashlib.sha256(text.encode()).hexdigest())
+
+
+def submit(services: Services, submission: Submission) -> tuple[Job, bool]:
+    """Write a job and put it into the queue.
+
+    Returns
+    -------
+    Job, bool
+        The job, and whether it is new.
+
+    Raises
+    ------
+    MeshNotFoundError, MeshRejectedError, UnknownHoleError
+        If the mesh can't be repaired as asked.
+    ModelNotFoundError, ModelKindError, NoNetworkError
+        If the method's model can't be used.
+    OverLimitError
+        If the spec asks for more time or memory than the service grants.
+    IdempotencyError
+        If the key came before with another request.
+    """
+    idempotency = submission.idempotency
+    if idempotency is not None and (earlier := services.jobs.earlier(idempotency)) is not None:
+        return earlier, False
+    model = _check(services, submission.spec)
+    new = NewJob(submission.spec, model, services.settings.max_attempts, submission.rerun_of)
+    job, is_new = services.jobs.create(new, idempotency)
+    if is_new:
+        try:
+            submit_job(services.database, services.queue, job.id, job.attempt)
+        except QueueUnavailableError as error:
+            # The promise stands in the database, and the queue is refilled from there as soon as it answers.
+            _logger.warning("job %s waits for the queue: %s", job.id, error)
+    return job, is_new
+
+
+def plan(services: Services, spec: JobSpec) -> Plan:
+    """Return what a job would do, without making it; raises as `submit`, and MeshNotReadyError."""
+    model = _check(services, spec)
+    facts = _facts(services.meshes.get(spec.mesh_id))
+    return make_plan(spec, facts, model, services.settings)
+
+
+def request_analysis(services: Services, mesh_id: str) -> None:
+    """Put a fresh mesh into the queue for its analysis."""
+    try:
+        submit_analysis(services.database, services.queue, mesh_id)
+    except QueueUnavailableError as error:
+        _logger.warning("mesh %s waits for the queue: %s", mesh_id, error)
+
+
+def _check(services: Services, spec: JobSpec) -> ResolvedModel:
+    _check_limits(spec.limits, services.settings)
+    mesh = services.meshes.get(spec.mesh_id)
+    if mesh.problem is not None:
+        raise MeshRejectedError(f"mesh {mesh.id} was rejected ({mesh.problem.code}): {mesh.problem.message}")
+    if mesh.facts is not None:
+        check_hole_ids(spec.holes, mesh.facts)
+    return resolve_method(services.registry, spec.method)
+
+
+def _check_limits(limits: Limits, settings: Settings) -> None:
+    granted = (("time_s", limits.time_s, settings.job_time_limit_s),)
+    for name, asked, most in (*granted, ("memory_mb", limits.memory_mb, settings.job_memory_limit_mb)):
+        if asked is not None and asked > most:
+            raise OverLimitError(f"limits.{name} is {asked}; this service grants at most {most}")
+
+
+def _facts(mesh: Mesh) -> MeshFacts:
+    if mesh.state is MeshState.ANALYSING or mesh.facts is None:
+        raise MeshNotReadyError(f"mesh {mesh.id} is still being analysed; ask again, or send Prefer: wait=10")
+    return mesh.facts

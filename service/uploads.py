@@ -1,0 +1,145 @@
+"""Uploads: raw or multipart bodies, streamed into the store as they arrive."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from http import HTTPStatus
+from urllib.parse import unquote
+
+from fastapi import Request
+from python_multipart.multipart import parse_options_header
+from starlette.concurrency import run_in_threadpool
+
+from jobkit.errors import TooLargeError
+from jobkit.store import ObjectStore, ObjectWriter, StoredObject
+from service.multipart import PartData, PartStart, malformed_multipart, read_parts
+from service.problems import ProblemError, invalid_request
+
+MAX_FIELD_BYTES = 1 << 20
+# The frame of a multipart body around its file.
+_FRAME_BYTES = 2 << 20
+_RAW_TYPES = ("", "application/octet-stream", "application/sla", "application/vnd.ms-pki.stl", "text/plain")
+
+
+@dataclass(frozen=True)
+class UploadRules:
+    """What an upload may look like.
+
+    Attributes
+    ----------
+    file_part : str
+        Name of the multipart part that holds the file.
+    field_parts : frozenset of str
+        Names of further parts that are allowed.
+    prefix : str
+        Of the key in the store.
+    max_bytes : int
+        Largest file.
+    allows_raw : bool
+        Whether the body itself may be the file.
+    """
+
+    file_part: str
+    field_parts: frozenset[str]
+    prefix: str
+    max_bytes: int
+    allows_raw: bool = True
+
+
+@dataclass(frozen=True)
+class Upload:
+    """A file that lies in the store."""
+
+    stored: StoredObject
+    filename: str | None
+    content_type: str
+    fields: Mapping[str, bytes] = field(default_factory=dict)
+
+
+async def receive_upload(request: Request, store: ObjectStore, rules: UploadRules) -> Upload:
+    """Stream the request's body into the store.
+
+    Raises
+    ------
+    TooLargeError
+        If the file is larger than the limit; at once where the client has stated its size.
+    ProblemError
+        415 for a body of another type, 400 for a broken multipart body, 422 for missing or unknown parts.
+    """
+    kind, _ = parse_options_header(request.headers.get("content-type", ""))
+    is_multipart = kind == b"multipart/form-data"
+    stated = request.headers.get("content-length", "")
+    most = rules.max_bytes + (_FRAME_BYTES if is_multipart else 0)
+    if stated.isdecimal() and int(stated) > most:
+        raise TooLargeError(f"the body has {stated} bytes; the limit is {rules.max_bytes}")
+    if is_multipart:
+        return await _receive_multipart(request, store, rules)
+    media_type = kind.decode("latin-1")
+    if not rules.allows_raw or not (media_type in _RAW_TYPES or media_type.startswith("model/")):
+        accepted = "multipart/form-data" + (", application/octet-stream or model/*" if rules.allows_raw else "")
+        raise ProblemError(
+            HTTPStatus.UNSUPPORTED_MEDIA_TYPE,
+            "unsupported_media_type",
+            f"the body must be {accepted}; it is {media_type or 'of no stated type'}",
+        )
+    return await _receive_raw(request, store, rules, media_type)
+
+
+async def _receive_raw(request: Request, store: ObjectStore, rules: UploadRules, media_type: str) -> Upload:
+    with store.writer(rules.prefix, rules.max_bytes) as writer:
+        async for chunk in request.stream():
+            await run_in_threadpool(writer.write, chunk)
+        stored = await run_in_threadpool(writer.commit)
+    _, options = parse_options_header(request.headers.get("content-disposition", ""))
+    filename = options.get(b"filename")
+    return Upload(stored, None if filename is None else unquote(filename.decode("utf-8", "replace")), media_type)
+
+
+async def _receive_multipart(request: Request, store: ObjectStore, rules: UploadRules) -> Upload:
+    with store.writer(rules.prefix, rules.max_bytes) as writer:
+        sorter = _PartSorter(rules, writer)
+        async for event in read_parts(request.headers["content-type"], request.stream()):
+            if isinstance(event, PartStart):
+                sorter.start(event)
+            elif isinstance(event, PartData):
+                await run_in_threadpool(sorter.add, event.data)
+        if not sorter.has_file:
+            raise _part_error(rules.file_part, "Field required", "missing")
+        stored = await run_in_threadpool(writer.commit)
+    return Upload(stored, sorter.filename, "", {name: bytes(value) for name, value in sorter.fields.items()})
+
+
+class _PartSorter:
+    """Sends the file's bytes to the store and keeps the small fields."""
+
+    def __init__(self, rules: UploadRules, writer: ObjectWriter) -> None:
+        self._rules = rules
+        self._writer = writer
+        self._field: bytearray | None = None
+        self.fields: dict[str, bytearray] = {}
+        self.filename: str | None = None
+        self.has_file = False
+
+    def start(self, part: PartStart) -> None:
+        """Begin a part; refuse unknown and repeated ones."""
+        is_file = part.name == self._rules.file_part
+        if not is_file and part.name not in self._rules.field_parts:
+            raise _part_error(part.name, "Extra inputs are not permitted", "extra_forbidden")
+        if part.name in self.fields or (is_file and self.has_file):
+            raise malformed_multipart(f"it has more than one part {part.name!r}")
+        if is_file:
+            self._field, self.has_file, self.filename = None, True, part.filename
+        else:
+            self._field = self.fields[part.name] = bytearray()
+
+    def add(self, data: bytes) -> None:
+        """Take bytes of the part that began last."""
+        if self._field is None:
+            self._writer.write(data)
+            return
+        self._field += data
+        if len(self._field) > MAX_FIELD_BYTES:
+            raise TooLargeError(f"a field of the body has more than {MAX_FIELD_BYTES} bytes, which is the limit")
+
+
+def _part_error(name: str, message: str, code: str) -> ProblemError:
+    return invalid_request([{"loc": ("body", name), "msg": message, "type": code}])
