@@ -1,0 +1,1 @@
+"""Quad mesh of the smoothed mesh, and the reference frames it gives."""

@@ -1,0 +1,119 @@
+"""Thin a smooth mesh by joining the vertices of each cell of a grid, for a mesher that trips over broken input."""
+
+import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from quadpatch.mesh.normals import vertex_normals
+from quadpatch.types import BoolArray, IntArray, TriangleMesh, Triangles, Vertices
+
+# Twice the area over the squared length of two sides: below this three corners lie on a line, in float32.
+_THINNEST = 1e-5
+# Vertices of one cell whose normals differ by more than 120 degrees lie on two sides of a thin wall.
+_OTHER_SIDE = -0.5
+
+
+def cluster_vertices(mesh: TriangleMesh, cell: float) -> TriangleMesh:
+    """Join all vertices within one cell of a cubic grid at their mean.
+
+    Vertex clustering (Rossignac and Borrel, 1993), except that the two sides of a wall thinner than a cell stay
+    apart. Right for a smooth surface; details smaller than a cell vanish.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+        Finite; triangles without area, in several copies or turned against each other are allowed.
+    cell : float
+        Side of the cells, in mesh units.
+
+    Returns
+    -------
+    TriangleMesh
+        Every triangle has an area and no other triangle its corners, every vertex has one fan of
+        triangles that are turned alike.
+    """
+    if len(mesh.triangles) == 0:
+        return TriangleMesh(np.zeros((0, 3)), np.zeros((0, 3), dtype=np.int64))
+    label = _cluster_labels(mesh, cell)
+    count = np.bincount(label)
+    vertices = np.stack([np.bincount(label, weights=mesh.vertices[:, axis]) / count for axis in range(3)], axis=1)
+    triangles = label[mesh.triangles]
+    triangles = triangles[_has_area(vertices, triangles)]
+    triangles = triangles[_is_first_of_its_corners(triangles, len(vertices))]
+    corner_vertex, triangles = split_fans(triangles)
+    return TriangleMesh(vertices[corner_vertex], triangles)
+
+
+def split_fans(triangles: Triangles) -> tuple[IntArray, Triangles]:
+    """Cut the mesh where it is not a manifold: every fan of triangles around a vertex gets a vertex of its own.
+
+    Triangles belong to the same fan if they share an edge that has exactly these two, in opposite directions.
+
+    Parameters
+    ----------
+    triangles : (n_triangles, 3) int64
+
+    Returns
+    -------
+    original : (n_new,) int64
+        The vertex that each new vertex is a copy of.
+    triangles : (n_triangles, 3) int64
+        The same triangles into the new vertices.
+    """
+    n_corners = triangles.size
+    if n_corners == 0:
+        return np.zeros(0, dtype=np.int64), triangles
+    # Edge k of the flat list runs from corner k to the next corner of its triangle.
+    following = (np.arange(n_corners).reshape(-1, 3)[:, [1, 2, 0]]).ravel()
+    start, end = triangles.ravel(), triangles.ravel()[following]
+    low, high = np.minimum(start, end), np.maximum(start, end)
+    order = np.argsort(low * (int(triangles.max()) + 1) + high, kind="stable")
+    new_edge = np.diff(low[order], prepend=-1).astype(bool) | np.diff(high[order], prepend=-1).astype(bool)
+    first = np.flatnonzero(new_edge)
+    pairs = first[np.diff(first, append=n_corners) == 2]
+    one, other = order[pairs], order[pairs + 1]
+    is_opposite = start[one] == end[other]
+    one, other = one[is_opposite], other[is_opposite]
+    links = np.concatenate([one, following[one]]), np.concatenate([following[other], other])
+    graph = coo_array((np.ones(len(links[0])), links), shape=(n_corners, n_corners))
+    _, fan = connected_components(graph, directed=False)
+    _, first_corner = np.unique(fan, return_index=True)
+    return triangles.ravel()[first_corner], fan.reshape(-1, 3).astype(np.int64)
+
+
+def _cluster_labels(mesh: TriangleMesh, cell: float) -> IntArray:
+    cells = np.floor((mesh.vertices - mesh.vertices.min(axis=0)) / cell).astype(np.int64)
+    _, first, label = np.unique(_as_keys(cells, int(cells.max()) + 1), return_index=True, return_inverse=True)
+    normals = vertex_normals(mesh.vertices, mesh.triangles)
+    agreement = np.einsum("ij,ij->i", normals, normals[first][label])
+    two_sided = 2 * label + (agreement < _OTHER_SIDE)
+    return np.asarray(np.unique(two_sided, return_inverse=True)[1], dtype=np.int64)
+
+
+def _has_area(vertices: Vertices, triangles: Triangles) -> BoolArray:
+    a, b, c = (vertices[triangles[:, corner]] for corner in range(3))
+    double_area = np.linalg.norm(np.cross(b - a, c - a), axis=1)
+    square = np.einsum("ij,ij->i", b - a, b - a) + np.einsum("ij,ij->i", c - a, c - a)
+    return np.asarray(double_area > _THINNEST * square)
+
+
+def _is_first_of_its_corners(triangles: Triangles, n_vertices: int) -> BoolArray:
+    """Keep one triangle for each set of corners, turned as most of them are; none where the turns cancel out."""
+    # With the smallest corner in front, a triangle is turned forward if the next one is the smaller of the others.
+    start = np.argmin(triangles, axis=1)
+    rows = np.arange(len(triangles))
+    turn = np.where(triangles[rows, (start + 1) % 3] < triangles[rows, (start + 2) % 3], 1, -1)
+    _, group = np.unique(_as_keys(np.sort(triangles, axis=1), n_vertices), return_inverse=True)
+    net_turn = np.sign(np.bincount(group, weights=turn))
+    agreeing = np.flatnonzero(net_turn[group] == turn)
+    _, first = np.unique(group[agreeing], return_index=True)
+    is_kept = np.zeros(len(triangles), dtype=bool)
+    is_kept[agreeing[first]] = True
+    return is_kept
+
+
+def _as_keys(rows: IntArray, base: int) -> IntArray:
+    """One integer for each row of three, so that sorting is fast; the rank of the row where that would overflow."""
+    if base >= 2_000_000:  # 2e6 cubed is just under 2**63
+        return np.asarray(np.unique(rows, axis=0, return_inverse=True)[1], dtype=np.int64).ravel()
+    return (rows[:, 0] * base + rows[:, 1]) * base + rows[:, 2]
