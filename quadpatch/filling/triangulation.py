@@ -56,8 +56,7 @@ def triangulate_loops(
 class EdgeSet:
     """Undirected edges of a mesh among some vertices, for "does this edge exist?" in bulk."""
 
-    def __init__(self, edges: IntArray, n_vertices: int) -> None:
-        self._n_vertices = np.int64(n_vertices)
+    def __init__(self, edges: IntArray) -> None:
         self._keys = np.unique(self._key(edges))
 
     def contains(self, edges: IntArray) -> BoolArray:
@@ -75,9 +74,10 @@ class EdgeSet:
         joined[:, i, (i + 1) % n] = joined[:, (i + 1) % n, i] = joined[:, i, i] = False
         return joined
 
-    def _key(self, edges: IntArray) -> IntArray:
+    @staticmethod
+    def _key(edges: IntArray) -> IntArray:
         start, end = edges[..., 0], edges[..., 1]
-        return np.minimum(start, end) * self._n_vertices + np.maximum(start, end)
+        return (np.minimum(start, end) << 32) | np.maximum(start, end)
 
 
 def _minimum_weight(points: FloatArray, rim_normals: FloatArray, taken: BoolArray) -> tuple[IntArray, BoolArray]:

@@ -1,0 +1,134 @@
+"""The command line of the method: `fill` repairs a file, `holes` lists what could be filled.
+
+Data goes to standard output, progress and errors to standard error. Exit codes: 0 done, 1 the file, the model or an option
+is at fault (`code: message` on standard error), 2 wrong usage.
+"""
+
+import json
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn
+from rich.table import Table
+
+from quadpatch import types
+from quadpatch.errors import QuadpatchError
+from quadpatch.options import HoleOptions, PatchOptions, RepairOptions
+
+app = typer.Typer(help="Repair holes in 3D scans.", no_args_is_help=True, add_completion=False)
+_errors = Console(stderr=True)
+
+Source = Annotated[Path, typer.Argument(metavar="IN", help="Mesh: PLY, STL, OBJ, OFF, GLB/glTF or 3MF.")]
+
+
+@app.command()
+def fill(  # noqa: PLR0913  one argument per flag
+    source: Source,
+    output: Annotated[Path, typer.Option("--output", "-o", metavar="OUT", help="Its suffix says the format.")],
+    model: Annotated[
+        str, typer.Option(help="self (learn from this mesh), smooth (geometry only), a shipped model, or a model file.")
+    ] = "self",
+    report: Annotated[Path | None, typer.Option(help="Write the report as JSON.")] = None,
+    picture: Annotated[Path | None, typer.Option(help="Write a before/after picture as PNG.")] = None,
+    max_diameter: Annotated[float | None, typer.Option(help="Leave wider holes open (mesh units).")] = None,
+    max_perimeter: Annotated[float | None, typer.Option(help="Leave longer rims open (mesh units).")] = None,
+    all_but_largest: Annotated[bool, typer.Option(help="Leave the longest loop open.")] = False,
+    hole: Annotated[list[int] | None, typer.Option(help="Fill just this hole; repeat for more.")] = None,
+    patch_length: Annotated[float | None, typer.Option(help="Side of a patch (mesh units).")] = None,
+    resolution: Annotated[int | None, typer.Option(help="Bins along one side of a patch.")] = None,
+    overlap: Annotated[int | None, typer.Option(help="k: every quad carries 1 + 4 k patches.")] = None,
+    seed: Annotated[int, typer.Option(help="Start of every random choice.")] = 0,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress, no summary.")] = False,
+) -> None:
+    """Repair a mesh file."""
+    from quadpatch.repair import repair_file  # noqa: PLC0415  the libraries behind it take a second to load
+
+    with _clear_errors(), _progress(quiet) as progress:
+        options = RepairOptions(
+            HoleOptions(max_diameter, max_perimeter, all_but_largest, tuple(hole) if hole else None),
+            PatchOptions(patch_length, resolution, overlap),
+            seed,
+        )
+        result = repair_file(source, output, model, options, progress)
+        if report:
+            report.write_text(json.dumps(result, indent=2) + "\n")
+        if picture:
+            _draw(source, output, picture)
+    if not quiet:
+        _errors.print(summary(result))
+
+
+@app.command()
+def holes(source: Source, as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False) -> None:
+    """List the holes of a mesh file, and which of them would be filled."""
+    from quadpatch.repair import inspect_file  # noqa: PLC0415  the libraries behind it take a second to load
+
+    with _clear_errors():
+        facts = inspect_file(source)
+    if as_json:
+        print(json.dumps(facts, indent=2))  # noqa: T201  data for standard output
+        return
+    unit = facts["length_unit"]
+    table = Table(title=f"{source.name}: {len(facts['holes'])} holes, lengths in {unit}")
+    for name in ("id", "edges", "perimeter", "diameter", "area", "planarity"):
+        table.add_column(name, justify="right")
+    table.add_column("by default")
+    for row in facts["holes"]:
+        numbers = [f"{row[name]:.5g}" for name in ("perimeter", "diameter", "area")]
+        fate = "fill" if row["chosen"] else f"leave open: {row['reason']}"
+        table.add_row(str(row["id"]), str(row["edges"]), *numbers, f"{row['planarity']:.3f}", fate)
+    Console().print(table)
+
+
+def summary(report: dict[str, Any]) -> str:
+    """One paragraph for people: what was found, filled and left open, and why."""
+    counts = report["counts"]
+    reasons: dict[str, int] = {}
+    for row in report["holes"]:
+        if row["verdict"] in ("skipped", "refused"):
+            reasons[row["reason"]] = reasons.get(row["reason"], 0) + 1
+    open_holes = counts["skipped"] + counts["refused"]
+    text = f"{counts['found']} holes: {counts['filled']} filled by the model, {counts['filled_smooth']} by geometry"
+    text += f", {open_holes} left open"
+    if reasons:
+        text += " (" + "; ".join(f"{count} × {reason}" for reason, count in reasons.items()) + ")"
+    seconds = sum(stage["seconds"] for stage in report["stages"])
+    return f"{text}. {seconds:.1f} s."
+
+
+def _draw(source: Path, output: Path, picture: Path) -> None:
+    from quadpatch.repair import draw_repair  # noqa: PLC0415  see fill
+
+    draw_repair(source, output, picture)
+
+
+@contextmanager
+def _clear_errors() -> Iterator[None]:
+    try:
+        yield
+    except QuadpatchError as error:
+        _errors.print(f"[red]{error.code}[/red]: {error}")
+        sys.exit(1)
+
+
+@contextmanager
+def _progress(quiet: bool) -> Iterator[types.Progress]:
+    """Show a bar on a terminal; nothing elsewhere."""
+    if quiet or not _errors.is_terminal:
+        yield types.no_progress
+        return
+    columns = TextColumn("{task.description:<14}"), BarColumn(), TimeElapsedColumn()
+    with Progress(*columns, console=_errors) as bars:
+        tasks: dict[str, TaskID] = {}
+
+        def progress(stage: str, fraction: float) -> None:
+            if stage not in tasks:
+                tasks[stage] = bars.add_task(stage, total=1.0)
+            bars.update(tasks[stage], completed=fraction)
+
+        yield progress

@@ -1,0 +1,166 @@
+"""Judging every hole: how much of it was learned, how sure that is, and what to call it.
+
+Confidence is ``exp(-10 e / d)`` with e the expected mean error of the fill and d the hole's diameter: a fill off by a hundredth
+of the hole's width has 0.9, one off by a tenth has 0.37.
+"""
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from quadpatch.filling.fill import FilledMesh
+from quadpatch.mesh.holes import Hole, Selection
+from quadpatch.reconstruction.displacement import Displacement
+from quadpatch.types import BoolArray, FloatArray, IntArray
+
+if TYPE_CHECKING:
+    from quadpatch.completion import Completion
+
+# A hole is completed by the model only where its patches see at least this share of the new vertices.
+LEAST_COVERAGE = 0.6
+
+# Patches of a hole that differ by more than this share of what they say contradict each other.
+MOST_DISAGREEMENT = 1.5
+
+_FALL_PER_ERROR = 10.0
+
+# Without practice on the mesh: mean error of a fill, in units of its gap to the thin plate.
+ERROR_PER_GAP = 0.5
+
+
+@dataclass(frozen=True)
+class HoleResult:
+    """What became of one hole. Lengths in mesh units.
+
+    Attributes
+    ----------
+    verdict : str
+        `filled` by the model, `filled_smooth` by geometry alone, `skipped` by rule, `refused` as impossible.
+    code, reason : str
+        Why, for programs and for people; empty for `filled`.
+    confidence : float or None
+        0..1; None where nothing was filled.
+    expected_error : float or None
+        Expected mean distance of the fill to the true surface.
+    measures : dict
+        What the verdict rests on.
+    """
+
+    hole: Hole
+    verdict: str
+    code: str = ""
+    reason: str = ""
+    confidence: float | None = None
+    expected_error: float | None = None
+    n_new_vertices: int = 0
+    n_new_triangles: int = 0
+    measures: dict[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """What the patches said about every hole, (n_holes,) float64 each, by position in the list of loops.
+
+    Attributes
+    ----------
+    coverage : share of the hole's new vertices that a patch sees
+    spread : mean standard deviation between patches, mesh units
+    departure : mean length of the displacement, mesh units
+    rim_misfit : mean error of the model at the rim, where the truth is known, mesh units
+    """
+
+    coverage: FloatArray
+    spread: FloatArray
+    departure: FloatArray
+    rim_misfit: FloatArray
+
+
+def gather(
+    filled: FilledMesh, n_holes: int, inside: Displacement, joined: FloatArray, rim_hole: IntArray, at_rim: Displacement
+) -> Evidence:
+    """Collect the evidence of all holes from the displacements inside them and at their rims."""
+    hole = filled.vertex_hole
+    covered = (inside.overlap > 0).astype(np.float64)
+    return Evidence(
+        _mean_by(hole, covered, n_holes),
+        _mean_by(hole, inside.spread, n_holes),
+        _mean_by(hole, np.linalg.norm(joined, axis=1), n_holes),
+        _mean_by(rim_hole, np.linalg.norm(at_rim.mean, axis=1), n_holes),
+    )
+
+
+def trusted(evidence: Evidence) -> BoolArray:
+    """Which holes (n_holes,) the model may complete."""
+    disagreement = evidence.spread / np.maximum(evidence.departure + evidence.rim_misfit, 1e-300)
+    trust: BoolArray = (evidence.coverage >= LEAST_COVERAGE) & (disagreement <= MOST_DISAGREEMENT)
+    return trust
+
+
+def judge(
+    holes: list[Hole], selection: Selection, filled: FilledMesh, completion: "Completion | None"
+) -> list[HoleResult]:
+    """Say of every hole what became of it, in the order of their ids."""
+    position = {hole.id: i for i, hole in enumerate(selection.chosen)}
+    n_vertices = np.bincount(filled.vertex_hole, minlength=len(position))
+    n_triangles = np.bincount(filled.triangle_hole, minlength=len(position))
+    results = []
+    for hole in holes:
+        if hole.id in selection.skipped:
+            results.append(HoleResult(hole, "skipped", *selection.skipped[hole.id]))
+            continue
+        i = position[hole.id]
+        if i in filled.unfilled:
+            why = "every triangulation of the rim would give an existing edge a third face"
+            results.append(HoleResult(hole, "refused", "no_triangulation", why))
+            continue
+        per_gap = ERROR_PER_GAP if completion is None or completion.error_per_gap is None else completion.error_per_gap
+        expected = float(per_gap * filled.gap[i])
+        verdict, code, reason = _verdict(i, completion)
+        results.append(
+            HoleResult(
+                hole,
+                verdict,
+                code,
+                reason,
+                confidence(expected, hole.diameter),
+                expected,
+                int(n_vertices[i]),
+                int(n_triangles[i]),
+                _measures(i, filled, completion),
+            )
+        )
+    return results
+
+
+def _verdict(i: int, completion: "Completion | None") -> tuple[str, str, str]:
+    if completion is None:
+        return "filled_smooth", "geometry", "filled by geometry: no learned model took part"
+    if completion.trust[i]:
+        return "filled", "", ""
+    if completion.believed == 0:
+        return "filled_smooth", "no_gain", "practice on this mesh showed no gain over the geometric fill"
+    if completion.evidence.coverage[i] < LEAST_COVERAGE:
+        seen = f"{100 * completion.evidence.coverage[i]:.0f} %"
+        return "filled_smooth", "no_height_map", f"patches see only {seen} of the hole: the surface is folded there"
+    return "filled_smooth", "patches_disagree", "overlapping patches contradict each other"
+
+
+def _measures(i: int, filled: FilledMesh, completion: "Completion | None") -> dict[str, float]:
+    measures = {"gap": float(filled.gap[i])}
+    if completion is not None:
+        evidence = completion.evidence
+        for name in ("coverage", "spread", "departure", "rim_misfit"):
+            measures[name] = float(getattr(evidence, name)[i])
+    return measures
+
+
+def confidence(expected_error: float, diameter: float) -> float:
+    """See the module's head."""
+    return float(np.exp(-_FALL_PER_ERROR * expected_error / diameter)) if diameter > 0 else 0.0
+
+
+def _mean_by(group: IntArray, values: FloatArray, n_groups: int) -> FloatArray:
+    total = np.bincount(group, values, minlength=n_groups)
+    mean: FloatArray = total / np.maximum(np.bincount(group, minlength=n_groups), 1)
+    return mean

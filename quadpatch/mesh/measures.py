@@ -1,0 +1,21 @@
+"""Lengths of a mesh."""
+
+import numpy as np
+
+from quadpatch.mesh.boundary import directed_edges
+from quadpatch.types import TriangleMesh
+
+
+def mean_edge_length(mesh: TriangleMesh) -> float:
+    """Mean edge length, in mesh units; an edge counts once for each of its triangles. 0 without triangles."""
+    if not len(mesh.triangles):
+        return 0.0
+    edges = directed_edges(mesh.triangles)
+    return float(np.linalg.norm(mesh.vertices[edges[:, 0]] - mesh.vertices[edges[:, 1]], axis=1).mean())
+
+
+def diagonal(mesh: TriangleMesh) -> float:
+    """Diagonal of the bounding box of all vertices that a triangle uses, in mesh units."""
+    if not len(mesh.triangles):
+        return 0.0
+    return float(np.linalg.norm(np.ptp(mesh.vertices[mesh.triangles].reshape(-1, 3), axis=0)))

@@ -1,0 +1,79 @@
+"""From a filled mesh to its patches: outline, quad mesh, frames, seeds, height maps (section 3 of the paper)."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from quadpatch.filling.fill import FilledMesh
+from quadpatch.patches.height_map import sample_height_maps
+from quadpatch.patches.scale import PatchScale
+from quadpatch.patches.seeds import Seeds, seed_points
+from quadpatch.quads.frames import quad_frames
+from quadpatch.quads.mesher import quadrangulate
+from quadpatch.raycast import RayScene
+from quadpatch.types import BoolArray, FloatArray, IntArray, Patches, TriangleMesh, Vertices
+
+
+@dataclass(frozen=True)
+class Sampled:
+    """Patches, and the smoothed surface in the same patches.
+
+    Attributes
+    ----------
+    patches : Patches
+    outline : (n_patches, N, N) float64
+        Heights of the outline, in mesh units.
+    """
+
+    patches: Patches
+    outline: FloatArray
+
+
+def lay_out(outline: TriangleMesh, scale: PatchScale) -> Seeds:
+    """Quadrangulate the outline with quads of the patch length, and give every quad its seeds.
+
+    Raises
+    ------
+    NoQuadsError
+        If the outline is too small or too thin to carry one quad.
+    """
+    quad_mesh = quadrangulate(outline, scale.length)
+    return seed_points(quad_mesh, quad_frames(quad_mesh), scale.overlap)
+
+
+def patchify(filled: FilledMesh, outline: TriangleMesh, seeds: Seeds, scale: PatchScale) -> Sampled:
+    """Sample the filled mesh and its outline in the patches at some seeds.
+
+    A bin where the outline can't be seen is not known: there is no detail to be coded.
+    """
+    surface = sample_height_maps(
+        RayScene(filled.mesh), filled.mesh, filled.invented_triangles, seeds, scale.length, scale.resolution
+    )
+    smooth = sample_height_maps(
+        RayScene(outline), outline, np.zeros(len(outline.triangles), bool), seeds, scale.length, scale.resolution
+    )
+    both = Patches(
+        surface.origins,
+        surface.frames,
+        surface.length,
+        surface.heights,
+        surface.known & smooth.seen,
+        surface.seen,
+        surface.triangle,
+    )
+    return Sampled(both, np.where(smooth.seen, smooth.heights, surface.heights))
+
+
+def seeds_near(seeds: Seeds, points: Vertices, length: float) -> BoolArray:
+    """Which seeds (n_seeds,) have one of some points inside the circle around their patch."""
+    if not len(points):
+        return np.zeros(len(seeds.origins), bool)
+    distance, _ = cKDTree(points).query(seeds.origins, distance_upper_bound=length * np.sqrt(0.5))
+    near: BoolArray = np.isfinite(distance)
+    return near
+
+
+def take(seeds: Seeds, which: BoolArray | IntArray) -> Seeds:
+    """Some of the seeds."""
+    return Seeds(seeds.origins[which], seeds.frames[which], seeds.quad[which])

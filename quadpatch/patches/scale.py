@@ -1,0 +1,54 @@
+"""How large patches are: the automatic rule, and what the user or the model overrides."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from quadpatch.options import PatchOptions
+
+# A patch must see about as much known surface around a hole as the hole is wide; 1.6 keeps the corners of a
+# centred patch clear of the rim on all sides.
+HOLES_PER_LENGTH = 2.2
+
+# Bins a little finer than the mesh lose no detail and invent none.
+EDGES_PER_BIN = 0.65
+
+RESOLUTION_RANGE = (16, 32)
+
+# k of the paper: with 4 k = 8 offset patches besides the centre, a vertex is seen by about nine patches.
+OVERLAP = 2
+
+
+@dataclass(frozen=True)
+class PatchScale:
+    """Side of a patch in mesh units, bins along it, and the count k of offsets along each direction."""
+
+    length: float
+    resolution: int
+    overlap: int
+
+
+def choose_scale(
+    hole_diameters: list[float], edge_length: float, options: PatchOptions, model_resolution: int | None = None
+) -> PatchScale:
+    """Choose the patch length from the holes, and the resolution from the mesh's edges.
+
+    Parameters
+    ----------
+    hole_diameters : list of float
+        Of the holes that will be filled, in mesh units.
+    edge_length : float
+        Mean edge length of the mesh, in mesh units.
+    options : PatchOptions
+        What is set there is taken as it is.
+    model_resolution : int, optional
+        A learned model fits patches of this resolution only.
+    """
+    typical = float(np.percentile(hole_diameters, 75)) if hole_diameters else 0.0
+    low, high = RESOLUTION_RANGE
+    least = EDGES_PER_BIN * edge_length * (model_resolution or low)
+    length = options.length or max(HOLES_PER_LENGTH * typical, least)
+    wanted = round(length / (EDGES_PER_BIN * edge_length))
+    resolution = model_resolution or options.resolution or min(max(wanted, low), high)
+    overlap = OVERLAP if options.overlap is None else options.overlap
+    return PatchScale(float(length), int(resolution), overlap)

@@ -1,0 +1,119 @@
+"""From predicted height maps to displacements of the fill.
+
+The geometric fill carries the new vertices. A patch says, at every vertex it sees, how far along its z the surface
+should lie from where it is; the weighted mean over all patches that see the vertex is its displacement. At the rim
+the surface is measured and must stay, so the displacement found there (the misfit of the model) is continued
+harmonically into the hole and taken off: the displaced fill meets the rim exactly.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import sparse
+from scipy.sparse.linalg import splu
+
+from quadpatch.filling.fill import FilledMesh
+from quadpatch.mesh.boundary import directed_edges
+from quadpatch.mesh.normals import vertex_normals
+from quadpatch.patches.connectivity import bilinear, vertices_in_patches
+from quadpatch.types import FloatArray, IntArray, Patches
+
+
+@dataclass(frozen=True)
+class Displacement:
+    """What the patches say about some vertices.
+
+    Attributes
+    ----------
+    mean : (n, 3) float64
+        Weighted mean displacement, in mesh units; zero where no patch sees the vertex.
+    spread : (n,) float64
+        Weighted standard deviation between patches, in mesh units.
+    overlap : (n,) int64
+        Count of patches that see the vertex.
+    """
+
+    mean: FloatArray
+    spread: FloatArray
+    overlap: IntArray
+
+
+def displace(filled: FilledMesh, vertices: IntArray, patches: Patches, predicted: FloatArray) -> Displacement:
+    """Average what overlapping patches predict at some vertices of a filled mesh.
+
+    Parameters
+    ----------
+    filled : FilledMesh
+    vertices : (n,) int64
+        Vertices of the filled mesh.
+    patches : Patches
+        As sampled from the filled mesh.
+    predicted : (n_patches, N, N) float64
+        Heights, in mesh units.
+    """
+    normals = vertex_normals(filled.mesh.vertices, filled.mesh.triangles)[vertices]
+    seen = vertices_in_patches(filled.mesh.vertices[vertices], normals, patches)
+    along_z = bilinear(predicted - patches.heights, seen)
+    weight = _window(patches, seen.row, seen.column)
+    vectors = along_z[:, None] * patches.frames[seen.patch, 2]
+    total = np.bincount(seen.vertex, weight, minlength=len(vertices))
+    safe = np.maximum(total, 1e-300)
+    mean = np.stack(
+        [np.bincount(seen.vertex, weight * vectors[:, k], minlength=len(vertices)) / safe for k in range(3)], axis=1
+    )
+    apart = ((vectors - mean[seen.vertex]) ** 2).sum(axis=1)
+    spread = np.sqrt(np.bincount(seen.vertex, weight * apart, minlength=len(vertices)) / safe)
+    return Displacement(mean, spread, np.bincount(seen.vertex, minlength=len(vertices)))
+
+
+def _window(patches: Patches, row: FloatArray, column: FloatArray) -> FloatArray:
+    """Weight of a place in a patch: 1 at its centre, falling to a tenth at its border."""
+    half = patches.resolution / 2
+    from_centre = np.maximum(np.abs(row + 0.5 - half), np.abs(column + 0.5 - half)) / half
+    return 0.1 + 0.9 * np.cos(np.clip(from_centre, 0, 1) * np.pi / 2) ** 2
+
+
+def join_at_rim(filled: FilledMesh, invented: FloatArray, rim: IntArray, at_rim: FloatArray) -> FloatArray:
+    """Take the misfit at the rim, continued harmonically into the holes, off the displacements.
+
+    Parameters
+    ----------
+    filled : FilledMesh
+    invented : (n_invented_vertices, 3) float64
+        Displacements of all new vertices.
+    rim : (r,) int64
+        Measured vertices on the rims.
+    at_rim : (r, 3) float64
+        What the patches predict there, where the truth is zero.
+
+    Returns
+    -------
+    (n_invented_vertices, 3) float64
+    """
+    if not len(invented):
+        return invented
+    first = filled.n_measured_vertices
+    edges = np.unique(np.sort(directed_edges(filled.mesh.triangles[filled.n_measured_triangles :]), axis=1), axis=0)
+    # New vertices keep their order, rim vertices come behind them.
+    local = np.full(len(filled.mesh.vertices), -1)
+    local[first:] = np.arange(len(invented))
+    local[rim] = len(invented) + np.arange(len(rim))
+    start, end = local[edges].T
+    size = len(invented) + len(rim)
+    ones = np.ones(2 * len(edges))
+    adjacency = sparse.csr_array((ones, (np.r_[start, end], np.r_[end, start])), shape=(size, size))
+    laplacian = (sparse.diags_array(adjacency.sum(axis=1)) - adjacency).tocsr()[: len(invented)].tocsc()
+    inner, outer = laplacian[:, : len(invented)], laplacian[:, len(invented) :]
+    factors = splu(inner.tocsc(), permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True}, diag_pivot_thresh=0.0)
+    joined: FloatArray = invented - factors.solve(-(outer @ at_rim))
+    return joined
+
+
+def rim_vertices(filled: FilledMesh) -> tuple[IntArray, IntArray]:
+    """Measured vertices of invented triangles (r,), and the position of the hole of each (r,)."""
+    new = filled.mesh.triangles[filled.n_measured_triangles :]
+    corner_hole = np.repeat(filled.triangle_hole, 3)
+    corners = new.ravel()
+    on_rim = corners < filled.n_measured_vertices
+    rim, first = np.unique(corners[on_rim], return_index=True)
+    return rim, corner_hole[on_rim][first]

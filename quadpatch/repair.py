@@ -1,0 +1,131 @@
+"""From file to file: what the command line and the worker's engine call."""
+
+import hashlib
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from quadpatch.formats.reading import read_scan
+from quadpatch.formats.scan import Fill, Scan
+from quadpatch.formats.writing import write_scan
+from quadpatch.inpainters.dictionary import DictionaryInpainter
+from quadpatch.inpainters.inpainter import Inpainter
+from quadpatch.mesh.holes import find_holes, select_holes
+from quadpatch.mesh.measures import diagonal
+from quadpatch.mesh.weld import Weld, weld
+from quadpatch.model_file import load_model, shipped_model
+from quadpatch.options import RepairOptions
+from quadpatch.pipeline import Repair, inpaint
+from quadpatch.report import UNKNOWN_UNIT, build_report, describe_hole, describe_mesh
+from quadpatch.stages import Stages
+from quadpatch.types import Progress, TriangleMesh, no_progress
+
+SMOOTH = "smooth"
+SELF = "self"
+
+
+def repair_file(
+    source: Path,
+    output: Path,
+    model: str | Path = SELF,
+    options: RepairOptions | None = None,
+    progress: Progress = no_progress,
+) -> dict[str, Any]:
+    """Repair one file.
+
+    Parameters
+    ----------
+    source, output : Path
+        The output's suffix says its format.
+    model : str or Path
+        `smooth` (no learning), `self` (learn from the mesh itself), the name of a shipped model (`name` or
+        `name@version`), or a model file.
+    options : RepairOptions, optional
+    progress : callable
+
+    Returns
+    -------
+    dict
+        The report, JSON-ready.
+
+    Raises
+    ------
+    QuadpatchError
+        Its `code` says what is wrong with file, model or options.
+    """
+    options = options or RepairOptions()
+    stages = Stages(progress)
+    inpainter, card = _resolve(model)
+    with stages.stage("read"):
+        scan = read_scan(source)
+        welded = weld(scan.vertices, scan.triangles)
+    repair = inpaint(welded.mesh, inpainter, options, stages, learn=model == SELF)
+    with stages.stage("write"):
+        write_scan(output, scan, _fill(scan, welded, repair))
+    return build_report(scan, welded.mesh, repair, options, card, stages)
+
+
+def inspect_file(source: Path) -> dict[str, Any]:
+    """Facts and holes of a file, JSON-ready; `chosen` says what the automatic rule would fill."""
+    scan = read_scan(source)
+    mesh = weld(scan.vertices, scan.triangles).mesh
+    holes = find_holes(mesh)
+    selection = select_holes(holes, RepairOptions().holes, diagonal(mesh))
+    return {
+        **describe_mesh(scan, mesh),
+        "length_unit": scan.unit or UNKNOWN_UNIT,
+        "holes": [
+            {
+                **describe_hole(hole),
+                "chosen": hole.id not in selection.skipped,
+                "reason": selection.skipped.get(hole.id, (None, None))[1],
+            }
+            for hole in holes
+        ],
+    }
+
+
+def _resolve(model: str | Path) -> tuple[Inpainter | None, dict[str, Any]]:
+    """Turn a model's name or path into its inpainter, and what the report says of it."""
+    if model in (SMOOTH, SELF):
+        return None, {"name": str(model)}
+    path = Path(model)
+    if not path.is_file():
+        path = shipped_model(str(model))
+    loaded = load_model(path)
+    facts = {"name": loaded.card.get("name", path.stem), "version": loaded.card.get("version"), "kind": loaded.kind}
+    facts["sha256"] = hashlib.sha256(path.read_bytes()).hexdigest()
+    if loaded.dictionary is None:
+        from quadpatch.inpainters.autoencoder import AutoencoderInpainter  # noqa: PLC0415  onnxruntime is slow to load
+
+        return AutoencoderInpainter.load(path), facts
+    return DictionaryInpainter(loaded.dictionary), facts
+
+
+def _fill(scan: Scan, welded: Weld, repair: Repair) -> Fill:
+    """The invented part of a repair in the file's own vertex numbers."""
+    filled = repair.filled
+    ids = np.array([hole.id for hole in repair.chosen], np.int64)
+    confidence = np.array([repair.results[i].confidence or 0.0 for i in ids.tolist()])
+    n_new = len(filled.vertex_hole)
+    to_file = np.concatenate([welded.to_file, len(scan.vertices) + np.arange(n_new)])
+    return Fill(
+        filled.mesh.vertices[filled.n_measured_vertices :],
+        to_file[filled.mesh.triangles[filled.n_measured_triangles :]],
+        ids[filled.vertex_hole],
+        confidence[filled.vertex_hole],
+        ids[filled.triangle_hole],
+        confidence[filled.triangle_hole],
+    )
+
+
+def draw_repair(source: Path, repaired: Path, picture: Path) -> None:
+    """Draw the file before and after its repair, side by side, as PNG."""
+    from quadpatch.picture import render_before_after  # noqa: PLC0415  most repairs draw nothing
+
+    before, after = read_scan(source), read_scan(repaired)
+    invented = np.arange(len(after.triangles)) >= len(before.triangles)
+    render_before_after(
+        weld(before.vertices, before.triangles).mesh, TriangleMesh(after.vertices, after.triangles), invented, picture
+    )
