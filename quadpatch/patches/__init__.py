@@ -1,0 +1,1 @@
+"""Patches: seed points, height maps over their frames, and what vertices they show."""

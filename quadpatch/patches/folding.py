@@ -1,0 +1,47 @@
+"""Tell patches whose surface is a height map from those where it folds.
+
+On thin or folded parts a ray along z meets a wall, an underside or nothing. Whatever is coded there is no surface,
+however well it is completed, so later stages leave such patches out.
+"""
+
+import numpy as np
+
+from quadpatch.types import BoolArray, FloatArray, Patches
+
+# Between neighbouring bins a surface may climb this many bins; more is a step to another layer.
+STEEPEST = 3.0
+# A patch with a larger share of bad bins is no height map.
+MOST_FOLDED = 0.2
+
+
+def fold_fraction(patches: Patches) -> FloatArray:
+    """Share of bins of each patch that see no surface facing z, or stand at a step to another layer.
+
+    Parameters
+    ----------
+    patches : Patches
+
+    Returns
+    -------
+    (n_patches,) float64
+        In 0..1.
+    """
+    is_bad = ~patches.seen | _at_step(patches)
+    return np.asarray(is_bad.mean(axis=(1, 2)))
+
+
+def is_height_map(patches: Patches, most_folded: float = MOST_FOLDED) -> BoolArray:
+    """Say which patches (n_patches,) show one connected surface over all but a few of their bins."""
+    return fold_fraction(patches) <= most_folded
+
+
+def _at_step(patches: Patches) -> BoolArray:
+    """Bins with a neighbour in the same row or column whose surface lies on another layer."""
+    step = STEEPEST * patches.length / patches.resolution
+    at_step = np.zeros(patches.seen.shape, dtype=bool)
+    for axis in (1, 2):
+        heights, seen, flags = (np.moveaxis(part, axis, 1) for part in (patches.heights, patches.seen, at_step))
+        is_step = (np.abs(np.diff(heights, axis=1)) > step) & seen[:, 1:] & seen[:, :-1]
+        flags[:, 1:] |= is_step
+        flags[:, :-1] |= is_step
+    return at_step
