@@ -114,5 +114,7 @@ def _field_error(detail: Mapping[str, Any], root: str | None) -> FieldError:
     where = [str(step) for step in detail["loc"]]
     location = root or where.pop(0)
     is_body = location == "body"
+    if where[:1] == ["method"]:
+        where[1:2] = []  # the tag of the union, which stands in no document
     pointer = "".join("/" + step.replace("~", "~0").replace("/", "~1") for step in where) if is_body else where[-1]
     return FieldError(location=location, pointer=pointer, message=str(detail["msg"]), code=str(detail["type"]))

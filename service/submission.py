@@ -94,8 +94,11 @@ def _check(services: Services, spec: JobSpec) -> ResolvedModel:
 
 
 def _check_limits(limits: Limits, settings: Settings) -> None:
-    granted = (("time_s", limits.time_s, settings.job_time_limit_s),)
-    for name, asked, most in (*granted, ("memory_mb", limits.memory_mb, settings.job_memory_limit_mb)):
+    granted: list[tuple[str, float | None, float]] = [
+        ("time_s", limits.time_s, settings.job_time_limit_s),
+        ("memory_mb", limits.memory_mb, settings.job_memory_limit_mb),
+    ]
+    for name, asked, most in granted:
         if asked is not None and asked > most:
             raise OverLimitError(f"limits.{name} is {asked}; this service grants at most {most}")
 

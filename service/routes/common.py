@@ -1,0 +1,118 @@
+"""What routes share: parameters, documented problems, JSON responses with entity tags."""
+
+from collections.abc import Mapping
+from http import HTTPStatus
+from typing import Annotated, Any
+
+from fastapi import Depends, Header, Path, Request
+from pydantic import BaseModel
+from starlette.responses import Response
+
+from jobkit.ids import JOB_ID_PATTERN, SHA256_PATTERN
+from jobkit.schema import Job, Problem
+from jobkit.schema.base import EXAMPLE_JOB_ID, EXAMPLE_SHA256, NAME_PATTERN
+from service.content import etag_matches
+from service.problems import RETRY_AFTER_S
+
+JobIdPath = Annotated[str, Path(pattern=JOB_ID_PATTERN, description="Id of a job.", examples=[EXAMPLE_JOB_ID])]
+MeshIdPath = Annotated[
+    str,
+    Path(
+        pattern=SHA256_PATTERN, description="Id of a mesh: the sha256 of its bytes, in hex.", examples=[EXAMPLE_SHA256]
+    ),
+]
+ModelNamePath = Annotated[
+    str, Path(pattern=NAME_PATTERN, description="Name of a model.", examples=["general-dictionary"])
+]
+VersionPath = Annotated[int, Path(ge=1, le=2**31 - 1, description="Number of a version.", examples=[1])]
+IdempotencyKey = Annotated[
+    str | None,
+    Header(
+        alias="Idempotency-Key",
+        pattern=r"^[!-~]{1,255}$",
+        description="Any string of your own. A repeated request with the same key starts nothing twice: it gets the "
+        "job of the first time. Keys don't expire while their job is kept.",
+        examples=["order-17-part-3"],
+    ),
+]
+IfNoneMatch = Annotated[
+    str | None,
+    Header(alias="If-None-Match", description="Entity tags; the answer is 304 where one still holds."),
+]
+
+
+def _conditional_headers(
+    byte_range: Annotated[
+        str | None,
+        Header(alias="Range", description="One range of bytes, `bytes=0-1023`; anything else gets the whole."),
+    ] = None,
+    if_range: Annotated[
+        str | None, Header(alias="If-Range", description="Entity tag that the range is meant for.")
+    ] = None,
+    if_none_match: IfNoneMatch = None,
+) -> None:
+    """Document the headers that `service.content` reads."""
+
+
+CONDITIONAL = [Depends(_conditional_headers)]
+
+BINARY: Mapping[str, Any] = {"type": "string", "format": "binary"}
+_ALWAYS = (401, 403, 422, 500, 503)
+_MEANING = {
+    304: "What the entity tag names has not changed.",
+    400: "The body can't be read.",
+    401: "No valid key.",
+    403: "Not allowed, or over what the service grants.",
+    404: "There is no such thing.",
+    409: "Not possible in the present state.",
+    413: "The body is over the limit.",
+    415: "The body is of a type that is not read here.",
+    416: "The range lies outside.",
+    422: "The request is not valid.",
+    500: "A fault of the service.",
+    503: "Database, store or queue do not answer.",
+}
+
+
+def problems(*statuses: int) -> dict[int | str, dict[str, Any]]:
+    """Document the problems of a route; those that every route may answer with are added."""
+    return {status: {"model": Problem, "description": _MEANING[status]} for status in sorted({*statuses, *_ALWAYS})}
+
+
+def not_modified() -> dict[int | str, dict[str, Any]]:
+    """Document a 304."""
+    return {304: {"description": _MEANING[304]}}
+
+
+def described_header(description: str) -> dict[str, Any]:
+    """Document a response header that is always sent."""
+    return {"description": description, "required": True, "schema": {"type": "string"}}
+
+
+def linked(operation: str, expression: str, parameter: str) -> dict[str, Any]:
+    """Document which operation follows from a response, and where its parameter stands."""
+    return {"operationId": operation, "parameters": {parameter: expression}}
+
+
+def json_response(model: BaseModel, status: HTTPStatus = HTTPStatus.OK, **headers: str) -> Response:
+    """Write a wire model; underscores in header names stand for dashes."""
+    named = {name.replace("_", "-"): value for name, value in headers.items()}
+    return Response(model.model_dump_json(), status, named, "application/json")
+
+
+def job_response(job: Job, status: HTTPStatus | None = None, **headers: str) -> Response:
+    """Write a job: 200 once it has ended, 202 before, with what a poller needs."""
+    if not job.state.is_terminal:
+        headers["Retry_After"] = RETRY_AFTER_S
+    usual = HTTPStatus.OK if job.state.is_terminal else HTTPStatus.ACCEPTED
+    return json_response(job, status or usual, ETag=job_etag(job), Location=job.links.self, **headers)
+
+
+def job_etag(job: Job) -> str:
+    """Return the entity tag of a job: each change raises its revision."""
+    return f'W/"{job.revision}"'
+
+
+def is_unchanged(request: Request, etag: str) -> bool:
+    """Return whether the client already has what the tag names."""
+    return etag_matches(request.headers.get("if-none-match"), etag)

@@ -1,0 +1,91 @@
+"""Whether the service lives, whether it can work, and what it is."""
+
+import logging
+from collections.abc import Callable
+from http import HTTPStatus
+from typing import Literal
+
+from fastapi import APIRouter, Request
+from pydantic import BaseModel, Field
+from starlette.responses import HTMLResponse, Response
+
+from jobkit.errors import JobkitError
+from jobkit.schema import FieldError
+from service.document import to_yaml
+from service.problems import RETRY_AFTER_S, ProblemError
+from service.routes.common import problems
+from service.services import ServicesDep
+from service.strict import StrictRoute
+
+router = APIRouter(tags=["service"], route_class=StrictRoute)
+_logger = logging.getLogger("service")
+_PAGE = """<!doctype html>
+<html lang="en"><meta charset="utf-8"><title>Quadpatch</title>
+<style>body{font:16px/1.5 system-ui,sans-serif;max-width:42rem;margin:4rem auto;padding:0 1rem}
+code,pre{background:#8882;border-radius:4px;padding:.1em .3em}pre{padding:1em;overflow:auto}
+:root{color-scheme:light dark}</style>
+<h1>Quadpatch</h1>
+<p>Repairs holes in 3D scans. This is its HTTP service; <a href="/openapi.yaml">openapi.yaml</a> describes it.</p>
+<pre>curl -F mesh=@scan.ply URL/v1/repairs        # upload, get a job
+curl URL/v1/jobs/JOB -H 'Prefer: wait=30'    # look until it has ended
+curl -OJ URL/v1/jobs/JOB/result              # fetch the repaired mesh</pre>
+<p><a href="/v1/jobs">Jobs</a> · <a href="/v1/models">models</a> · <a href="/readyz">state</a></p>
+</html>
+"""
+
+
+class Health(BaseModel):
+    """A sign of life."""
+
+    status: Literal["ok"] = Field(default="ok", description="Always `ok`: else there is no answer.", examples=["ok"])
+
+
+class Readiness(BaseModel):
+    """What the service stands on."""
+
+    status: Literal["ready"] = Field(default="ready", description="Always `ready`: else it is a problem.")
+    database: Literal["ok"] = Field(default="ok", description="The database answers.")
+    store: Literal["ok"] = Field(default="ok", description="The object store can be written.")
+    queue: Literal["ok"] = Field(default="ok", description="The queue answers.")
+
+
+@router.get("/healthz", response_model=Health, responses=problems())
+def healthz() -> Health:
+    """Tell whether the process lives."""
+    return Health()
+
+
+@router.get("/readyz", response_model=Readiness, responses=problems())
+def readyz(services: ServicesDep) -> Readiness:
+    """Tell whether database, object store and queue can be worked with."""
+    checks: dict[str, Callable[[], None]] = {
+        "database": services.database.ping,
+        "store": services.store.check,
+        "queue": services.queue.ping,
+    }
+    failed = []
+    for name, check in checks.items():
+        try:
+            check()
+        except JobkitError as error:
+            _logger.warning("%s is not ready: %r", name, error.__cause__ or error)
+            failed.append(FieldError(location="service", pointer=name, message=str(error), code=error.code))
+    if failed:
+        names = ", ".join(item.pointer for item in failed)
+        detail = f"not ready: {names}"
+        status = HTTPStatus.SERVICE_UNAVAILABLE
+        raise ProblemError(status, "not_ready", detail, {"Retry-After": RETRY_AFTER_S}, failed)
+    return Readiness()
+
+
+@router.get("/openapi.yaml", include_in_schema=False)
+def openapi_yaml(request: Request) -> Response:
+    """Hand out the description of this service."""
+    return Response(to_yaml(request.app.openapi()), media_type="application/yaml")
+
+
+@router.get("/", include_in_schema=False)
+def page() -> Response:
+    """Say what this is to whoever opens it in a browser."""
+    policy = "default-src 'none'; style-src 'unsafe-inline'; frame-ancestors 'none'"
+    return HTMLResponse(_PAGE, headers={"Content-Security-Policy": policy})

@@ -1,0 +1,155 @@
+"""Jobs: start, plan, list, look at, cancel, repeat."""
+
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Query, Request
+from starlette.concurrency import run_in_threadpool
+from starlette.responses import Response
+
+from jobkit.ids import JOB_ID_PATTERN
+from jobkit.schema import EventPage, Job, JobPage, JobSpec, JobState, Plan
+from service.routes.common import (
+    IdempotencyKey,
+    IfNoneMatch,
+    JobIdPath,
+    described_header,
+    is_unchanged,
+    job_etag,
+    job_response,
+    json_response,
+    linked,
+    not_modified,
+    problems,
+)
+from service.services import PrincipalDep, Services, ServicesDep
+from service.strict import StrictRoute
+from service.submission import Submission, plan, submit
+from service.waiting import PreferHeader, note_applied, preferred_wait_s, wait_until
+
+router = APIRouter(tags=["jobs"], route_class=StrictRoute)
+
+JOB_LINKS: dict[str, Any] = {
+    operation: linked(operation, "$response.body#/id", "job_id")
+    for operation in ("get_job", "cancel_job", "rerun_job", "list_events", "get_result", "get_report", "get_preview")
+}
+ACCEPTED: dict[int | str, dict[str, Any]] = {
+    202: {
+        "model": Job,
+        "description": "The job is accepted and will end, exactly once.",
+        "headers": {"Location": described_header("Path of the job.")},
+        "links": JOB_LINKS,
+    }
+}
+_ENDED: dict[int | str, dict[str, Any]] = {200: {"model": Job, "description": "The job has ended."}}
+DryRun = Annotated[bool, Query(description="Only say what the job would do.")]
+Limit = Annotated[int, Query(ge=1, le=100, description="Most jobs on the page.")]
+Cursor = Annotated[str | None, Query(pattern=JOB_ID_PATTERN, description="`next_cursor` of the page before this one.")]
+StateFilter = Annotated[JobState | None, Query(description="Only jobs in this state.")]
+
+
+@router.post(
+    "/v1/jobs",
+    status_code=202,
+    response_model=None,
+    responses={
+        **ACCEPTED,
+        200: {"model": Plan | Job, "description": "The plan of a dry run, or the job if it has ended already."},
+        **problems(400, 404, 409, 413, 415),
+    },
+)
+async def create_job(
+    services: ServicesDep,
+    principal: PrincipalDep,
+    spec: JobSpec,
+    dry_run: DryRun = False,
+    key: IdempotencyKey = None,
+    prefer: PreferHeader = None,
+) -> Response:
+    """Repair a mesh. `{"mesh_id": …}` alone is enough."""
+    if dry_run:
+        return json_response(await run_in_threadpool(plan, services, spec))
+    return await answer_submission(services, Submission(spec, principal, key), prefer)
+
+
+@router.get("/v1/jobs", response_model=JobPage, responses=problems())
+def list_jobs(services: ServicesDep, limit: Limit = 20, cursor: Cursor = None, state: StateFilter = None) -> JobPage:
+    """List jobs, newest first. Those that arrive meanwhile don't shift the pages."""
+    return services.jobs.page(limit, cursor, state)
+
+
+@router.get("/v1/jobs/{job_id}", response_model=Job, responses={**not_modified(), **problems(404)})
+async def get_job(
+    request: Request,
+    services: ServicesDep,
+    job_id: JobIdPath,
+    prefer: PreferHeader = None,
+    if_none_match: IfNoneMatch = None,
+) -> Response:
+    """Show where a job stands."""
+    job = await _wait_for_end(services, job_id, prefer)
+    if is_unchanged(request, job_etag(job)):
+        return Response(status_code=304, headers={"ETag": job_etag(job)})
+    response = job_response(job)
+    response.status_code = 200
+    note_applied(response, prefer)
+    return response
+
+
+@router.get("/v1/jobs/{job_id}/events", response_model=EventPage, responses=problems(404))
+def list_events(
+    services: ServicesDep,
+    job_id: JobIdPath,
+    after: Annotated[int, Query(ge=0, le=2**31 - 1, description="Only events with a higher number.")] = 0,
+    limit: Annotated[int, Query(ge=1, le=1000, description="Most events on the page.")] = 200,
+) -> EventPage:
+    """List everything that happened to a job, oldest first."""
+    return services.jobs.events(job_id, after, limit)
+
+
+@router.post(
+    "/v1/jobs/{job_id}/cancel",
+    status_code=202,
+    response_model=None,
+    responses={
+        202: {"model": Job, "description": "The worker is asked to stop."},
+        200: {"model": Job, "description": "The job is canceled."},
+        **problems(404, 409),
+    },
+)
+def cancel_job(services: ServicesDep, job_id: JobIdPath) -> Response:
+    """Cancel a job; a second time changes nothing."""
+    return job_response(services.jobs.request_cancel(job_id))
+
+
+@router.post(
+    "/v1/jobs/{job_id}/rerun",
+    status_code=202,
+    response_model=None,
+    responses={**ACCEPTED, **_ENDED, **problems(404, 409)},
+)
+async def rerun_job(
+    services: ServicesDep,
+    principal: PrincipalDep,
+    job_id: JobIdPath,
+    key: IdempotencyKey = None,
+    prefer: PreferHeader = None,
+) -> Response:
+    """Run the spec of a job again, as a new job pinned to what its model reference means now."""
+    job = await run_in_threadpool(services.jobs.get, job_id)
+    return await answer_submission(services, Submission(job.spec, principal, key, rerun_of=job_id), prefer)
+
+
+async def answer_submission(services: Services, submission: Submission, prefer: str | None) -> Response:
+    """Submit a job, wait as long as the client prefers to, and say how it stands."""
+    job, is_new = await run_in_threadpool(submit, services, submission)
+    seen = await _wait_for_end(services, job.id, prefer)
+    response = job_response(seen)
+    note_applied(response, prefer)
+    if not is_new:
+        response.headers["Idempotent-Replayed"] = "true"
+    return response
+
+
+async def _wait_for_end(services: Services, job_id: str, prefer: str | None) -> Job:
+    wait_s = min(preferred_wait_s(prefer), services.settings.max_wait_s)
+    return await wait_until(lambda: services.jobs.get(job_id), lambda seen: seen.state.is_terminal, wait_s)

@@ -1,0 +1,139 @@
+"""Meshes: upload, facts and holes, the bytes again."""
+
+from http import HTTPStatus
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Header, Query, Request
+from starlette.concurrency import run_in_threadpool
+from starlette.responses import Response
+
+from jobkit.schema import Format, Mesh, MeshState
+from service.content import Content, content_response
+from service.formats import clean_filename, stated_format
+from service.problems import RETRY_AFTER_S
+from service.routes.common import (
+    BINARY,
+    CONDITIONAL,
+    MeshIdPath,
+    described_header,
+    json_response,
+    linked,
+    not_modified,
+    problems,
+)
+from service.services import Services, ServicesDep
+from service.strict import StrictRoute
+from service.submission import request_analysis
+from service.uploads import Upload, UploadRules, receive_upload
+from service.waiting import PreferHeader, note_applied, preferred_wait_s, wait_until
+
+router = APIRouter(tags=["meshes"], route_class=StrictRoute)
+MESH_PREFIX = "meshes"
+
+_UPLOAD_BODY: dict[str, Any] = {
+    "requestBody": {
+        "required": True,
+        "description": "The file itself, or a form with the file in its part `file`.",
+        "content": {
+            "application/octet-stream": {"schema": BINARY},
+            "multipart/form-data": {
+                "schema": {
+                    "type": "object",
+                    "properties": {"file": {**BINARY, "description": "The mesh."}},
+                    "required": ["file"],
+                    "additionalProperties": False,
+                }
+            },
+        },
+    }
+}
+_LINKS = {
+    "mesh": linked("get_mesh", "$response.body#/id", "mesh_id"),
+    "content": linked("get_mesh_content", "$response.body#/id", "mesh_id"),
+}
+_UPLOADED = {
+    "headers": {"Location": described_header("Path of the mesh.")},
+    "links": _LINKS,
+}
+FilenameQuery = Annotated[
+    str | None,
+    Query(max_length=255, description="Name of the file; its suffix tells the format.", examples=["face000.ply"]),
+]
+FormatQuery = Annotated[Format | None, Query(description="Format of the file; null: from its name or media type.")]
+WaitQuery = Annotated[
+    int, Query(ge=0, le=300, description="Let the answer wait up to so many seconds for the analysis.", examples=[10])
+]
+
+
+@router.post(
+    "/v1/meshes",
+    status_code=201,
+    response_model=Mesh,
+    responses={
+        201: {"description": "The mesh is new; a worker will analyse it.", **_UPLOADED},
+        200: {"model": Mesh, "description": "The same bytes were uploaded before.", **_UPLOADED},
+        **problems(400, 413, 415),
+    },
+    openapi_extra=_UPLOAD_BODY,
+)
+async def upload_mesh(
+    request: Request,
+    services: ServicesDep,
+    filename: FilenameQuery = None,
+    format: FormatQuery = None,  # noqa: A002 - the name of the query parameter
+    disposition: Annotated[
+        str | None, Header(alias="Content-Disposition", description="May name the file: `attachment; filename=…`.")
+    ] = None,
+) -> Response:
+    """Upload a mesh. The same bytes are the same mesh, however often they come."""
+    rules = UploadRules("file", frozenset(), MESH_PREFIX, services.settings.max_upload_mb << 20)
+    upload = await receive_upload(request, services.store, rules)
+    mesh, is_new = await run_in_threadpool(register_mesh, services, upload, filename, format)
+    return json_response(mesh, HTTPStatus.CREATED if is_new else HTTPStatus.OK, Location=mesh.links.self)
+
+
+@router.get("/v1/meshes/{mesh_id}", response_model=Mesh, responses=problems(404))
+async def get_mesh(
+    response: Response, services: ServicesDep, mesh_id: MeshIdPath, wait: WaitQuery = 0, prefer: PreferHeader = None
+) -> Mesh:
+    """Show facts and the hole list, once a worker has analysed the mesh."""
+    wait_s = min(max(float(wait), preferred_wait_s(prefer)), services.settings.max_wait_s)
+    mesh = await wait_until(
+        lambda: services.meshes.get(mesh_id), lambda seen: seen.state is not MeshState.ANALYSING, wait_s
+    )
+    note_applied(response, prefer)
+    if mesh.state is MeshState.ANALYSING:
+        response.headers["Retry-After"] = RETRY_AFTER_S
+    return mesh
+
+
+@router.get(
+    "/v1/meshes/{mesh_id}/content",
+    response_class=Response,
+    dependencies=CONDITIONAL,
+    responses={
+        200: {"description": "The whole file.", "content": {"application/octet-stream": {"schema": BINARY}}},
+        206: {"description": "The range.", "content": {"application/octet-stream": {"schema": BINARY}}},
+        **not_modified(),
+        **problems(404, 416),
+    },
+)
+def get_mesh_content(
+    request: Request,
+    services: ServicesDep,
+    mesh_id: MeshIdPath,
+) -> Response:
+    """Fetch the bytes, as uploaded."""
+    mesh = services.meshes.get(mesh_id)
+    source = services.meshes.source(mesh_id)
+    name = mesh.filename or f"mesh-{mesh_id[:12]}"
+    return content_response(request, services.store, Content(source.key, mesh_id, mesh.size_bytes, name))
+
+
+def register_mesh(services: Services, upload: Upload, filename: str | None, given: Format | None) -> tuple[Mesh, bool]:
+    """Note an upload and ask for its analysis; return the mesh, and whether it is new."""
+    name = clean_filename(filename or upload.filename)
+    mesh, is_new = services.meshes.add(upload.stored, name, stated_format(given, name, upload.content_type))
+    if mesh.state is MeshState.ANALYSING:
+        request_analysis(services, mesh.id)
+    return mesh, is_new

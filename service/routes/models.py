@@ -1,0 +1,141 @@
+"""Models: versions, cards, aliases, artifacts."""
+
+import json
+from http import HTTPStatus
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Path, Request
+from starlette.concurrency import run_in_threadpool
+from starlette.responses import Response
+
+from jobkit.model_header import Card
+from jobkit.registry import MODEL_PREFIX
+from jobkit.schema import Alias, AliasTarget, Model, ModelList, ModelVersion
+from jobkit.schema.base import NAME_PATTERN
+from service.content import OCTETS, Content, content_response
+from service.problems import invalid_request
+from service.routes.common import (
+    BINARY,
+    CONDITIONAL,
+    ModelNamePath,
+    VersionPath,
+    described_header,
+    json_response,
+    not_modified,
+    problems,
+)
+from service.services import ServicesDep
+from service.strict import StrictRoute
+from service.uploads import UploadRules, receive_upload
+
+router = APIRouter(tags=["models"], route_class=StrictRoute)
+
+_LOCATION = {"headers": {"Location": described_header("Path of the version.")}}
+_BODY: dict[str, Any] = {
+    "requestBody": {
+        "required": True,
+        "description": "A dictionary (safetensors, its card in its metadata) or a network (ONNX; its card in the part "
+        "`card`).",
+        "content": {
+            "application/octet-stream": {"schema": BINARY},
+            "multipart/form-data": {
+                "schema": {
+                    "type": "object",
+                    "properties": {
+                        "artifact": {**BINARY, "description": "The model file."},
+                        "card": {"type": "object", "description": "What is known about a network."},
+                    },
+                    "required": ["artifact"],
+                    "additionalProperties": False,
+                },
+                "encoding": {"card": {"contentType": "application/json"}},
+            },
+        },
+    }
+}
+AliasPath = Annotated[str, Path(pattern=NAME_PATTERN, description="An alias.", examples=["candidate"])]
+
+
+@router.get("/v1/models", response_model=ModelList, responses=problems())
+def list_models(services: ServicesDep) -> ModelList:
+    """List all models with their versions, and all aliases."""
+    return services.registry.list_all()
+
+
+@router.get("/v1/models/{name}", response_model=Model, responses=problems(404))
+def get_model(services: ServicesDep, name: ModelNamePath) -> Model:
+    """Show a model with all its versions."""
+    return services.registry.get(name)
+
+
+@router.get("/v1/models/{name}/versions/{version}", response_model=ModelVersion, responses=problems(404))
+def get_model_version(services: ServicesDep, name: ModelNamePath, version: VersionPath) -> ModelVersion:
+    """Show one version with its card."""
+    return services.registry.resolve(f"{name}@{version}")
+
+
+@router.get(
+    "/v1/models/{name}/versions/{version}/artifact",
+    response_class=Response,
+    dependencies=CONDITIONAL,
+    responses={
+        200: {"description": "The whole file.", "content": {OCTETS: {"schema": BINARY}}},
+        206: {"description": "The range.", "content": {OCTETS: {"schema": BINARY}}},
+        **not_modified(),
+        **problems(404, 416),
+    },
+)
+def get_model_artifact(
+    request: Request,
+    services: ServicesDep,
+    name: ModelNamePath,
+    version: VersionPath,
+) -> Response:
+    """Fetch the bytes of a version."""
+    artifact = services.registry.artifact(name, version)
+    filename = f"{name}@{version}.{artifact.format}"
+    return content_response(
+        request, services.store, Content(artifact.key, artifact.sha256, artifact.size_bytes, filename)
+    )
+
+
+@router.post(
+    "/v1/models/{name}/versions",
+    status_code=201,
+    response_model=ModelVersion,
+    responses={
+        201: {"description": "The version is new.", **_LOCATION},
+        200: {"model": ModelVersion, "description": "The same bytes are a version of this model already.", **_LOCATION},
+        **problems(400, 409, 413, 415),
+    },
+    openapi_extra=_BODY,
+)
+async def publish_model(request: Request, services: ServicesDep, name: ModelNamePath) -> Response:
+    """Publish a version. Versions never change; the same bytes are the same version."""
+    rules = UploadRules("artifact", frozenset({"card"}), MODEL_PREFIX, services.settings.max_upload_mb << 20)
+    upload = await receive_upload(request, services.store, rules)
+    card = _read_card(upload.fields.get("card"))
+    version, is_new = await run_in_threadpool(services.registry.publish, name, upload.stored, card)
+    return json_response(version, HTTPStatus.CREATED if is_new else HTTPStatus.OK, Location=version.links.self)
+
+
+@router.put("/v1/aliases/{alias}", response_model=Alias, responses=problems(400, 404, 409, 413, 415))
+def set_alias(services: ServicesDep, alias: AliasPath, target: AliasTarget) -> Alias:
+    """Point an alias to a version. Jobs that are already accepted keep the version they were pinned to."""
+    return services.registry.set_alias(alias, target.model)
+
+
+def _read_card(text: bytes | None) -> Card | None:
+    if text is None:
+        return None
+    try:
+        card = json.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise _card_error(f"not JSON: {error}") from error
+    if not isinstance(card, dict):
+        raise _card_error("not a JSON object")
+    return card
+
+
+def _card_error(message: str) -> Exception:
+    return invalid_request([{"loc": ("body", "card"), "msg": message, "type": "card_invalid"}])

@@ -1,0 +1,99 @@
+"""What a job leaves: the repaired mesh, the report, the picture."""
+
+from collections.abc import Mapping
+from typing import Any, Literal
+
+from fastapi import APIRouter, Request
+from starlette.responses import Response
+
+from jobkit.errors import JobHasNoResultError, JobNotFinishedError, ObjectNotFoundError
+from jobkit.schema import Job
+from jobkit.store import result_key
+from service.content import OCTETS, Content, content_response, repaired_name
+from service.routes.common import BINARY, CONDITIONAL, JobIdPath, not_modified, problems
+from service.services import Services, ServicesDep
+from service.strict import StrictRoute
+
+router = APIRouter(tags=["results"], route_class=StrictRoute)
+
+
+def _documented(media_type: str, schema: Mapping[str, Any]) -> dict[int | str, dict[str, Any]]:
+    content = {media_type: {"schema": schema}}
+    return {
+        200: {"description": "The whole file.", "content": content},
+        206: {"description": "The range.", "content": {media_type: {"schema": BINARY}}},
+        **not_modified(),
+        **problems(404, 409, 416),
+    }
+
+
+@router.get(
+    "/v1/jobs/{job_id}/result",
+    response_class=Response,
+    dependencies=CONDITIONAL,
+    responses=_documented(OCTETS, BINARY),
+)
+def get_result(
+    request: Request,
+    services: ServicesDep,
+    job_id: JobIdPath,
+) -> Response:
+    """Fetch the repaired mesh."""
+    return _file_response(request, services, job_id, "result", OCTETS)
+
+
+@router.get(
+    "/v1/jobs/{job_id}/report",
+    response_class=Response,
+    dependencies=CONDITIONAL,
+    responses=_documented("application/json", {"type": "object", "description": "One entry per hole, and more."}),
+)
+def get_report(
+    request: Request,
+    services: ServicesDep,
+    job_id: JobIdPath,
+) -> Response:
+    """Fetch the report: what was found, filled and left open, hole by hole, and why."""
+    return _file_response(request, services, job_id, "report", "application/json")
+
+
+@router.get(
+    "/v1/jobs/{job_id}/preview.png",
+    response_class=Response,
+    dependencies=CONDITIONAL,
+    responses=_documented("image/png", BINARY),
+)
+def get_preview(
+    request: Request,
+    services: ServicesDep,
+    job_id: JobIdPath,
+) -> Response:
+    """Fetch the picture: before, after, and what was invented."""
+    return _file_response(request, services, job_id, "preview", "image/png")
+
+
+def _file_response(
+    request: Request,
+    services: Services,
+    job_id: str,
+    role: Literal["result", "report", "preview"],
+    media_type: str,
+) -> Response:
+    job = services.jobs.get(job_id)
+    _require_result(job)
+    file = job.result.file(role) if job.result else None
+    if file is None:
+        raise ObjectNotFoundError(f"job {job_id} left no {role}")
+    mesh = services.meshes.get(job.mesh_id)
+    suffix = {"result": f".{job.result.format}" if job.result else "", "report": ".json", "preview": ".png"}[role]
+    name = repaired_name(mesh.filename, mesh.id, suffix)
+    key = result_key(job_id, job.attempt, file.name)
+    return content_response(request, services.store, Content(key, file.sha256, file.size_bytes, name, media_type))
+
+
+def _require_result(job: Job) -> None:
+    if not job.state.is_terminal:
+        raise JobNotFinishedError(f"job {job.id} is {job.state.value}; it has no result yet")
+    if not job.state.has_result:
+        reason = f": {job.error.message}" if job.error else ""
+        raise JobHasNoResultError(f"job {job.id} ended as {job.state.value}{reason}")
