@@ -93,15 +93,24 @@ def triangle_normals(scan: Scan, fill: Fill) -> FloatArray:
 
 
 def vertex_normals(scan: Scan, fill: Fill) -> FloatArray:
-    """Return unit normals of the new vertices, (n_new, 3): the mean over their triangles, weighted by area.
+    """Return unit normals of the new vertices, (n_new, 3)."""
+    return normals_at(scan, fill, len(scan.vertices) + np.arange(len(fill.vertices)))
 
-    All triangles around a new vertex are new, so the fill alone gives the whole normal.
+
+def normals_at(scan: Scan, fill: Fill, wanted: IntArray) -> FloatArray:
+    """Return unit normals of the new surface at some of its vertices, (len(wanted), 3).
+
+    They are the mean over the new triangles around a vertex, weighted by area. All triangles around a new vertex are
+    new, so its normal is the whole one; that of a rim vertex leaves the measured side out.
     """
-    corners = fill.triangles.ravel() - len(scan.vertices)
-    new = corners >= 0
-    areas = np.repeat(_area_vectors(scan, fill), 3, axis=0)[new]
-    sums = [np.bincount(corners[new], areas[:, axis], minlength=len(fill.vertices)) for axis in range(3)]
-    return _unit(np.stack(sums, axis=1, dtype=np.float64))
+    used, corner = np.unique(fill.triangles, return_inverse=True)
+    areas = np.repeat(_area_vectors(scan, fill), 3, axis=0)
+    sums = [np.bincount(corner.reshape(-1), areas[:, axis], minlength=len(used)) for axis in range(3)]
+    normals = _unit(np.stack(sums, axis=1, dtype=np.float64))
+    result = np.zeros((len(wanted), 3))
+    is_used = np.isin(wanted, used)
+    result[is_used] = normals[np.searchsorted(used, wanted[is_used])]
+    return result
 
 
 def _area_vectors(scan: Scan, fill: Fill) -> FloatArray:

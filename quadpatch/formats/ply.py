@@ -10,43 +10,31 @@ import numpy as np
 
 from quadpatch.errors import EmptyMeshError, FormatError, ReadError
 from quadpatch.formats.limits import ReadLimits, check_indices, check_triangles, check_vertices
+from quadpatch.formats.ply_appearance import ply_appearance
 from quadpatch.formats.ply_ascii import read_ascii_body
 from quadpatch.formats.ply_binary import read_binary_body
-from quadpatch.formats.ply_header import Element, Header, parse_header
+from quadpatch.formats.ply_file import INDEX_NAMES, PlyFile
+from quadpatch.formats.ply_header import Element, parse_header
 from quadpatch.formats.ply_rows import Rows
+from quadpatch.formats.ply_writer import append_to_ply
 from quadpatch.formats.polygons import triangulate_polygons, triangulate_strips
-from quadpatch.formats.scan import Scan
+from quadpatch.formats.scan import Appearance, Fill, Scan
 from quadpatch.types import IntArray, Triangles, Vertices
-
-INDEX_NAMES = ("vertex_indices", "vertex_index")
 
 
 @dataclass(frozen=True)
 class PlySource:
-    """A PLY file as it was read.
+    """A PLY file as it was read."""
 
-    Attributes
-    ----------
-    data : bytes
-        The whole file.
-    header : Header
-    rows : tuple of Rows
-        One for each element of the header.
-    carrier : str
-        Element that holds the triangles and takes further ones: `face` or `tristrips`, the later one in the file.
-    triangle_row : (m,) int64
-        Row of `face` that each triangle was cut from, -1 for triangles of strips.
-    """
+    file: PlyFile
 
-    data: bytes
-    header: Header
-    rows: tuple[Rows, ...]
-    carrier: str
-    triangle_row: IntArray
+    def append(self, scan: Scan, fill: Fill) -> bytes:
+        """Hand the file back with rows appended."""
+        return append_to_ply(scan, self.file, fill)
 
-    def element(self, name: str) -> Rows | None:
-        """Rows of an element, None where the file has none of that name."""
-        return next((rows for rows in self.rows if rows.element.name == name), None)
+    def appearance(self, scan: Scan) -> Appearance:
+        """Say what colours, normals and texture coordinates the file has."""
+        return ply_appearance(scan, self.file)
 
 
 def read_ply(data: bytes, limits: ReadLimits) -> Scan:
@@ -72,8 +60,8 @@ def read_ply(data: bytes, limits: ReadLimits) -> Scan:
     check_vertices(vertices)
     triangles, triangle_row, carrier = _triangles(by_name, vertices)
     check_triangles(triangles, limits)
-    source = PlySource(data, header, rows, carrier, triangle_row)
-    return Scan(vertices, triangles, "ply", source=source)
+    file = PlyFile(data, header, rows, carrier, triangle_row)
+    return Scan(vertices, triangles, "ply", source=PlySource(file))
 
 
 def _check_count(element: Element, limits: ReadLimits) -> None:

@@ -9,6 +9,7 @@ import numpy as np
 from quadpatch.errors import ReadError
 from quadpatch.formats.ply_header import Element, Header, value_range
 from quadpatch.formats.ply_rows import ListColumn, Rows, Values, check_room, list_range
+from quadpatch.formats.text import parse_numbers
 from quadpatch.types import FloatArray, IntArray
 
 
@@ -36,46 +37,6 @@ def read_ascii_body(data: bytes, header: Header) -> tuple[Rows, ...]:
         rows.append(read)
         at = read.stop
     return tuple(rows)
-
-
-def parse_numbers(text: bytes) -> FloatArray:
-    """Turn white-space separated decimal numbers into float64.
-
-    Parameters
-    ----------
-    text : bytes
-
-    Raises
-    ------
-    ReadError
-        Naming the first word that is no number.
-    """
-    if not text.strip():
-        return np.zeros(0)
-    try:
-        return np.fromstring(text, dtype=np.float64, sep=" ")
-    except (ValueError, DeprecationWarning) as error:
-        raise ReadError(f"{_first_bad_word(text)!r} is no number") from error
-
-
-def _first_bad_word(text: bytes) -> str:
-    for word in text.split():
-        try:
-            float(word)
-        except ValueError:
-            return word[:40].decode("latin-1")
-    return ""
-
-
-def word_ends(text: bytes) -> IntArray:
-    """Find the byte behind each white-space separated word, (n_words,) int64."""
-    raw = np.frombuffer(text, np.uint8)
-    # White space as bytes.split() sees it: tab, line feed, vertical tab, form feed, carriage return, space.
-    is_space = (raw == 32) | ((raw >= 9) & (raw <= 13))
-    ends = np.flatnonzero(~is_space[:-1] & is_space[1:]) + 1
-    if len(raw) and not is_space[-1]:
-        ends = np.append(ends, len(raw))
-    return ends.astype(np.int64)
 
 
 def _read_uniform(words: FloatArray, at: int, element: Element) -> Rows | None:

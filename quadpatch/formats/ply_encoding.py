@@ -7,6 +7,7 @@ import numpy as np
 
 from quadpatch.formats.ply_header import Element, Header, value_range
 from quadpatch.formats.ply_rows import Values
+from quadpatch.formats.text import to_words
 
 
 @dataclass(frozen=True)
@@ -65,11 +66,6 @@ def _encode_ascii(element: Element, table: Table, marks: list[str], line_end: by
     words += [to_words(table.marks[name]) for name in marks]
     end = line_end.decode()
     return "".join(" ".join(row) + end for row in zip(*words, strict=True)).encode()
-
-
-def to_words(values: Values) -> list[str]:
-    """Shortest decimal words that read back as the same numbers of the same type."""
-    return [str(value) for value in values.astype(str)]
 
 
 def fit(values: Values, code: str) -> Values:

@@ -12,8 +12,9 @@ from quadpatch.formats.attributes import (
     triangle_normals,
     vertex_normals,
 )
-from quadpatch.formats.ply import INDEX_NAMES, PlySource
+from quadpatch.formats.ply_appearance import wedge_texture
 from quadpatch.formats.ply_encoding import Table
+from quadpatch.formats.ply_file import INDEX_NAMES, PlyFile
 from quadpatch.formats.ply_header import Property, value_range
 from quadpatch.formats.ply_rows import ListColumn, Rows, Values
 from quadpatch.formats.scan import Fill, Scan
@@ -27,13 +28,13 @@ _COLOUR = re.compile(r"((diffuse|ambient|specular)_)?(red|green|blue|alpha|gray|
 _NORMALS = ("nx", "ny", "nz")
 
 
-def new_vertex_rows(scan: Scan, source: PlySource, fill: Fill) -> list[Table]:
+def new_vertex_rows(scan: Scan, file: PlyFile, fill: Fill) -> list[Table]:
     """Rows of the new vertices, as one table.
 
     Numbers that vary smoothly are spread from the rim, normals are those of the new surface, and integers that are
     no colours, which may be flags or labels, are those of the nearest rim vertex.
     """
-    rows = source.element("vertex")
+    rows = file.element("vertex")
     assert rows is not None  # read_ply refuses a file without vertices
     marks = _marks(fill.vertex_hole, fill.vertex_confidence)
     given: dict[str, Values] = {name: fill.vertices[:, axis] for axis, name in enumerate("xyz")}
@@ -78,20 +79,20 @@ def _marks(hole: IntArray, confidence: FloatArray) -> dict[str, Values]:
     return {"filled": filled, "hole_id": hole.astype(np.int32), "confidence": confidence.astype(np.float32)}
 
 
-def new_carrier_rows(scan: Scan, source: PlySource, fill: Fill) -> list[Table]:
+def new_carrier_rows(scan: Scan, file: PlyFile, fill: Fill) -> list[Table]:
     """Rows of the new triangles: one table for `face`, one for each hole for `tristrips`."""
-    rows = source.element(source.carrier)
+    rows = file.element(file.carrier)
     assert rows is not None  # read_ply refuses a file without triangles
     index = rows.element.find(*INDEX_NAMES) or 0
     _check_index_type(rows.element.properties[index], len(scan.vertices) + len(fill.vertices))
     name = rows.element.properties[index].name
-    if source.carrier == "tristrips":
+    if file.carrier == "tristrips":
         return [_strip_row(rows, name, fill, hole) for hole in np.unique(fill.triangle_hole)]
     marks = _marks(fill.triangle_hole, fill.triangle_confidence)
     normals = triangle_normals(scan, fill)
     given: dict[str, Values] = {axis: normals[:, i] for i, axis in enumerate(_NORMALS)}
-    given |= marks | {name: fill.triangles} | _texture(scan, source, rows, fill)
-    like = np.maximum(source.triangle_row[nearest_rim_triangle(scan, fill)], 0)
+    given |= marks | {name: fill.triangles} | _texture(scan, file, rows, fill)
+    like = np.maximum(file.triangle_row[nearest_rim_triangle(scan, fill)], 0)
     columns = [_column(rows, i, given, like) for i in range(len(rows.columns))]
     return [Table(len(fill.triangles), tuple(columns), marks)]
 
@@ -116,16 +117,10 @@ def _strip_row(rows: Rows, name: str, fill: Fill, hole: int) -> Table:
     return Table(1, tuple(columns), marks)
 
 
-def _texture(scan: Scan, source: PlySource, rows: Rows, fill: Fill) -> dict[str, Values]:
+def _texture(scan: Scan, file: PlyFile, rows: Rows, fill: Fill) -> dict[str, Values]:
     """Per-wedge texture coordinates, as MeshLab writes them: six numbers a triangle."""
-    texture = rows.list_column("texcoord")
-    if texture is None:
+    coordinates = wedge_texture(rows, file.triangle_row)
+    if coordinates is None:
         return {}
-    row = source.triangle_row
-    # Polygons and faces without six numbers count as untextured.
-    wedged = (row >= 0) & (texture.counts[row] == 6)
-    coordinates = np.full((len(scan.triangles), 3, 2), np.nan)
-    places = texture.starts[row[wedged]][:, np.newaxis] + np.arange(6)
-    coordinates[wedged] = texture.values[places].reshape(-1, 3, 2)
     spread = spread_over_corners(scan, fill, coordinates)
     return {"texcoord": np.nan_to_num(spread.reshape(-1, 6))}

@@ -20,24 +20,24 @@ know no `face` element beside them, and the old row, often one single strip over
 
 import numpy as np
 
-from quadpatch.formats.ply import PlySource
-from quadpatch.formats.ply_ascii import word_ends
 from quadpatch.formats.ply_encoding import encode_rows, insert_behind
+from quadpatch.formats.ply_file import PlyFile
 from quadpatch.formats.ply_header import rewrite_header
 from quadpatch.formats.ply_new_rows import MARKS, new_carrier_rows, new_vertex_rows
 from quadpatch.formats.ply_rows import Rows
 from quadpatch.formats.scan import Fill, Scan
+from quadpatch.formats.text import word_ends
 
 
-def append_to_ply(scan: Scan, source: PlySource, fill: Fill) -> bytes:
+def append_to_ply(scan: Scan, file: PlyFile, fill: Fill) -> bytes:
     """Hand a PLY file back with a fill appended.
 
     Parameters
     ----------
     scan : Scan
         As `read_ply` made it.
-    source : PlySource
-        The scan's source.
+    file : PlyFile
+        What it was read from.
     fill : Fill
 
     Raises
@@ -45,45 +45,45 @@ def append_to_ply(scan: Scan, source: PlySource, fill: Fill) -> bytes:
     FormatError
         If the file's index type can't name the new vertices.
     """
-    new = {"vertex": new_vertex_rows(scan, source, fill), source.carrier: new_carrier_rows(scan, source, fill)}
-    added = {rows.element.name: _missing_marks(rows) for rows in source.rows if rows.element.name in new}
+    new = {"vertex": new_vertex_rows(scan, file, fill), file.carrier: new_carrier_rows(scan, file, fill)}
+    added = {rows.element.name: _missing_marks(rows) for rows in file.rows if rows.element.name in new}
     counts = {}
     tails: dict[str, bytes] = {}
-    for rows in source.rows:
+    for rows in file.rows:
         name = rows.element.name
         if name in new:
             tables = new[name]
             counts[name] = rows.element.count + sum(table.count for table in tables)
             tails[name] = b"".join(
-                encode_rows(rows.element, table, [mark for _, mark in added[name]], source.header) for table in tables
+                encode_rows(rows.element, table, [mark for _, mark in added[name]], file.header) for table in tables
             )
-    head = rewrite_header(source.header, counts, added)
-    pieces = _ascii_pieces if source.header.is_ascii else _binary_pieces
-    return b"".join([head, *pieces(source, added, tails)])
+    head = rewrite_header(file.header, counts, added)
+    pieces = _ascii_pieces if file.header.is_ascii else _binary_pieces
+    return b"".join([head, *pieces(file, added, tails)])
 
 
 def _missing_marks(rows: Rows) -> list[tuple[str, str]]:
     return [(word, name) for word, _, name, _ in MARKS if rows.element.find(name) is None]
 
 
-def _suffix(source: PlySource, added: list[tuple[str, str]]) -> bytes:
+def _suffix(file: PlyFile, added: list[tuple[str, str]]) -> bytes:
     """Encode the marks of a measured row."""
     names = [name for _, name in added]
     values = [(code, value) for _, code, name, value in MARKS if name in names]
-    if source.header.is_ascii:
+    if file.header.is_ascii:
         return "".join(f" {value}" for _, value in values).encode()
-    return b"".join(np.array(value, dtype=source.header.order + code).tobytes() for code, value in values)
+    return b"".join(np.array(value, dtype=file.header.order + code).tobytes() for code, value in values)
 
 
 def _binary_pieces(
-    source: PlySource, added: dict[str, list[tuple[str, str]]], tails: dict[str, bytes]
+    file: PlyFile, added: dict[str, list[tuple[str, str]]], tails: dict[str, bytes]
 ) -> list[bytes | memoryview]:
     pieces: list[bytes | memoryview] = []
-    whole = memoryview(source.data)
-    at = source.header.size
-    for rows in source.rows:
+    whole = memoryview(file.data)
+    at = file.header.size
+    for rows in file.rows:
         old = whole[rows.start : rows.stop]
-        suffix = _suffix(source, added.get(rows.element.name, []))
+        suffix = _suffix(file, added.get(rows.element.name, []))
         pieces.append(insert_behind(old, rows.row_ends() - rows.start, suffix) if suffix else old)
         pieces.append(tails.get(rows.element.name, b""))
         at = rows.stop
@@ -91,21 +91,21 @@ def _binary_pieces(
 
 
 def _ascii_pieces(
-    source: PlySource, added: dict[str, list[tuple[str, str]]], tails: dict[str, bytes]
+    file: PlyFile, added: dict[str, list[tuple[str, str]]], tails: dict[str, bytes]
 ) -> list[bytes | memoryview]:
     pieces: list[bytes | memoryview] = []
-    body = source.data[source.header.size :]
+    body = file.data[file.header.size :]
     ends = word_ends(body)
     at = 0
-    for rows in source.rows:
+    for rows in file.rows:
         stop = _line_stop(body, int(ends[rows.stop - 1])) if rows.stop > rows.start else at
         old = memoryview(body)[at:stop]
-        suffix = _suffix(source, added.get(rows.element.name, []))
+        suffix = _suffix(file, added.get(rows.element.name, []))
         row_ends = ends[rows.row_ends() - 1] - at if rows.stop > rows.start else ends[:0]
         pieces.append(insert_behind(old, row_ends, suffix) if suffix else old)
         tail = tails.get(rows.element.name, b"")
         if tail and len(old) and bytes(old[-1:]) not in (b"\n", b"\r"):
-            pieces.append(source.header.line_end)
+            pieces.append(file.header.line_end)
         pieces.append(tail)
         at = stop
     return [*pieces, body[at:]]

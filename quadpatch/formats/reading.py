@@ -1,15 +1,23 @@
 """Reading a mesh file of any known format.
 
 The format is told from the content, and from the suffix of the name only where the content leaves it open: a PLY
-called `.stl` is a PLY.
+called `.stl` is a PLY. Whatever a file holds, reading it gives a `Scan` or a `MeshError`.
 """
 
 from pathlib import Path
 
-from quadpatch.errors import FormatError, ReadError
+from quadpatch.errors import ReadError
+from quadpatch.formats.detection import detect_format
 from quadpatch.formats.limits import ReadLimits
+from quadpatch.formats.obj import read_obj
+from quadpatch.formats.off import read_off
 from quadpatch.formats.ply import read_ply
 from quadpatch.formats.scan import Scan
+from quadpatch.formats.stl import read_stl
+
+__all__ = ["ReadLimits", "read_scan"]
+
+_READERS = {"ply": read_ply, "stl": read_stl, "obj": read_obj, "off": read_off}
 
 
 def read_scan(path: Path, limits: ReadLimits | None = None) -> Scan:
@@ -19,6 +27,11 @@ def read_scan(path: Path, limits: ReadLimits | None = None) -> Scan:
     ----------
     path : Path
     limits : ReadLimits, optional
+
+    Returns
+    -------
+    Scan
+        Not empty, with finite coordinates and faces that name vertices that are there.
 
     Raises
     ------
@@ -32,6 +45,4 @@ def read_scan(path: Path, limits: ReadLimits | None = None) -> Scan:
         data = path.read_bytes()
     except OSError as error:
         raise ReadError(f"{path.name} can't be read: {error.strerror}") from error
-    if data[:3] == b"ply":
-        return read_ply(data, limits)
-    raise FormatError(f"{path.name}: the format is not known")
+    return _READERS[detect_format(data, path.suffix.lower().lstrip("."))](data, limits)

@@ -6,8 +6,38 @@ the file and new vertices by the indices after them.
 """
 
 from dataclasses import dataclass, field
+from typing import Protocol
 
 from quadpatch.types import FloatArray, IntArray, Triangles, Vertices
+
+
+@dataclass(frozen=True)
+class Appearance:
+    """How the measured surface looks, in the terms that all formats share.
+
+    Attributes
+    ----------
+    colours : (n, 4) float64 or None
+        Red, green, blue, alpha of every vertex, 0..255; NaN where a vertex has none.
+    normals : (n, 3) float64 or None
+        Of every vertex.
+    texture : (m, 3, 2) float64 or None
+        Texture coordinates of every triangle's corners, v upwards; NaN where a corner has none.
+    """
+
+    colours: FloatArray | None = None
+    normals: FloatArray | None = None
+    texture: FloatArray | None = None
+
+
+class Source(Protocol):
+    """What a reader leaves for the writer of its format."""
+
+    def append(self, scan: "Scan", fill: "Fill") -> bytes:
+        """Hand the file back with a fill appended."""
+
+    def appearance(self, scan: "Scan") -> Appearance:
+        """Say how the surface looks, for writing it in another format."""
 
 
 @dataclass(frozen=True)
@@ -24,15 +54,15 @@ class Scan:
         `ply`, `stl`, `obj`, `off`, `glb`, `gltf` or `3mf`.
     unit : str or None
         Length unit that the file states (`millimeter`, `meter`, ...), None where it states none.
-    source : object
-        What the writer of the format needs; private to `quadpatch.formats`.
+    source : Source or None
+        The file as it was, private to `quadpatch.formats`; None for a mesh that came from no file.
     """
 
     vertices: Vertices
     triangles: Triangles
     format: str
     unit: str | None = None
-    source: object = field(default=None, repr=False)
+    source: Source | None = field(default=None, repr=False)
 
 
 @dataclass(frozen=True)

@@ -1,11 +1,13 @@
-"""Handing a scan back with a fill appended."""
+"""Writing a repaired scan: in its own format as the file that came in with the fill appended, else converted."""
 
 from pathlib import Path
 
 from quadpatch.errors import FormatError
-from quadpatch.formats.ply import PlySource
-from quadpatch.formats.ply_writer import append_to_ply
+from quadpatch.formats.conversion import encode_as_obj, encode_as_off, encode_as_ply, encode_as_stl
 from quadpatch.formats.scan import Fill, Scan
+from quadpatch.formats.whole import assemble
+
+_ENCODERS = {"ply": encode_as_ply, "stl": encode_as_stl, "obj": encode_as_obj, "off": encode_as_off}
 
 
 def write_scan(path: Path, scan: Scan, fill: Fill) -> None:
@@ -14,10 +16,21 @@ def write_scan(path: Path, scan: Scan, fill: Fill) -> None:
     Parameters
     ----------
     path : Path
+        Its suffix says the format. The scan's own format gives the file that was read, with the fill behind it and
+        everything else as it was; another one is a conversion.
     scan : Scan
     fill : Fill
+
+    Raises
+    ------
+    FormatError
+        If the suffix is that of no format that is written, or the format can't hold the mesh.
     """
-    if path.suffix.lower() == ".ply" and isinstance(scan.source, PlySource):
-        path.write_bytes(append_to_ply(scan, scan.source, fill))
-        return
-    raise FormatError(f"{path.suffix} can't be written from {scan.format}")
+    suffix = path.suffix.lower().lstrip(".")
+    if suffix == scan.format and scan.source is not None:
+        data = scan.source.append(scan, fill)
+    elif suffix in _ENCODERS:
+        data = _ENCODERS[suffix](assemble(scan, fill))
+    else:
+        raise FormatError(f"files with the suffix {path.suffix!r} are not written, only {', '.join(_ENCODERS)}")
+    path.write_bytes(data)

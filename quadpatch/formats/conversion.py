@@ -1,0 +1,112 @@
+"""Writing a mesh in another format than the one it came in: PLY, STL, OBJ and OFF.
+
+Coordinates are exact in PLY (as float64 where float32 would round them), OBJ and OFF; STL knows float32 only.
+Colours, normals and texture coordinates go along where the format has a place for them.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from quadpatch.formats.obj_source import GROUP, face_lines
+from quadpatch.formats.stl import encode_stl
+from quadpatch.formats.text import to_lines
+from quadpatch.formats.whole import Whole
+from quadpatch.types import FloatArray, IntArray
+
+
+class _Column(NamedTuple):
+    """A PLY property: its words in the header, and (n,) numbers or (n, k) lists in the type to be written."""
+
+    words: str
+    values: NDArray[Any]
+
+
+def encode_as_ply(whole: Whole) -> bytes:
+    """Encode as binary little-endian PLY with the marks `filled`, `hole_id` and `confidence`."""
+    looks = whole.appearance
+    single = whole.vertices.astype("<f4")
+    exact = bool((single == whole.vertices).all())
+    columns = _columns("float" if exact else "double", "x y z", single if exact else whole.vertices.astype("<f8"))
+    if looks.normals is not None:
+        columns += _columns("float", "nx ny nz", looks.normals.astype("<f4"))
+    if looks.colours is not None:
+        columns += _columns("uchar", "red green blue alpha", np.rint(looks.colours).astype("u1"))
+    columns += _marks(whole.vertex_hole, whole.vertex_confidence)
+    faces = [_Column("list uchar int vertex_indices", whole.triangles.astype("<i4"))]
+    if looks.texture is not None:
+        flat = np.nan_to_num(looks.texture).reshape(-1, 6)
+        faces.append(_Column("list uchar float texcoord", flat.astype("<f4")))
+    faces += _marks(whole.triangle_hole, whole.triangle_confidence)
+    lines = ["ply", "format binary_little_endian 1.0", *([f"comment unit {whole.unit}"] if whole.unit else [])]
+    for name, element in (("vertex", columns), ("face", faces)):
+        lines.append(f"element {name} {len(element[0].values)}")
+        lines += [f"property {column.words}" for column in element]
+    return "\n".join([*lines, "end_header", ""]).encode() + _rows(columns) + _rows(faces)
+
+
+def _columns(word: str, names: str, table: NDArray[Any]) -> list[_Column]:
+    return [_Column(f"{word} {name}", column) for name, column in zip(names.split(), table.T, strict=True)]
+
+
+def _marks(hole: IntArray, confidence: FloatArray) -> list[_Column]:
+    return [
+        _Column("uchar filled", (hole >= 0).astype("u1")),
+        _Column("int hole_id", hole.astype("<i4")),
+        _Column("float confidence", confidence.astype("<f4")),
+    ]
+
+
+def _rows(columns: list[_Column]) -> bytes:
+    fields: list[Any] = []
+    for number, (_, values) in enumerate(columns):
+        if values.ndim == 2:
+            fields.append((f"n{number}", "u1"))
+        fields.append((f"p{number}", values.dtype, values.shape[1:]))
+    rows = np.zeros(len(columns[0].values), np.dtype(fields))
+    for number, (_, values) in enumerate(columns):
+        if values.ndim == 2:
+            rows[f"n{number}"] = values.shape[1]
+        rows[f"p{number}"] = values
+    return rows.tobytes()
+
+
+def encode_as_stl(whole: Whole) -> bytes:
+    """Encode as binary STL; invented facets have the attribute 1."""
+    return encode_stl(whole.vertices[whole.triangles], whole.facet_normals, whole.invented)
+
+
+def encode_as_obj(whole: Whole) -> bytes:
+    """Encode as OBJ; invented faces stand in a group of their own."""
+    looks = whole.appearance
+    vertices = whole.vertices
+    if looks.colours is not None:
+        vertices = np.concatenate([vertices, np.round(looks.colours[:, :3] / 255, 6)], axis=1)
+    text = [to_lines("v", vertices, "\n")]
+    texture = np.zeros(whole.triangles.shape, dtype=np.int64)
+    if looks.texture is not None:
+        textured = np.isfinite(looks.texture).all(axis=(1, 2))
+        points, index = np.unique(looks.texture[textured].reshape(-1, 2), axis=0, return_inverse=True)
+        texture[textured] = 1 + index.reshape(-1, 3)
+        text.append(to_lines("vt", points, "\n"))
+    normal = np.zeros_like(texture)
+    if looks.normals is not None:
+        normal = whole.triangles + 1
+        text.append(to_lines("vn", looks.normals, "\n"))
+    lines = face_lines(whole.triangles + 1, texture, normal, "\n")
+    text += [*lines[: whole.n_measured], f"g {GROUP}\n", *lines[whole.n_measured :]]
+    return "".join(text).encode()
+
+
+def encode_as_off(whole: Whole) -> bytes:
+    """Encode as OFF, or as COFF where there are colours."""
+    colours = whole.appearance.colours
+    counts = f"{len(whole.vertices)} {len(whole.triangles)} 0\n"
+    faces = to_lines("3", whole.triangles, "\n")
+    if colours is None:
+        return ("OFF\n" + counts + to_lines("", whole.vertices, "\n") + faces).encode()
+    positions = to_lines("", whole.vertices, "\n").splitlines()
+    tints = to_lines("", np.rint(colours).astype(np.int64), "\n").splitlines()
+    rows = "".join(f"{position} {tint}\n" for position, tint in zip(positions, tints, strict=True))
+    return ("COFF\n" + counts + rows + faces).encode()

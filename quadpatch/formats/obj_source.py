@@ -1,0 +1,150 @@
+"""An OBJ file as it was read, and its way back with lines appended.
+
+All lines stay. Behind them come the new `v`, `vt` and `vn` lines and a group `quadpatch_filled` with the new faces,
+which use the material of the nearest measured face. New vertices have colours where the measured ones do; new faces
+have texture coordinates and normals where the faces around their hole do.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from quadpatch.formats.attributes import nearest_rim_triangle, normals_at, spread_over_vertices
+from quadpatch.formats.scan import Appearance, Fill, Scan
+from quadpatch.formats.text import decode_text, line_end_of, to_lines
+from quadpatch.formats.texture import spread_over_corners
+from quadpatch.types import FloatArray, IntArray
+
+GROUP = "quadpatch_filled"
+
+
+@dataclass(frozen=True)
+class ObjSource:
+    """An OBJ file as it was read.
+
+    Attributes
+    ----------
+    data : bytes
+        The whole file.
+    codec : str
+        Encoding of its text.
+    colours : (n, 3) float64 or None
+        Behind the coordinates of the vertices, NaN where a vertex has none.
+    texture : (n_vt, 2) float64
+    normals : (n_vn, 3) float64
+    corner_texture, corner_normal : (m, 3) int64
+        Zero-based, -1 for none.
+    materials : list of bytes
+        Names, one for each `usemtl` line.
+    triangle_material : (m,) int64
+        Into `materials`, -1 for none.
+    """
+
+    data: bytes
+    codec: str
+    colours: FloatArray | None
+    texture: FloatArray
+    normals: FloatArray
+    corner_texture: IntArray
+    corner_normal: IntArray
+    materials: list[bytes]
+    triangle_material: IntArray
+
+    def appearance(self, scan: Scan) -> Appearance:
+        """Colours, normals of the first corner that names each vertex, and texture coordinates."""
+        colours = None
+        if self.colours is not None:
+            # Fractions of 1, or whole numbers up to 255.
+            scale = 255.0 if np.nanmax(self.colours) <= 1 else 1.0
+            colours = np.concatenate([self.colours * scale, np.full((len(self.colours), 1), 255.0)], axis=1)
+        texture = self._texture_of_corners() if len(self.texture) else None
+        normals = None
+        if (self.corner_normal >= 0).any():
+            first = self._first_normal(scan, len(scan.vertices))
+            normals = np.where(first[:, np.newaxis] >= 0, self.normals[first], 0.0)
+        return Appearance(colours, normals, texture)
+
+    def _texture_of_corners(self) -> FloatArray:
+        has = self.corner_texture >= 0
+        texture = np.full((*self.corner_texture.shape, 2), np.nan)
+        texture[has] = np.nan_to_num(self.texture)[self.corner_texture[has]]
+        return texture
+
+    def _first_normal(self, scan: Scan, n_vertices: int) -> IntArray:
+        """Return the normal index of the first corner that names each vertex, -1 for none."""
+        first = np.full(n_vertices, -1, dtype=np.int64)
+        vertex, normal = scan.triangles.ravel()[::-1], self.corner_normal.ravel()[::-1]
+        first[vertex[normal >= 0]] = normal[normal >= 0]
+        return first
+
+    def append(self, scan: Scan, fill: Fill) -> bytes:
+        """Append lines to the file."""
+        line_end = line_end_of(decode_text(self.data)[0])
+        texture_lines, texture = self._texture(scan, fill, line_end)
+        normal_lines, normal = self._normals(scan, fill, line_end)
+        faces = face_lines(fill.triangles + 1, texture, normal, line_end)
+        materials = [self.materials[i] if i >= 0 else b"" for i in self._materials(scan, fill)]
+        text = [self._vertex_lines(fill, line_end).encode(), texture_lines.encode(), normal_lines.encode()]
+        text.append(f"g {GROUP}{line_end}".encode())
+        current = b""
+        for face, material in zip(faces, materials, strict=True):
+            if material not in (current, b""):
+                text.append(b"usemtl " + material + line_end.encode())
+                current = material
+            text.append(face.encode())
+        return self._behind(b"".join(text), line_end)
+
+    def _behind(self, text: bytes, line_end: str) -> bytes:
+        encoded_end = line_end.encode(self.codec)
+        gap = b"" if self.data.endswith(encoded_end) or not self.data else encoded_end
+        # Names in an older 8-bit encoding pass through as they are where the file is no UTF-16.
+        encoded = text if self.codec == "utf-8" else text.decode().encode(self.codec)
+        return self.data + gap + encoded
+
+    def _materials(self, scan: Scan, fill: Fill) -> IntArray:
+        return self.triangle_material[nearest_rim_triangle(scan, fill)]
+
+    def _vertex_lines(self, fill: Fill, line_end: str) -> str:
+        if self.colours is None:
+            return to_lines("v", fill.vertices, line_end)
+        colours = np.round(spread_over_vertices(fill, self.colours), 6)
+        return to_lines("v", np.concatenate([fill.vertices, colours], axis=1), line_end)
+
+    def _texture(self, scan: Scan, fill: Fill, line_end: str) -> tuple[str, IntArray]:
+        """Lines `vt`, and the one-based index of each new corner, 0 for none."""
+        index = np.zeros(fill.triangles.shape, dtype=np.int64)
+        if not (self.corner_texture >= 0).any():
+            return "", index
+        spread = spread_over_corners(scan, fill, self._texture_of_corners())
+        has = np.asarray(np.isfinite(spread).all(axis=2))
+        keys = np.column_stack([fill.triangles[has].astype(np.float64), spread[has]])
+        points, inverse = np.unique(keys, axis=0, return_inverse=True)
+        index[has] = len(self.texture) + 1 + inverse.reshape(-1)
+        # A face has texture at all corners or at none.
+        index[~has.all(axis=1)] = 0
+        return to_lines("vt", np.round(points[:, 1:], 9), line_end), index
+
+    def _normals(self, scan: Scan, fill: Fill, line_end: str) -> tuple[str, IntArray]:
+        """Lines `vn`, and the one-based index of each new corner, 0 for none; rim vertices keep their normal."""
+        if not (self.corner_normal >= 0).any():
+            return "", np.zeros(fill.triangles.shape, dtype=np.int64)
+        first = self._first_normal(scan, len(scan.vertices) + len(fill.vertices))
+        used = np.unique(fill.triangles)
+        bare = used[first[used] < 0]
+        first[bare] = len(self.normals) + np.arange(len(bare))
+        return to_lines("vn", np.round(normals_at(scan, fill, bare), 9), line_end), first[fill.triangles] + 1
+
+
+def face_lines(vertex: IntArray, texture: IntArray, normal: IntArray, line_end: str) -> list[str]:
+    """Lines `f` of one-based indices; 0 leaves an index out."""
+    lines = []
+    for corners in zip(vertex.tolist(), texture.tolist(), normal.tolist(), strict=True):
+        words = [_corner(*corner) for corner in zip(*corners, strict=True)]
+        lines.append("f " + " ".join(words) + line_end)
+    return lines
+
+
+def _corner(vertex: int, texture: int, normal: int) -> str:
+    if normal:
+        return f"{vertex}/{texture or ''}/{normal}"
+    return f"{vertex}/{texture}" if texture else str(vertex)

@@ -1,0 +1,169 @@
+"""STL, binary and ascii: reading, and handing back with facets appended.
+
+Every facet has three vertices of its own, so a scan has three vertices for each triangle; `quadpatch.mesh.weld` joins
+them. Binary facets that were invented have the attribute byte count 1 (measured ones keep theirs); it is no colour in
+the conventions of VisCAM and SolidView, which mark colours by bit 15. Ascii facets have no place for a mark: the
+invented ones are those behind the measured ones, inside the last solid, because many readers stop at the first
+`endsolid`.
+"""
+
+import re
+from dataclasses import dataclass
+
+import numpy as np
+
+from quadpatch.errors import EmptyMeshError, ReadError
+from quadpatch.formats.attributes import joined_vertices, triangle_normals
+from quadpatch.formats.limits import ReadLimits, check_vertices
+from quadpatch.formats.scan import Appearance, Fill, Scan
+from quadpatch.formats.text import line_end_of, parse_numbers, to_words
+from quadpatch.types import BoolArray, FloatArray
+
+_HEADER_SIZE = 84
+_FACET = np.dtype([("normal", "<f4", (3,)), ("vertices", "<f4", (3, 3)), ("attribute", "<u2")])
+_VERTEX_LINE = re.compile(rb"(?<![^\s])vertex[ \t]+([^\s]+[ \t]+[^\s]+[ \t]+[^\s]+)", re.IGNORECASE)
+_WORDS = re.compile(rb"(?<![^\s])(endfacet|facet|endloop)(?![^\s])", re.IGNORECASE)
+_END_SOLID = re.compile(rb"^[ \t]*endsolid(?![^\s])", re.IGNORECASE | re.MULTILINE)
+
+
+@dataclass(frozen=True)
+class BinaryStl:
+    """A binary STL file as it was read."""
+
+    data: bytes
+    n_facets: int
+
+    def append(self, scan: Scan, fill: Fill) -> bytes:
+        """Raise the count and append facets; all other bytes stay."""
+        stop = _HEADER_SIZE + _FACET.itemsize * self.n_facets
+        count = np.array(self.n_facets + len(fill.triangles), dtype="<u4").tobytes()
+        corners = joined_vertices(scan, fill)[fill.triangles]
+        new = encode_facets(corners, triangle_normals(scan, fill), np.ones(len(fill.triangles), dtype=bool))
+        return self.data[: _HEADER_SIZE - 4] + count + self.data[_HEADER_SIZE:stop] + new + self.data[stop:]
+
+    def appearance(self, scan: Scan) -> Appearance:
+        """Nothing: the colour conventions of STL differ from program to program."""
+        return Appearance()
+
+
+@dataclass(frozen=True)
+class AsciiStl:
+    """An ascii STL file as it was read."""
+
+    data: bytes
+
+    def append(self, scan: Scan, fill: Fill) -> bytes:
+        """Insert facets in front of the last `endsolid`."""
+        line_end = line_end_of(self.data)
+        ends = list(_END_SOLID.finditer(self.data))
+        at = ends[-1].start() if ends else len(self.data)
+        head = self.data[:at]
+        if not head.endswith((b"\n", b"\r")):
+            head += line_end.encode()
+        return head + _ascii_facets(scan, fill, line_end).encode() + self.data[at:]
+
+    def appearance(self, scan: Scan) -> Appearance:
+        """Nothing: ascii STL knows no colours."""
+        return Appearance()
+
+
+def is_binary_stl(data: bytes) -> bool:
+    """Whether the count in an STL header fits the size of the file exactly.
+
+    The word `solid` at the beginning says nothing: binary files have it as often as ascii ones.
+    """
+    return len(data) >= _HEADER_SIZE and len(data) == _HEADER_SIZE + _FACET.itemsize * _count(data)
+
+
+def _count(data: bytes) -> int:
+    return int.from_bytes(data[_HEADER_SIZE - 4 : _HEADER_SIZE], "little")
+
+
+def read_stl(data: bytes, limits: ReadLimits) -> Scan:
+    """Read an STL file, binary or ascii.
+
+    Parameters
+    ----------
+    data : bytes
+        The whole file.
+    limits : ReadLimits
+
+    Raises
+    ------
+    MeshError
+        ReadError, EmptyMeshError, NotFiniteError or TooLargeError.
+    """
+    if not is_binary_stl(data) and data.lstrip()[:5].lower() == b"solid":
+        return _read_ascii(data, limits)
+    return _read_binary(data, limits)
+
+
+def _read_binary(data: bytes, limits: ReadLimits) -> Scan:
+    if len(data) < _HEADER_SIZE:
+        raise ReadError(f"an STL file has a header of {_HEADER_SIZE} bytes; this file has {len(data)}")
+    n_facets = _count(data)
+    room = (len(data) - _HEADER_SIZE) // _FACET.itemsize
+    if n_facets > room:
+        raise ReadError(f"the STL header declares {n_facets:,} facets; the file has room for {room:,}")
+    _check_counts(n_facets, limits)
+    facets = np.frombuffer(data, _FACET, n_facets, _HEADER_SIZE)
+    vertices = facets["vertices"].reshape(-1, 3).astype(np.float64)
+    return _scan(vertices, BinaryStl(data, n_facets))
+
+
+def _check_counts(n_facets: int, limits: ReadLimits) -> None:
+    if n_facets == 0:
+        raise EmptyMeshError("the STL file has no facet")
+    limits.check_triangles(n_facets)
+    limits.check_vertices(3 * n_facets)
+
+
+def _scan(vertices: FloatArray, source: BinaryStl | AsciiStl) -> Scan:
+    check_vertices(vertices)
+    return Scan(vertices, np.arange(len(vertices), dtype=np.int64).reshape(-1, 3), "stl", source=source)
+
+
+def _read_ascii(data: bytes, limits: ReadLimits) -> Scan:
+    lines = _VERTEX_LINE.findall(data)
+    words = [word.lower() for word in _WORDS.findall(data)]
+    n_facets = words.count(b"endfacet")
+    if len(lines) != 3 * n_facets or words.count(b"facet") != n_facets or words.count(b"endloop") != n_facets:
+        raise ReadError(
+            f"the STL text has {words.count(b'facet'):,} facets with {len(lines):,} readable vertices, and "
+            f"{n_facets:,} of them end: each facet must have three vertices and an end"
+        )
+    _check_counts(n_facets, limits)
+    numbers = parse_numbers(b"\n".join(lines))
+    if len(numbers) != 9 * n_facets:
+        raise ReadError(f"the STL text has {len(numbers):,} coordinates for {3 * n_facets:,} vertices")
+    return _scan(numbers.reshape(-1, 3), AsciiStl(data))
+
+
+def _ascii_facets(scan: Scan, fill: Fill, line_end: str) -> str:
+    corners = joined_vertices(scan, fill)[fill.triangles]
+    table = np.concatenate([triangle_normals(scan, fill), corners.reshape(-1, 9)], axis=1)
+    words = np.array(to_words(table.ravel()), dtype=object).reshape(-1, 12)
+    lines = ("  facet normal {} {} {}", "    outer loop", *["      vertex {} {} {}"] * 3, "    endloop", "  endfacet")
+    template = line_end.join(lines) + line_end
+    return "".join(template.format(*row) for row in words)
+
+
+def encode_facets(corners: FloatArray, normals: FloatArray, invented: BoolArray) -> bytes:
+    """Encode binary facets.
+
+    Parameters
+    ----------
+    corners : (m, 3, 3) float64
+    normals : (m, 3) float64
+    invented : (m,) bool
+        True sets the attribute byte count to 1.
+    """
+    facets = np.zeros(len(corners), _FACET)
+    facets["normal"], facets["vertices"], facets["attribute"] = normals, corners, invented
+    return facets.tobytes()
+
+
+def encode_stl(corners: FloatArray, normals: FloatArray, invented: BoolArray) -> bytes:
+    """Encode a whole binary STL file; parameters as of `encode_facets`."""
+    header = b"Quadpatch: attribute 1 marks invented facets".ljust(_HEADER_SIZE - 4)
+    return header + np.array(len(corners), dtype="<u4").tobytes() + encode_facets(corners, normals, invented)

@@ -1,0 +1,88 @@
+"""A scan and its fill as one mesh, for writing it in another format than its own."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from quadpatch.formats.attributes import joined_vertices, spread_over_vertices, triangle_normals, vertex_normals
+from quadpatch.formats.scan import Appearance, Fill, Scan
+from quadpatch.formats.texture import spread_over_corners
+from quadpatch.types import BoolArray, FloatArray, IntArray, Triangles, Vertices
+
+
+@dataclass(frozen=True)
+class Whole:
+    """Measured surface and invented surface behind it.
+
+    Attributes
+    ----------
+    vertices : (n, 3) float64
+    triangles : (m, 3) int64
+    appearance : Appearance
+        Of all vertices and triangles; colours without NaN.
+    vertex_hole, vertex_confidence : (n,) int64, (n,) float64
+        -1 and 1 for measured vertices.
+    triangle_hole, triangle_confidence : (m,) int64, (m,) float64
+        -1 and 1 for measured triangles.
+    n_measured : int
+        Measured triangles; they come first.
+    unit : str or None
+        Length unit, where the scan's file states one.
+    """
+
+    vertices: Vertices
+    triangles: Triangles
+    appearance: Appearance
+    vertex_hole: IntArray
+    vertex_confidence: FloatArray
+    triangle_hole: IntArray
+    triangle_confidence: FloatArray
+    n_measured: int
+    unit: str | None
+
+    @property
+    def invented(self) -> BoolArray:
+        """True for invented triangles, (m,) bool."""
+        return np.arange(len(self.triangles)) >= self.n_measured
+
+    @property
+    def facet_normals(self) -> FloatArray:
+        """Unit normals of all triangles, (m, 3); zero for those without area."""
+        return triangle_normals(Scan(self.vertices, self.triangles, ""), _as_fill(self.vertices, self.triangles))
+
+
+def _as_fill(vertices: Vertices, triangles: Triangles) -> Fill:
+    nothing = np.zeros(0)
+    return Fill(np.zeros((0, 3)), triangles, nothing.astype(np.int64), nothing, nothing.astype(np.int64), nothing)
+
+
+def assemble(scan: Scan, fill: Fill) -> Whole:
+    """Join a scan and its fill, and spread the scan's appearance over the fill.
+
+    Parameters
+    ----------
+    scan : Scan
+    fill : Fill
+    """
+    looks = Appearance() if scan.source is None else scan.source.appearance(scan)
+    colours, normals, texture = looks.colours, looks.normals, looks.texture
+    if colours is not None:
+        spread = spread_over_vertices(fill, colours)
+        # Vertices without a colour among coloured ones are white.
+        colours = np.nan_to_num(np.concatenate([colours, spread]), nan=255.0).clip(0, 255)
+    if normals is not None:
+        normals = np.concatenate([normals, vertex_normals(scan, fill)])
+    if texture is not None:
+        texture = np.concatenate([texture, spread_over_corners(scan, fill, texture)])
+    n_vertices, n_triangles = len(scan.vertices), len(scan.triangles)
+    return Whole(
+        vertices=joined_vertices(scan, fill),
+        triangles=np.concatenate([scan.triangles, fill.triangles]),
+        appearance=Appearance(colours, normals, texture),
+        vertex_hole=np.concatenate([np.full(n_vertices, -1), fill.vertex_hole]),
+        vertex_confidence=np.concatenate([np.ones(n_vertices), fill.vertex_confidence]),
+        triangle_hole=np.concatenate([np.full(n_triangles, -1), fill.triangle_hole]),
+        triangle_confidence=np.concatenate([np.ones(n_triangles), fill.triangle_confidence]),
+        n_measured=n_triangles,
+        unit=scan.unit,
+    )
