@@ -150,7 +150,7 @@ def test_unknown_bins_are_exactly_those_over_the_invented_triangles() -> None:
     centres = mesh.vertices[mesh.triangles].mean(axis=1)
     invented = (np.abs(centres[:, :2]) < 0.1).all(axis=1)
     patches = sample_height_maps(
-        RayScene(mesh), mesh, invented, upright((0, 0, 0), (0.15, 0, 0), (0.5, 0.5, 0)), 0.48, 24
+        RayScene(mesh), mesh, invented, upright((0, 0, 0), (0.16, 0, 0), (0.5, 0.5, 0)), 0.48, 24
     )
     points = bin_centres(patches.origins, patches.frames, 0.48, 24)
     # The mesh has grid lines at ±0.1 and the patches have none, so that the invented region is a clear square.
