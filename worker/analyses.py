@@ -8,6 +8,7 @@ from jobkit.meshes import Analysis
 from jobkit.reconcile import MAX_ANALYSES, submit_analysis
 from jobkit.schema import MeshFacts, MeshProblem
 from worker.context import Context
+from worker.facts import mesh_facts
 from worker.failures import Failure, StopReason
 from worker.limits import EngineLimits
 from worker.outcomes import folder_with_mesh, outcome_of
@@ -49,7 +50,7 @@ def _work(context: Context, analysis: Analysis, pulse: Pulse) -> MeshFacts:
 
     with folder_with_mesh(context, analysis.source) as folder:
         run_engine(context.nursery, request, folder, Observer(pulse.reach, stop_reason))
-        return MeshFacts.model_validate(json.loads((folder / FACTS_NAME).read_text(encoding="utf-8")))
+        return mesh_facts(json.loads((folder / FACTS_NAME).read_text(encoding="utf-8")))
 
 
 def _vitals(context: Context, analysis: Analysis) -> Vitals:

@@ -10,14 +10,9 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-from quadpatch.picture import render_before_after
-from quadpatch.repair import inspect_file, repair_file
-
 from quadpatch.errors import QuadpatchError
-from quadpatch.formats.reading import read_scan
 from quadpatch.options import RepairOptions
-from quadpatch.types import TriangleMesh
+from quadpatch.repair import draw_repair, inspect_file, repair_file
 from worker.engine_frame import run_framed
 from worker.engine_reports import Reporter
 from worker.request import FACTS_NAME, PREVIEW_NAME, REPORT_NAME, EngineRequest
@@ -50,16 +45,8 @@ _TASKS: dict[str, Callable[[Path, EngineRequest, Reporter], None]] = {"repair": 
 
 def _preview(source: Path, output: Path, path: Path) -> list[str]:
     """Draw the picture; a repair without one is still a repair, so what goes wrong here is a warning."""
-    before, after = read_scan(source), read_scan(output)
-    # Measured faces come first and in order: all that follows is invented.
-    invented = np.arange(len(after.triangles)) >= len(before.triangles)
     try:
-        render_before_after(
-            TriangleMesh(before.vertices, before.triangles),
-            TriangleMesh(after.vertices, after.triangles),
-            invented,
-            path,
-        )
+        draw_repair(source, output, path)
     except QuadpatchError as error:
         return [f"there is no picture: {error}"]
     return []

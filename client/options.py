@@ -1,0 +1,91 @@
+"""Options that several commands share, and how those of a repair become a job spec."""
+
+from dataclasses import dataclass
+from typing import Annotated, Any, Literal
+
+import typer
+from pydantic import ValidationError
+
+from client.errors import UsageError
+from jobkit.schema import JobSpec
+
+DEFAULT_URL = "http://127.0.0.1:8000"
+MethodName = Literal["dictionary", "cnn", "smooth"]
+
+UrlOption = Annotated[
+    str, typer.Option("--url", envvar="QUADPATCH_CLIENT_URL", help="Address of the service.", show_default=True)
+]
+KeyOption = Annotated[
+    str | None,
+    typer.Option("--api-key", envvar="QUADPATCH_CLIENT_API_KEY", help="API key of the service.", show_default=False),
+]
+JsonOption = Annotated[bool, typer.Option("--json", help="Print JSON on stdout.")]
+QuietOption = Annotated[bool, typer.Option("--quiet", "-q", help="Print errors only.")]
+MaxDiameterOption = Annotated[
+    float | None, typer.Option(help="Leave wider holes open, in mesh units.", rich_help_panel="Which holes")
+]
+MaxPerimeterOption = Annotated[
+    float | None, typer.Option(help="Leave holes with a longer rim open, in mesh units.", rich_help_panel="Which holes")
+]
+AllButLargestOption = Annotated[
+    bool,
+    typer.Option(
+        "--all-but-largest",
+        help="Leave the longest rim open: the border of an open scan.",
+        rich_help_panel="Which holes",
+    ),
+]
+HoleOption = Annotated[
+    list[int] | None,
+    typer.Option("--hole", help="Fill just this hole; repeat for more. See `holes`.", rich_help_panel="Which holes"),
+]
+
+
+@dataclass(frozen=True)
+class HoleChoice:
+    """Which holes to fill, as given on the command line."""
+
+    max_diameter: float | None = None
+    max_perimeter: float | None = None
+    all_but_largest: bool = False
+    ids: list[int] | None = None
+
+
+@dataclass(frozen=True)
+class MethodChoice:
+    """How to fill them."""
+
+    method: MethodName = "dictionary"
+    model: str | None = None
+    length: float | None = None
+    resolution: int | None = None
+    overlap: int | None = None
+
+
+def make_spec(mesh_id: str, holes: HoleChoice, method: MethodChoice, **rest: Any) -> JobSpec:
+    """Build a job spec from what was given; the service fills in the defaults of what was not.
+
+    Raises
+    ------
+    UsageError
+        If an option is out of its range, or does not go with the method.
+    """
+    values = {"mesh_id": mesh_id, "holes": _given(vars(holes)), "method": _method(method), **_given(rest)}
+    try:
+        return JobSpec.model_validate(values)
+    except ValidationError as error:
+        lines = [f"{'.'.join(str(step) for step in e['loc'])}: {e['msg']}" for e in error.errors()]
+        raise UsageError("; ".join(lines)) from error
+
+
+def _method(choice: MethodChoice) -> dict[str, Any]:
+    patches = _given({"length": choice.length, "resolution": choice.resolution, "overlap": choice.overlap})
+    if choice.method == "smooth":
+        if choice.model is not None or patches:
+            raise UsageError("the method 'smooth' takes no model and no patch options")
+        return {"method": "smooth"}
+    return {"method": choice.method, "patches": patches, **_given({"model": choice.model})}
+
+
+def _given(values: dict[str, Any]) -> dict[str, Any]:
+    return {name: value for name, value in values.items() if value not in (None, [], {})}

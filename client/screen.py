@@ -1,0 +1,97 @@
+"""What a person sees while something takes time: bars on a terminal, plain lines elsewhere, nothing when quiet.
+
+All of it goes to stderr unless told otherwise; stdout is for data.
+"""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+from rich.console import Console
+from rich.progress import (
+    BarColumn,
+    DownloadColumn,
+    Progress,
+    TaskProgressColumn,
+    TextColumn,
+    TimeElapsedColumn,
+    TransferSpeedColumn,
+)
+
+from client.transfers import ByteProgress, no_progress
+from jobkit.schema import Job, JobState
+
+_LABEL_WIDTH = 12
+
+
+class Screen:
+    """The person at the terminal, or the log of a script.
+
+    Parameters
+    ----------
+    quiet : bool
+        Show errors only.
+    console : rich.console.Console, optional
+        Where to show it; None: stderr.
+    """
+
+    def __init__(self, quiet: bool = False, console: Console | None = None) -> None:
+        self.console = console or Console(stderr=True, highlight=False)
+        self._quiet = quiet
+
+    def say(self, text: str, style: str = "") -> None:
+        """Print a line."""
+        if not self._quiet:
+            self.console.print(text, style=style, markup=False, soft_wrap=True)
+
+    def complain(self, text: str) -> None:
+        """Print an error, quiet or not."""
+        self.console.print(f"error: {text}", style="red", markup=False, soft_wrap=True)
+
+    @contextmanager
+    def transfer(self, label: str) -> Iterator[ByteProgress]:
+        """Show bytes on their way; yields the callback for them."""
+        if self._quiet or not self.console.is_terminal:
+            yield no_progress
+            return
+        columns = (_label_column(), BarColumn(), TaskProgressColumn(), DownloadColumn(), TransferSpeedColumn())
+        with Progress(*columns, console=self.console, transient=True) as bar:
+            task = bar.add_task(label, total=None)
+            yield lambda done, total: bar.update(task, completed=done, total=total)
+
+    @contextmanager
+    def repair(self) -> Iterator[Callable[[Job], None]]:
+        """Show how a job gets on; yields the callback for its changes."""
+        if self._quiet:
+            yield lambda job: None
+            return
+        if not self.console.is_terminal:
+            yield _StageLines(self)
+            return
+        columns = (_label_column(), BarColumn(), TaskProgressColumn(), TextColumn("{task.fields[stage]}"))
+        with Progress(*columns, TimeElapsedColumn(), console=self.console, transient=True) as bar:
+            task = bar.add_task("repairing", total=100.0, stage="")
+            yield lambda job: bar.update(task, completed=job.percent, stage=_stage(job))
+
+
+class _StageLines:
+    """One line per stage, for logs."""
+
+    def __init__(self, screen: Screen) -> None:
+        self._screen = screen
+        self._last = ""
+
+    def __call__(self, job: Job) -> None:
+        stage = _stage(job)
+        if stage != self._last:
+            self._last = stage
+            self._screen.say(f"{job.percent:5.1f} %  {stage}")
+
+
+def _label_column() -> TextColumn:
+    return TextColumn(f"{{task.description:<{_LABEL_WIDTH}}}")
+
+
+def _stage(job: Job) -> str:
+    if job.state == JobState.RUNNING:
+        return job.stage or "starting"
+    return job.state.value.replace("_", " ")

@@ -1,0 +1,225 @@
+"""The service in Python: upload a mesh, start a job, wait for it, fetch what it made.
+
+::
+
+    with Client("http://127.0.0.1:8000") as client:
+        mesh = client.upload(Path("scan.ply"))
+        job = client.create_job(JobSpec(mesh_id=mesh.id))
+        job = client.wait(job.id)
+        client.download_result(job, Path("scan_repaired.ply"))
+"""
+
+import uuid
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Literal, Self
+
+import httpx
+
+from client.errors import (
+    ClientError,
+    DamagedTransferError,
+    JobCanceledError,
+    JobFailedError,
+    MeshRejectedError,
+    RefusedError,
+    WaitTimeoutError,
+)
+from client.polling import parse, poll
+from client.transfers import ByteProgress, download, file_chunks, no_progress, sha256_of
+from client.transport import Transport
+from jobkit.schema import Job, JobPage, JobSpec, JobState, Mesh, MeshState, ModelList, Plan
+
+_PAGE = 100
+
+
+def ignore_job(job: Job) -> None:
+    """Ignore a change of a job."""
+
+
+class Client:
+    """One service.
+
+    Parameters
+    ----------
+    base_url : str
+        Like `http://127.0.0.1:8000`.
+    api_key : str, optional
+        Needed wherever the service listens to others than its own machine.
+    patience_s : float
+        How long a request is repeated while the line is down, in seconds.
+    """
+
+    def __init__(self, base_url: str, api_key: str | None = None, patience_s: float = 60.0) -> None:
+        self._transport = Transport(base_url, api_key, patience_s)
+
+    def upload(self, path: Path, progress: ByteProgress = no_progress) -> Mesh:
+        """Send a mesh file; bytes that the service has already are not sent again.
+
+        Raises
+        ------
+        DamagedTransferError
+            If the service received other bytes.
+        """
+        sha256 = sha256_of(path)
+        known = self._find_mesh(sha256)
+        if known is not None and known.state != MeshState.REJECTED:
+            size = path.stat().st_size
+            progress(size, size)
+            return known
+        response = self._transport.request(
+            "POST",
+            "/v1/meshes",
+            params={"filename": path.name},
+            headers={"Content-Type": "application/octet-stream", "Content-Length": str(path.stat().st_size)},
+            content=lambda: file_chunks(path, progress),
+        )
+        mesh = parse(Mesh, response)
+        if mesh.id != sha256:
+            raise DamagedTransferError(f"{path.name} arrived damaged: the service got {mesh.id}, sent was {sha256}")
+        return mesh
+
+    def mesh(self, mesh_id: str) -> Mesh:
+        """Return a mesh as it stands."""
+        return parse(Mesh, self._transport.request("GET", f"/v1/meshes/{mesh_id}"))
+
+    def wait_for_mesh(self, mesh_id: str, timeout_s: float | None = None) -> Mesh:
+        """Wait until a mesh is analysed.
+
+        Raises
+        ------
+        MeshRejectedError
+            If the service could not read it.
+        WaitTimeoutError
+        """
+        for mesh in poll(self._transport, f"/v1/meshes/{mesh_id}", Mesh, timeout_s):
+            if mesh.state == MeshState.REJECTED and mesh.problem is not None:
+                raise MeshRejectedError(mesh.problem)
+            if mesh.state == MeshState.READY:
+                return mesh
+        raise WaitTimeoutError(f"mesh {mesh_id} was not analysed within {timeout_s:g} s")
+
+    def create_job(self, spec: JobSpec, idempotency_key: str | None = None) -> Job:
+        """Start a job. Repeated on a broken line, it is still started once.
+
+        Parameters
+        ----------
+        spec : JobSpec
+        idempotency_key : str, optional
+            Give your own to be safe across a restart of your program.
+        """
+        response = self._transport.request(
+            "POST",
+            "/v1/jobs",
+            json=spec.model_dump(mode="json"),
+            headers={"Idempotency-Key": idempotency_key or str(uuid.uuid4())},
+        )
+        return parse(Job, response)
+
+    def plan(self, spec: JobSpec) -> Plan:
+        """Ask what a job would do, without starting it."""
+        response = self._transport.request(
+            "POST", "/v1/jobs", params={"dry_run": "true"}, json=spec.model_dump(mode="json")
+        )
+        return parse(Plan, response)
+
+    def job(self, job_id: str) -> Job:
+        """Return a job as it stands."""
+        return parse(Job, self._transport.request("GET", f"/v1/jobs/{job_id}"))
+
+    def wait(self, job_id: str, on_change: Callable[[Job], None] = ignore_job, timeout_s: float | None = None) -> Job:
+        """Wait for the end of a job and return it.
+
+        Parameters
+        ----------
+        job_id : str
+        on_change : callable
+            Called with the job whenever something about it has changed.
+        timeout_s : float, optional
+            None: wait as long as it takes.
+
+        Raises
+        ------
+        JobFailedError, JobCanceledError, WaitTimeoutError
+        """
+        revision = 0
+        for job in poll(self._transport, f"/v1/jobs/{job_id}", Job, timeout_s):
+            if job.revision != revision:
+                revision = job.revision
+                on_change(job)
+            if job.state == JobState.FAILED:
+                raise JobFailedError(job)
+            if job.state == JobState.CANCELED:
+                raise JobCanceledError(job)
+            if job.state.is_terminal:
+                return job
+        raise WaitTimeoutError(f"job {job_id} did not end within {timeout_s:g} s")
+
+    def cancel(self, job_id: str) -> Job:
+        """Cancel a job; one that has ended already is returned as it is."""
+        try:
+            return parse(Job, self._transport.request("POST", f"/v1/jobs/{job_id}/cancel"))
+        except RefusedError as error:
+            if error.problem.code != "job_finished":
+                raise
+            return self.job(job_id)
+
+    def download(
+        self,
+        job: Job,
+        role: Literal["result", "report", "preview"],
+        target: Path,
+        progress: ByteProgress = no_progress,
+    ) -> None:
+        """Fetch a file of a finished job; `target` appears whole or not at all.
+
+        Raises
+        ------
+        ClientError
+            If the job has no such file.
+        DamagedTransferError
+        """
+        file = job.result.file(role) if job.result else None
+        link: str | None = getattr(job.links, role)
+        if file is None or link is None:
+            raise ClientError(f"job {job.id} has no {role}")
+        download(self._transport, link, target, file.sha256, progress)
+
+    def models(self) -> ModelList:
+        """Return all models and aliases."""
+        return parse(ModelList, self._transport.request("GET", "/v1/models"))
+
+    def jobs(self, limit: int | None = None, state: JobState | None = None) -> Iterator[Job]:
+        """Yield jobs, newest first, fetched page by page."""
+        left = limit
+        cursor: str | None = None
+        while left is None or left > 0:
+            params = {"limit": str(min(left or _PAGE, _PAGE))}
+            params |= {"cursor": cursor} if cursor else {}
+            params |= {"state": state.value} if state else {}
+            page = parse(JobPage, self._transport.request("GET", "/v1/jobs", params=params))
+            yield from page.items
+            left = None if left is None else left - len(page.items)
+            cursor = page.next_cursor
+            if cursor is None:
+                return
+
+    def close(self) -> None:
+        """Close all connections."""
+        self._transport.close()
+
+    def __enter__(self) -> Self:
+        """Return itself."""
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """Close."""
+        self.close()
+
+    def _find_mesh(self, mesh_id: str) -> Mesh | None:
+        try:
+            return self.mesh(mesh_id)
+        except RefusedError as error:
+            if error.problem.status != httpx.codes.NOT_FOUND:
+                raise
+            return None

@@ -1,0 +1,71 @@
+"""Tables for people, on stdout."""
+
+from collections.abc import Iterable
+
+from rich.console import Console
+from rich.table import Table
+
+from jobkit.schema import Job, MeshFacts, ModelList, Plan
+
+
+def print_holes(console: Console, facts: MeshFacts, plan: Plan) -> None:
+    """Print every hole of a mesh, and whether a job would fill it."""
+    unit = facts.unit or "mesh units"
+    table = _table(
+        f"{facts.vertices:,} vertices, {facts.triangles:,} triangles, {len(plan.holes):,} holes; lengths in {unit}"
+    )
+    for name in ("id", "diameter", "perimeter", "edges", "area", "planarity"):
+        table.add_column(name, justify="right")
+    table.add_column("would be filled")
+    for hole in plan.holes:
+        verdict = "yes" if hole.selected else f"no: {(hole.reason or 'by rule').replace('_', ' ')}"
+        numbers = (hole.diameter, hole.perimeter)
+        table.add_row(
+            str(hole.id),
+            *(f"{number:.4g}" for number in numbers),
+            str(hole.edges),
+            f"{hole.area:.4g}",
+            f"{hole.planarity:.3f}",
+            verdict,
+        )
+    console.print(table)
+    console.print(f"{plan.selected:,} of {len(plan.holes):,} would be filled")
+
+
+def print_models(console: Console, models: ModelList) -> None:
+    """Print every version of every model."""
+    table = _table(None)
+    for name in ("model", "kind", "patch", "size", "aliases", "description"):
+        table.add_column(name, overflow="fold")
+    for version in (version for model in models.models for version in model.versions):
+        resolution = version.card.patch_resolution
+        table.add_row(
+            f"{version.name}@{version.version}",
+            version.kind,
+            f"{resolution} × {resolution}" if resolution else "",
+            f"{version.size_bytes / 1e6:.1f} MB",
+            ", ".join(version.aliases),
+            version.card.description,
+        )
+    console.print(table)
+
+
+def print_jobs(console: Console, jobs: Iterable[Job]) -> None:
+    """Print jobs, one a line."""
+    table = _table(None)
+    for name in ("job", "state", "done", "stage", "created", "label"):
+        table.add_column(name, no_wrap=name == "job")
+    for job in jobs:
+        table.add_row(
+            job.id,
+            job.state.value if job.error is None else f"{job.state.value}: {job.error.code}",
+            f"{job.percent:.0f} %",
+            job.stage or "",
+            f"{job.created_at:%Y-%m-%d %H:%M:%S}",
+            job.spec.label or "",
+        )
+    console.print(table)
+
+
+def _table(title: str | None) -> Table:
+    return Table(title=title, title_justify="left", title_style="", box=None, header_style="bold", pad_edge=False)

@@ -1,0 +1,90 @@
+"""Files on their way: counted, hashed, resumed, and visible under their name only when they are whole."""
+
+import hashlib
+import os
+import tempfile
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import httpx
+
+from client.errors import DamagedTransferError
+from client.transport import Transport
+
+CHUNK_BYTES = 1 << 18
+# Called with the bytes done so far and the bytes in all.
+ByteProgress = Callable[[int, int], None]
+
+
+def no_progress(done: int, total: int) -> None:
+    """Ignore progress."""
+
+
+def sha256_of(path: Path) -> str:
+    """Return the sha256 of a file, in hex."""
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
+
+
+def file_chunks(path: Path, progress: ByteProgress) -> Iterator[bytes]:
+    """Yield the bytes of a file, telling how far it is."""
+    total, done = path.stat().st_size, 0
+    with path.open("rb") as file:
+        while chunk := file.read(CHUNK_BYTES):
+            yield chunk
+            done += len(chunk)
+            progress(done, total)
+
+
+def download(transport: Transport, path: str, target: Path, sha256: str, progress: ByteProgress) -> None:
+    """Fetch a file; a broken line is taken up where it broke.
+
+    Parameters
+    ----------
+    transport : Transport
+    path : str
+        On the service.
+    target : Path
+        Appears whole, in one step, or not at all.
+    sha256 : str
+        What the bytes have to hash to, in hex.
+    progress : callable
+
+    Raises
+    ------
+    DamagedTransferError
+        If other bytes arrived.
+    """
+    descriptor, name = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.", suffix=".part")
+    os.close(descriptor)
+    partial = Path(name)
+    try:
+        transport.patiently(lambda: _fetch_rest(transport, path, partial, progress))
+        if sha256_of(partial) != sha256:
+            raise DamagedTransferError(f"{path} arrived damaged: its sha256 is not {sha256}")
+        partial.chmod(0o666 & ~_umask())
+        partial.replace(target)
+    finally:
+        partial.unlink(missing_ok=True)
+
+
+def _fetch_rest(transport: Transport, path: str, partial: Path, progress: ByteProgress) -> None:
+    start = partial.stat().st_size
+    headers = {"Range": f"bytes={start}-"} if start else {}
+    with transport.stream(path, headers) as response:
+        # A service that does not know ranges, or whose file has changed, sends everything again.
+        resumes = response.status_code == httpx.codes.PARTIAL_CONTENT
+        done = start if resumes else 0
+        total = done + int(response.headers.get("Content-Length", 0))
+        with partial.open("ab" if resumes else "wb") as file:
+            for chunk in response.iter_bytes(CHUNK_BYTES):
+                file.write(chunk)
+                done += len(chunk)
+                progress(done, max(done, total))
+
+
+def _umask() -> int:
+    """Return the umask; it can only be read by setting it."""
+    mask = os.umask(0o077)
+    os.umask(mask)
+    return mask

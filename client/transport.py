@@ -1,0 +1,158 @@
+"""HTTP with patience: what may be repeated is repeated, with growing pauses, until the time is up."""
+
+import random
+import time
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from typing import Any, Self, TypeVar
+
+import httpx
+from pydantic import ValidationError
+
+from client.errors import AnswerError, RefusedError, UnreachableError
+from jobkit.schema import PROBLEM_MEDIA_TYPE, Problem
+
+T = TypeVar("T")
+
+# Statuses that say: not now. A gateway in between may answer these without a problem document.
+_TRY_AGAIN = frozenset({429, 502, 503, 504})
+_FIRST_PAUSE_S = 0.25
+_LONGEST_PAUSE_S = 5.0
+# Before the first answer ever, a wrong address is likelier than a dropped line.
+_FIRST_CONTACT_S = 5.0
+_TIMEOUT = httpx.Timeout(60.0, connect=5.0)
+
+
+class Transport:
+    """One service, reached over a line that may drop.
+
+    Parameters
+    ----------
+    base_url : str
+    api_key : str, optional
+    patience_s : float
+        How long a request is repeated before the service is taken for unreachable, in seconds.
+    """
+
+    def __init__(self, base_url: str, api_key: str | None = None, patience_s: float = 60.0) -> None:
+        headers = {"Authorization": f"Bearer {api_key}"} if api_key else {}
+        self.base_url = base_url.rstrip("/")
+        self._client = httpx.Client(base_url=self.base_url, headers=headers, timeout=_TIMEOUT)
+        self._patience_s = patience_s
+        self._has_answered = False
+
+    def request(
+        self,
+        method: str,
+        path: str,
+        *,
+        content: Callable[[], Iterator[bytes]] | None = None,
+        **options: Any,
+    ) -> httpx.Response:
+        """Send a request that may be repeated without harm, and return a successful answer.
+
+        Parameters
+        ----------
+        method, path : str
+        content : callable, optional
+            Makes the body anew for every try.
+        **options
+            As for `httpx.Client.request`.
+
+        Raises
+        ------
+        UnreachableError
+            If no answer came in time.
+        RefusedError
+            If the service answers with a problem.
+        AnswerError
+            If it answers with an error that is no problem document.
+        """
+
+        def attempt() -> httpx.Response:
+            body = None if content is None else content()
+            response = self._client.request(method, path, content=body, **options)
+            _raise_for_problem(response)
+            return response
+
+        return self.patiently(attempt)
+
+    @contextmanager
+    def stream(self, path: str, headers: Mapping[str, str]) -> Iterator[httpx.Response]:
+        """Open an answer whose body is read piece by piece; one try only."""
+        with self._client.stream("GET", path, headers=dict(headers)) as response:
+            if response.is_error:
+                response.read()
+                _raise_for_problem(response)
+            yield response
+
+    def patiently(self, attempt: Callable[[], T]) -> T:
+        """Try until it works, an answer forbids more tries, or the time is up."""
+        started, pause_s = time.monotonic(), _FIRST_PAUSE_S
+        while True:
+            try:
+                result = attempt()
+            except (httpx.TransportError, _TryAgainError) as error:
+                self._has_answered = self._has_answered or isinstance(error, _TryAgainError)
+                patience_s = self._patience_s if self._has_answered else min(self._patience_s, _FIRST_CONTACT_S)
+                wait_s = getattr(error, "retry_after_s", None) or pause_s * random.uniform(0.75, 1.25)
+                if time.monotonic() + wait_s - started > patience_s:
+                    raise self._give_up(error, patience_s) from error
+                time.sleep(wait_s)
+                pause_s = min(2 * pause_s, _LONGEST_PAUSE_S)
+            else:
+                self._has_answered = True
+                return result
+
+    def close(self) -> None:
+        """Close all connections."""
+        self._client.close()
+
+    def __enter__(self) -> Self:
+        """Return itself."""
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """Close."""
+        self.close()
+
+    def _give_up(self, error: Exception, patience_s: float) -> Exception:
+        if isinstance(error, _TryAgainError):
+            return error.final
+        return UnreachableError(
+            f"no answer from {self.base_url} within {patience_s:g} s: {error or type(error).__name__}"
+        )
+
+
+class _TryAgainError(Exception):
+    """The service asks to come back later; `final` is what to raise when there is no later."""
+
+    def __init__(self, response: httpx.Response, final: Exception) -> None:
+        super().__init__(str(final))
+        self.final = final
+        self.retry_after_s = retry_after_s(response)
+
+
+def retry_after_s(response: httpx.Response) -> float | None:
+    """Seconds that the service asks to wait, None where it does not say."""
+    text = response.headers.get("Retry-After", "")
+    return float(text) if text.isdecimal() else None
+
+
+def _raise_for_problem(response: httpx.Response) -> None:
+    if not response.is_error:
+        return
+    error = _error_of(response)
+    if response.status_code in _TRY_AGAIN:
+        raise _TryAgainError(response, error)
+    raise error
+
+
+def _error_of(response: httpx.Response) -> Exception:
+    if response.headers.get("Content-Type", "").startswith(PROBLEM_MEDIA_TYPE):
+        try:
+            return RefusedError(Problem.model_validate_json(response.content))
+        except ValidationError:
+            pass  # a problem document, but not one of this service
+    status = f"{response.status_code} {response.reason_phrase}".strip()
+    return AnswerError(f"{response.request.url} answered {status} without saying why; is it the right address?")

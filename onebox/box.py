@@ -1,0 +1,154 @@
+"""One box: which processes it is made of, and the folder that they share."""
+
+import contextlib
+import fcntl
+import os
+import socket
+import sys
+import urllib.error
+import urllib.request
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from http import HTTPStatus
+from pathlib import Path
+
+from onebox.errors import StartError
+from onebox.processes import Program
+from onebox.valkey import answers, prepare_valkey
+from worker.limits import thread_environment
+
+LOCK_NAME = "box.lock"
+_LOOPBACK = "127.0.0.1"
+# Handing back a job takes a worker some seconds.
+_WORKER_STOP_S = 20.0
+
+
+@dataclass(frozen=True)
+class Box:
+    """How one box is set up.
+
+    Attributes
+    ----------
+    data : Path
+        Folder of database, objects, queue and logs.
+    host : str
+        Address to listen on.
+    port : int
+    n_workers : int
+    """
+
+    data: Path
+    host: str
+    port: int
+    n_workers: int
+
+    @property
+    def url(self) -> str:
+        """Where a client on this machine reaches the service."""
+        host = _LOOPBACK if self.host in ("0.0.0.0", "::", "") else self.host
+        return f"http://[{host}]:{self.port}" if ":" in host else f"http://{host}:{self.port}"
+
+    @property
+    def log_folder(self) -> Path:
+        """Where every process writes its log."""
+        return self.data / "logs"
+
+
+def default_workers() -> int:
+    """Count of workers that suits this machine: two at least, so that a long repair holds up no analysis."""
+    return max(2, _n_cores() // 2)
+
+
+def programs(box: Box) -> list[Program]:
+    """Return the processes of a box, in the order in which they start."""
+    valkey = prepare_valkey(box.data / "valkey")
+    shared = {
+        "QUADPATCH_DATA_DIR": str(box.data.resolve()),
+        "QUADPATCH_REDIS_URL": valkey.url,
+        "QUADPATCH_HOST": box.host,
+        "QUADPATCH_PORT": str(box.port),
+    }
+    n_threads = max(min(2, _n_cores()), _n_cores() // box.n_workers)
+    worker_environment = {**shared, **thread_environment(n_threads)}
+    workers = [
+        Program(
+            f"worker-{number}",
+            (sys.executable, "-m", "worker"),
+            worker_environment,
+            stop_timeout_s=_WORKER_STOP_S,
+        )
+        for number in range(1, box.n_workers + 1)
+    ]
+    return [
+        Program("valkey", valkey.command, ready=lambda: answers(valkey.socket_path)),
+        Program("api", (sys.executable, "-m", "service"), shared, ready=ready_check(f"{box.url}/readyz")),
+        *workers,
+    ]
+
+
+def ready_check(url: str) -> Callable[[], bool]:
+    """Make a function that asks the service whether it can work."""
+    # A proxy from the environment has no business between a machine and itself.
+    opener = urllib.request.build_opener(urllib.request.ProxyHandler({}))
+
+    def is_ready() -> bool:
+        try:
+            with opener.open(url, timeout=5) as response:
+                return bool(response.status == HTTPStatus.OK)
+        except (urllib.error.URLError, OSError):
+            return False
+
+    return is_ready
+
+
+def usable_port(host: str, wanted: int) -> int:
+    """Return the port if it is free, or any free one for 0.
+
+    Raises
+    ------
+    StartError
+        If it is taken, or not allowed, or the address is not one of this machine.
+    """
+    family = socket.AF_INET6 if ":" in host else socket.AF_INET
+    with socket.socket(family, socket.SOCK_STREAM) as probe:
+        # As the service itself does: a port whose last connections are still fading away is free.
+        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            probe.bind((host, wanted))
+        except OSError as error:
+            raise StartError(
+                f"can't listen on {host}, port {wanted}: {error.strerror}; choose another --port, or 0 for any"
+            ) from error
+        return int(probe.getsockname()[1])
+
+
+@contextmanager
+def owned_folder(data: Path) -> Iterator[None]:
+    """Keep a data folder for one box alone.
+
+    Raises
+    ------
+    StartError
+        If another box uses it, or it can't be made.
+    """
+    try:
+        data.mkdir(parents=True, exist_ok=True)
+        descriptor = os.open(data / LOCK_NAME, os.O_RDWR | os.O_CREAT, 0o600)
+    except OSError as error:
+        raise StartError(f"the data folder {data} can't be used: {error.strerror}") from error
+    with contextlib.ExitStack() as stack:
+        stack.callback(os.close, descriptor)
+        try:
+            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError as error:
+            owner = os.read(descriptor, 32).decode(errors="replace").strip()
+            message = f"another box, process {owner}, uses {data}; stop it, or choose another folder with --data"
+            raise StartError(message) from error
+        os.truncate(descriptor, 0)
+        os.write(descriptor, str(os.getpid()).encode())
+        yield
+
+
+def _n_cores() -> int:
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

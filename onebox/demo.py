@@ -1,0 +1,134 @@
+"""`python -m onebox demo`: repair a real scan over HTTP, and leave the result to look at."""
+
+import importlib.util
+import os
+import shutil
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from rich.console import Console
+
+from client.errors import ClientError
+from client.options import HoleChoice, MethodChoice
+from client.repairing import Task, repair
+from client.screen import Screen
+from client.sdk import Client
+from onebox.box import LOCK_NAME, ready_check, usable_port
+from onebox.errors import DemoError
+from onebox.logs import log_tail
+from worker.leash import leash
+
+MODEL = "general-dictionary@1"
+_HOST = "127.0.0.1"
+_SCAN = Path("tests/sample_meshes/rangemaps/face000.ply")
+_READY_TIMEOUT_S = 120.0
+_STOP_TIMEOUT_S = 40.0
+_TIMEOUT_S = 600.0
+
+
+def demo(folder: Path) -> None:
+    """Start one box, repair the face scan that comes with pymeshlab, and leave three files in `folder`.
+
+    Raises
+    ------
+    DemoError
+        If any of it did not work.
+    """
+    scan = find_scan()
+    folder.mkdir(parents=True, exist_ok=True)
+    screen = Screen(console=Console(highlight=False))
+    task = Task(
+        source=scan,
+        output=folder / "face000_repaired.ply",
+        holes=HoleChoice(),
+        method=MethodChoice("dictionary", MODEL),
+        rest={"output": {"preview": True}, "label": "demo"},
+        report=folder / "report.json",
+        preview=folder / "before_after.png",
+        timeout_s=_TIMEOUT_S,
+    )
+    for path in (task.output, task.report, task.preview):
+        if path is not None:
+            path.unlink(missing_ok=True)  # what lies there afterwards is of this run
+    data = folder / "box"
+    _clear(data)
+    screen.say("starting one box: Valkey, API, workers ...")
+    with running_box(data) as url, Client(url) as client:
+        screen.say(f"one box is ready on {url}")
+        try:
+            repair(client, screen, task)
+        except ClientError as error:
+            raise DemoError(f"{error}; the logs are in {data / 'logs'}") from error
+    _clear(data)
+
+
+def find_scan() -> Path:
+    """Return the path of the face scan inside the installed pymeshlab.
+
+    Raises
+    ------
+    DemoError
+        If it is not there.
+    """
+    # The package is only looked up, not loaded: its libraries are of no use here.
+    spec = importlib.util.find_spec("pymeshlab")
+    for root in (spec.submodule_search_locations or []) if spec else []:
+        if (Path(root) / _SCAN).is_file():
+            return Path(root) / _SCAN
+    raise DemoError(f"the installed pymeshlab has no {_SCAN}")
+
+
+@contextmanager
+def running_box(data: Path) -> Iterator[str]:
+    """Run one box in a process of its own for the length of a `with` block, and yield its address.
+
+    Raises
+    ------
+    DemoError
+        If it does not come up; the message carries its last words.
+    """
+    port = usable_port(_HOST, 0)
+    data.mkdir(parents=True, exist_ok=True)
+    log_path = data / "box.log"
+    with log_path.open("wb") as log:
+        process = subprocess.Popen(
+            [sys.executable, "-m", "onebox", "serve", "--port", str(port), "--data", str(data)],
+            stdin=subprocess.DEVNULL,
+            stdout=log,
+            stderr=log,
+            env={**os.environ, "QUADPATCH_HOST": _HOST},
+            preexec_fn=leash(os.getpid()),  # noqa: PLW1509 - two system calls, no lock taken
+            start_new_session=True,
+        )
+    try:
+        url = f"http://{_HOST}:{port}"
+        _wait_until_ready(url, process, log_path)
+        yield url
+    finally:
+        process.terminate()
+        try:
+            process.wait(_STOP_TIMEOUT_S)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait()
+
+
+def _wait_until_ready(url: str, process: subprocess.Popen[bytes], log_path: Path) -> None:
+    is_ready = ready_check(f"{url}/readyz")
+    deadline = time.monotonic() + _READY_TIMEOUT_S
+    while not is_ready():
+        if process.poll() is not None:
+            raise DemoError(f"the box ended before it was ready; {log_tail(log_path)}")
+        if time.monotonic() > deadline:
+            raise DemoError(f"the box was not ready within {_READY_TIMEOUT_S:.0f} s; {log_tail(log_path)}")
+        time.sleep(0.1)
+
+
+def _clear(data: Path) -> None:
+    """Remove the data of an earlier demo, and nothing else."""
+    if (data / LOCK_NAME).exists():
+        shutil.rmtree(data)
