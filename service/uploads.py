@@ -63,7 +63,8 @@ async def receive_upload(request: Request, store: ObjectStore, rules: UploadRule
     TooLargeError
         If the file is larger than the limit; at once where the client has stated its size.
     ProblemError
-        415 for a body of another type, 400 for a broken multipart body, 422 for missing or unknown parts.
+        415 for a body of another type, 400 for an empty file or a broken multipart body, 422 for missing or unknown
+        parts.
     """
     kind, _ = parse_options_header(request.headers.get("content-type", ""))
     is_multipart = kind == b"multipart/form-data"
@@ -85,9 +86,13 @@ async def receive_upload(request: Request, store: ObjectStore, rules: UploadRule
 
 
 async def _receive_raw(request: Request, store: ObjectStore, rules: UploadRules, media_type: str) -> Upload:
+    is_empty = True
     with store.writer(rules.prefix, rules.max_bytes) as writer:
         async for chunk in request.stream():
+            is_empty = is_empty and not chunk
             await run_in_threadpool(writer.write, chunk)
+        if is_empty:
+            raise _empty_file()
         stored = await run_in_threadpool(writer.commit)
     _, options = parse_options_header(request.headers.get("content-disposition", ""))
     filename = options.get(b"filename")
@@ -104,6 +109,8 @@ async def _receive_multipart(request: Request, store: ObjectStore, rules: Upload
                 await run_in_threadpool(sorter.add, event.data)
         if not sorter.has_file:
             raise _part_error(rules.file_part, "Field required", "missing")
+        if sorter.is_empty:
+            raise _empty_file()
         stored = await run_in_threadpool(writer.commit)
     return Upload(stored, sorter.filename, "", {name: bytes(value) for name, value in sorter.fields.items()})
 
@@ -118,6 +125,7 @@ class _PartSorter:
         self.fields: dict[str, bytearray] = {}
         self.filename: str | None = None
         self.has_file = False
+        self.is_empty = True
 
     def start(self, part: PartStart) -> None:
         """Begin a part; refuse unknown and repeated ones."""
@@ -134,11 +142,16 @@ class _PartSorter:
     def add(self, data: bytes) -> None:
         """Take bytes of the part that began last."""
         if self._field is None:
+            self.is_empty = self.is_empty and not data
             self._writer.write(data)
             return
         self._field += data
         if len(self._field) > MAX_FIELD_BYTES:
             raise TooLargeError(f"a field of the body has more than {MAX_FIELD_BYTES} bytes, which is the limit")
+
+
+def _empty_file() -> ProblemError:
+    return ProblemError(HTTPStatus.BAD_REQUEST, "empty_file", "the file has no bytes")
 
 
 def _part_error(name: str, message: str, code: str) -> ProblemError:

@@ -7,7 +7,7 @@ those it knows, so models of responses ignore the rest.
 from datetime import datetime
 from typing import Annotated
 
-from pydantic import BaseModel, ConfigDict, Field, PlainSerializer
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, PlainSerializer
 
 from jobkit.ids import JOB_ID_PATTERN, MODEL_NAME, SHA256_PATTERN
 
@@ -36,6 +36,13 @@ def rfc3339(moment: datetime) -> str:
     return moment.isoformat(timespec="milliseconds").replace("+00:00", "Z")
 
 
+def _whole_number(value: object) -> object:
+    """Take 24.0 for 24: JSON knows one kind of number only."""
+    return int(value) if isinstance(value, float) and value.is_integer() else value
+
+
+# To stand last, so that it comes first and the bounds show in the document.
+WHOLE = BeforeValidator(_whole_number)
 Moment = Annotated[
     datetime,
     PlainSerializer(rfc3339, return_type=str, when_used="json"),

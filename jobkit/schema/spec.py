@@ -1,10 +1,10 @@
 """What a job is asked to do. `{"mesh_id": …}` alone is a whole job."""
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
-from jobkit.schema.base import REFERENCE_PATTERN, TEXT_PATTERN, MeshId, ModelReference, Request
+from jobkit.schema.base import REFERENCE_PATTERN, TEXT_PATTERN, WHOLE, MeshId, ModelReference, Request
 
 Format = Literal["ply", "stl", "obj", "off", "glb", "gltf", "3mf"]
 OutputFormat = Literal["ply", "stl", "obj", "off", "glb", "3mf"]
@@ -12,8 +12,20 @@ DEFAULT_MODEL = "default"
 DEFAULT_NETWORK = "default-network"
 SELF = "self"
 
+Resolution = Annotated[int, Field(ge=8, le=128), WHOLE]
+Overlap = Annotated[int, Field(ge=0, le=8), WHOLE]
+HoleId = Annotated[int, Field(ge=0, le=2**31 - 1), WHOLE]
+MemoryMb = Annotated[int, Field(ge=256, le=1_048_576), WHOLE]
+Seed = Annotated[int, Field(ge=0, le=2**32 - 1), WHOLE]
 Text = Annotated[str, Field(max_length=200, pattern=TEXT_PATTERN)]
-MetadataKey = Annotated[str, Field(pattern=r"^[A-Za-z0-9_.-]{1,64}$")]
+_METADATA_KEY = r"^[A-Za-z0-9_.-]{1,64}$"
+MetadataKey = Annotated[str, Field(pattern=_METADATA_KEY)]
+
+
+def _name_property_pattern(schema: dict[str, Any]) -> None:
+    """Say that other keys are refused; patternProperties alone would let them pass."""
+    ((_, values),) = schema.pop("patternProperties").items()
+    schema.update(propertyNames={"pattern": _METADATA_KEY}, additionalProperties=values)
 
 
 class PatchOptions(Request):
@@ -22,13 +34,9 @@ class PatchOptions(Request):
     length: float | None = Field(
         default=None, gt=0, le=1e12, description="Side of a patch, in mesh units.", examples=[4.5]
     )
-    resolution: int | None = Field(
-        default=None, ge=8, le=128, description="Bins along one side of a patch.", examples=[24]
-    )
-    overlap: int | None = Field(
+    resolution: Resolution | None = Field(default=None, description="Bins along one side of a patch.", examples=[24])
+    overlap: Overlap | None = Field(
         default=None,
-        ge=0,
-        le=8,
         description="k of the paper: every quad carries its centre patch and 4 k offset ones.",
         examples=[2],
     )
@@ -77,7 +85,7 @@ class HoleSelection(Request):
     all_but_largest: bool = Field(
         default=False, description="Leave the loop with the longest rim open: the border of an open scan."
     )
-    ids: list[Annotated[int, Field(ge=0, le=2**31 - 1)]] | None = Field(
+    ids: list[HoleId] | None = Field(
         default=None,
         min_length=1,
         max_length=100_000,
@@ -99,9 +107,7 @@ class Limits(Request):
     """Ceilings of one attempt, at most those of the service. Null: those of the service."""
 
     time_s: float | None = Field(default=None, ge=1, le=86_400, description="Wall-clock seconds.", examples=[120.0])
-    memory_mb: int | None = Field(
-        default=None, ge=256, le=1_048_576, description="Memory of the engine, in MiB.", examples=[2048]
-    )
+    memory_mb: MemoryMb | None = Field(default=None, description="Memory of the engine, in MiB.", examples=[2048])
 
 
 def default_method() -> DictionaryMethod:
@@ -116,12 +122,13 @@ class RepairSpec(Request):
     holes: HoleSelection = Field(default_factory=HoleSelection, description="Which holes are filled.")
     output: Output = Field(default_factory=Output, description="What is handed back.")
     limits: Limits = Field(default_factory=Limits, description="Ceilings of one attempt.")
-    seed: int = Field(default=0, ge=0, le=2**32 - 1, description="Starts every random choice.", examples=[0])
+    seed: Seed = Field(default=0, description="Starts every random choice.", examples=[0])
     label: Text | None = Field(default=None, description="A name for people.", examples=["station 4, part 1187"])
     metadata: dict[MetadataKey, Text] = Field(
         default_factory=dict,
         max_length=16,
         description="Up to 16 facts of the sender's own, handed back unread.",
+        json_schema_extra=_name_property_pattern,
         examples=[{"order": "A-17"}],
     )
 

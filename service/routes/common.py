@@ -57,6 +57,7 @@ def _conditional_headers(
 CONDITIONAL = [Depends(_conditional_headers)]
 
 BINARY: Mapping[str, Any] = {"type": "string", "format": "binary"}
+FILE: Mapping[str, Any] = {**BINARY, "minLength": 1}
 _ALWAYS = (401, 403, 422, 500, 503)
 _MEANING = {
     304: "What the entity tag names has not changed.",

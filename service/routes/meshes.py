@@ -14,6 +14,7 @@ from service.problems import RETRY_AFTER_S
 from service.routes.common import (
     BINARY,
     CONDITIONAL,
+    FILE,
     MeshIdPath,
     described_header,
     json_response,
@@ -35,11 +36,11 @@ _UPLOAD_BODY: dict[str, Any] = {
         "required": True,
         "description": "The file itself, or a form with the file in its part `file`.",
         "content": {
-            "application/octet-stream": {"schema": BINARY},
+            "application/octet-stream": {"schema": FILE},
             "multipart/form-data": {
                 "schema": {
                     "type": "object",
-                    "properties": {"file": {**BINARY, "description": "The mesh."}},
+                    "properties": {"file": {**FILE, "description": "The mesh."}},
                     "required": ["file"],
                     "additionalProperties": False,
                 }

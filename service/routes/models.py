@@ -17,10 +17,12 @@ from service.problems import invalid_request
 from service.routes.common import (
     BINARY,
     CONDITIONAL,
+    FILE,
     ModelNamePath,
     VersionPath,
     described_header,
     json_response,
+    linked,
     not_modified,
     problems,
 )
@@ -30,19 +32,29 @@ from service.uploads import UploadRules, receive_upload
 
 router = APIRouter(tags=["models"], route_class=StrictRoute)
 
-_LOCATION = {"headers": {"Location": described_header("Path of the version.")}}
+_LOCATION = {
+    "headers": {"Location": described_header("Path of the version.")},
+    "links": {
+        operation: {
+            "operationId": operation,
+            "parameters": {"name": "$response.body#/name", "version": "$response.body#/version"},
+        }
+        for operation in ("get_model_version", "get_model_artifact")
+    }
+    | {"get_model": linked("get_model", "$response.body#/name", "name")},
+}
 _BODY: dict[str, Any] = {
     "requestBody": {
         "required": True,
         "description": "A dictionary (safetensors, its card in its metadata) or a network (ONNX; its card in the part "
         "`card`).",
         "content": {
-            "application/octet-stream": {"schema": BINARY},
+            "application/octet-stream": {"schema": FILE},
             "multipart/form-data": {
                 "schema": {
                     "type": "object",
                     "properties": {
-                        "artifact": {**BINARY, "description": "The model file."},
+                        "artifact": {**FILE, "description": "The model file."},
                         "card": {"type": "object", "description": "What is known about a network."},
                     },
                     "required": ["artifact"],

@@ -9,7 +9,7 @@ from starlette.responses import Response
 
 from jobkit.schema import JobSpec, RepairSpec
 from service.problems import invalid_request
-from service.routes.common import IdempotencyKey, problems
+from service.routes.common import FILE, IdempotencyKey, problems
 from service.routes.jobs import ACCEPTED, answer_submission
 from service.routes.meshes import MESH_PREFIX, register_mesh
 from service.services import PrincipalDep, ServicesDep
@@ -28,7 +28,7 @@ _BODY: dict[str, Any] = {
                 "schema": {
                     "type": "object",
                     "properties": {
-                        "mesh": {"type": "string", "format": "binary", "description": "The mesh."},
+                        "mesh": {**FILE, "description": "The mesh."},
                         "spec": {"$ref": "#/components/schemas/RepairSpec"},
                     },
                     "required": ["mesh"],
