@@ -1,0 +1,1 @@
+"""Learns models, evaluates them on held-out meshes, and publishes them."""

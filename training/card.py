@@ -1,0 +1,128 @@
+"""Model cards: the facts inside a model file, and the page beside it."""
+
+from pathlib import Path
+from typing import Any
+
+from quadpatch.model_file import Card
+from training.dictionary import Learned, LearningOptions
+from training.patterns import PATTERNS
+from training.sources import Source, corpus_sha256
+
+INTENDED_USE = (
+    "Completing height-map patches of scanned surfaces inside holes, over a smooth outline, as Quadpatch does it. It "
+    "invents plausible relief; it does not measure. Not for patches normalised in another way, and not as evidence of "
+    "what a damaged object looked like."
+)
+
+
+def dictionary_card(
+    name: tuple[str, int | None],
+    learned: Learned,
+    sources: tuple[list[Source], list[Source]],
+    options: LearningOptions,
+    command: str,
+) -> Card:
+    """Gather what there is to say about a dictionary.
+
+    Parameters
+    ----------
+    name : str, int or None
+        And version, if it is to have a certain one.
+    learned : Learned
+    sources : list of Source, list of Source
+        Meshes learned from, and meshes measured on.
+    options : LearningOptions
+    command : str
+        What was typed, without folders.
+
+    Returns
+    -------
+    dict
+        JSON-ready; the same for the same bytes of input, wherever they lie.
+    """
+    trained_on, held_out = sources
+    recipe, ksvd = options.recipe, options.ksvd
+    procedural = {"patterns": sorted(PATTERNS), "n_each": options.n_procedural, "seed": options.seed}
+    scales = ", ".join(f"{scale:g}" for scale in recipe.scales)
+    base = f"{recipe.length:g} mesh units" if recipe.length else "as wide as a repair's own, by mean edge length"
+    parts = [f"{source.sha256} {source.name}" for source in trained_on]
+    return {
+        "name": name[0],
+        "version": name[1],
+        "description": (
+            f"{ksvd.n_atoms} atoms of {recipe.resolution} x {recipe.resolution} bins, learned by K-SVD from "
+            f"{learned.n_patches} patches of {len(trained_on)} meshes and "
+            f"{options.n_procedural * len(PATTERNS)} procedural reliefs."
+        ),
+        "length_rule": "auto",
+        "recipe": {
+            "signal": "heights over the outline (30 Laplacian iterations), mean removed, divided by their spread",
+            "training_patch_length": f"patches {base}; times {scales}",
+            "n_iterations": ksvd.n_iterations,
+            "overlap": recipe.overlap,
+            "max_places_per_mesh": recipe.max_seeds,
+            "n_patches": learned.n_patches,
+            "rms_error_by_iteration": [round(float(error), 5) for error in learned.errors],
+        },
+        "training_corpus": [source.facts() for source in trained_on],
+        "procedural": procedural if options.n_procedural else {},
+        "held_out": [source.facts() for source in held_out],
+        "corpus_sha256": corpus_sha256([*parts, f"procedural {options.n_procedural} seed {options.seed}"]),
+        "metrics": learned.metrics,
+        "licence": "GPL-3.0-or-later",
+        "intended_use": INTENDED_USE,
+        "command": command,
+        "seed": options.seed,
+    }
+
+
+def write_card_page(path: Path, card: Card, sha256: str) -> None:
+    """Write the card as a Markdown page."""
+    path.write_text(_page(card, sha256), "utf-8")
+
+
+def _page(card: Card, sha256: str) -> str:
+    version = f"@{card['version']}" if card["version"] else ""
+    lines = [f"# {card['name']}{version}", "", str(card["description"]), ""]
+    lines += ["| | |", "| --- | --- |"]
+    lines += [f"| {key} | {value} |" for key, value in _facts(card, sha256).items()]
+    lines += ["", "## Intended use", "", str(card["intended_use"])]
+    lines += ["", "## How it was made", "", "```", str(card["command"]), "```", ""]
+    lines += [f"- {key.replace('_', ' ')}: {value}" for key, value in card["recipe"].items()]
+    lines += ["", "## Learned from", "", *_mesh_table(card["training_corpus"])]
+    if card["procedural"]:
+        made = card["procedural"]
+        lines += ["", f"And {made['n_each']} of each procedural relief, seed {made['seed']}: "]
+        lines[-1] += ", ".join(made["patterns"]) + "."
+    if card["metrics"]:
+        lines += ["", "## Measured on", "", *_mesh_table(card["held_out"]), "", *_metric_lines(card["metrics"])]
+    return "\n".join(lines) + "\n"
+
+
+def _facts(card: Card, sha256: str) -> dict[str, Any]:
+    return {
+        "kind": "dictionary",
+        "licence": card["licence"],
+        "seed": card["seed"],
+        "corpus sha256": f"`{card['corpus_sha256']}`",
+        "file sha256": f"`{sha256}`",
+    }
+
+
+def _mesh_table(meshes: list[dict[str, str]]) -> list[str]:
+    rows = [f"| {m['name']} | {m['origin']} | {m['licence']} | `{m['sha256'][:12]}` |" for m in meshes]
+    return ["| mesh | origin | licence and attribution | sha256 |", "| --- | --- | --- | --- |", *rows]
+
+
+def _metric_lines(metrics: dict[str, float]) -> list[str]:
+    lines = [
+        "A disk in the middle of each held-out patch is hidden (its width in percent of the patch's side stands in the",
+        "name) and completed. `error`: root mean square error in the disk, in units of the patch's own spread;",
+        "`to_plate`: divided by that of a thin plate over the same hole; `to_unhidden`: divided by that of coding the",
+        "whole patch. One patch at a time, over the outline of the undamaged mesh: these figures rank dictionaries,",
+        "they do not foretell the error of a repair.",
+        "",
+        "| measure | value |",
+        "| --- | --- |",
+    ]
+    return lines + [f"| {key} | {value:g} |" for key, value in metrics.items()]

@@ -1,0 +1,149 @@
+"""Training patches: the detail of measured surface, cut out by the method's own stages.
+
+The detail of a patch is its heights minus those of the smoothed outline over the same bins. Repairing codes the same
+quantity, made by the same functions, so a dictionary meets in a repair what it has seen here.
+"""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from quadpatch.completion import SMOOTHING_ITERATIONS
+from quadpatch.errors import NoQuadsError
+from quadpatch.filling.fill import fill_holes
+from quadpatch.formats.reading import read_scan
+from quadpatch.mesh.measures import mean_edge_length
+from quadpatch.mesh.smoothing import laplacian_smooth
+from quadpatch.mesh.weld import weld
+from quadpatch.patches.folding import is_height_map
+from quadpatch.patches.layout import Sampled, lay_out, patchify, take
+from quadpatch.patches.scale import EDGES_PER_BIN, PatchScale
+from quadpatch.sparse.signals import to_signals
+from quadpatch.types import BoolArray, FloatArray, TriangleMesh
+
+# Patches that vary less than this part of their side show noise, not a pattern worth an atom.
+LEAST_RELIEF = 1e-4
+# Scans have holes, folds and borders; atoms are learned from patches that are known almost everywhere.
+LEAST_KNOWN = 0.8
+# Training wants more patches than a repair: the quads that carry them are smaller by this factor than the patches.
+QUADS_PER_LENGTH = 2.0
+
+
+@dataclass(frozen=True)
+class PatchRecipe:
+    """How patches are cut out of a training mesh.
+
+    Attributes
+    ----------
+    resolution : int
+        Bins along one side.
+    length : float or None
+        Side of the smallest patches in mesh units; None: bins as wide as in a repair, relative to the mean edge.
+    scales : tuple of float
+        Patches are cut at each of these multiples of the length.
+    overlap : int
+        k: besides its centre, every quad carries 4 k offset patches.
+    max_seeds : int
+        At most so many places of one mesh, drawn at random, so that a large scan does not drown a small one.
+    """
+
+    resolution: int = 24
+    length: float | None = None
+    scales: tuple[float, ...] = (1.0, 1.5, 2.0)
+    overlap: int = 1
+    max_seeds: int = 1000
+
+
+@dataclass(frozen=True)
+class TrainingPatches:
+    """Patches to learn from.
+
+    Attributes
+    ----------
+    detail : (n, N, N) float64
+        In mesh units; 0 in unknown bins.
+    known : (n, N, N) bool
+    """
+
+    detail: FloatArray
+    known: BoolArray
+
+    def __len__(self) -> int:
+        """Count of patches."""
+        return len(self.detail)
+
+    @property
+    def is_clean(self) -> BoolArray:
+        """(n,) bool, True = known in every bin."""
+        return np.asarray(self.known.all(axis=(1, 2)))
+
+    @staticmethod
+    def joined(parts: "list[TrainingPatches]", resolution: int) -> "TrainingPatches":
+        """Join patches of several meshes."""
+        none = np.zeros((0, resolution, resolution))
+        return TrainingPatches(
+            np.concatenate([none, *(part.detail for part in parts)]),
+            np.concatenate([none > 0.0, *(part.known for part in parts)]),
+        )
+
+
+def read_mesh(path: Path) -> TriangleMesh:
+    """Read a training mesh from any format that can be repaired; raises MeshError."""
+    scan = read_scan(path)
+    return weld(scan.vertices, scan.triangles).mesh
+
+
+def cut_patches(mesh: TriangleMesh, recipe: PatchRecipe, rng: np.random.Generator) -> TrainingPatches:
+    """Cut patches of several sizes out of a mesh, wherever it is a height map with some relief.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+        Its holes stay holes: bins in them are unknown.
+    recipe : PatchRecipe
+    rng : numpy.random.Generator
+        Draws the places where there are more than `max_seeds`.
+
+    Returns
+    -------
+    TrainingPatches
+        None where the mesh is too small to carry one.
+    """
+    undamaged = fill_holes(mesh, [])
+    outline = laplacian_smooth(mesh, SMOOTHING_ITERATIONS)
+    length = recipe.length or EDGES_PER_BIN * recipe.resolution * mean_edge_length(mesh)
+    try:
+        seeds = lay_out(outline, PatchScale(length / QUADS_PER_LENGTH, recipe.resolution, recipe.overlap))
+    except NoQuadsError:
+        return TrainingPatches.joined([], recipe.resolution)
+    if len(seeds) > recipe.max_seeds:
+        seeds = take(seeds, np.sort(rng.choice(len(seeds), recipe.max_seeds, replace=False)))
+    sizes = (PatchScale(scale * length, recipe.resolution, recipe.overlap) for scale in recipe.scales)
+    return TrainingPatches.joined(
+        [_worth_learning(patchify(undamaged, outline, seeds, size)) for size in sizes], recipe.resolution
+    )
+
+
+def _worth_learning(sampled: Sampled) -> TrainingPatches:
+    """Keep the patches that are height maps, known almost everywhere and not flat."""
+    patches = sampled.patches
+    detail = np.where(patches.known, patches.heights - sampled.outline, 0.0)
+    _, scaling = to_signals(detail, patches.known)
+    keep = is_height_map(patches) & (patches.known.mean(axis=(1, 2)) >= LEAST_KNOWN)
+    keep &= scaling.spread > LEAST_RELIEF * patches.length
+    return TrainingPatches(detail[keep], patches.known[keep])
+
+
+def turn_at_random(patches: TrainingPatches, rng: np.random.Generator) -> TrainingPatches:
+    """Turn each patch by a random multiple of 90 degrees, and mirror it or not.
+
+    The frame of a quad may point along any of its sides, so a dictionary must know its patterns in all of them.
+    """
+    turns, is_mirrored = rng.integers(0, 4, len(patches)), rng.random(len(patches)) < 0.5
+    detail, known = patches.detail.copy(), patches.known.copy()
+    for grid in (detail, known):
+        for n_turns in range(1, 4):
+            grid[turns == n_turns] = np.rot90(grid[turns == n_turns], n_turns, axes=(1, 2))
+        grid[is_mirrored] = grid[is_mirrored].transpose(0, 2, 1)
+    return TrainingPatches(detail, known)

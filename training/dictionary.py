@@ -1,0 +1,140 @@
+"""Learning a dictionary: cut patches, learn atoms, measure them on meshes kept aside.
+
+Everything random follows from one seed, so the same meshes and options give the same bytes (on the same kind of
+processor and the same numpy: elsewhere matrix products may round differently).
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from quadpatch.errors import StageError
+from quadpatch.sparse.dictionary import Dictionary
+from quadpatch.sparse.ksvd import KsvdOptions, OnIteration, masked_ksvd
+from quadpatch.sparse.signals import to_signals
+from quadpatch.types import FloatArray, Progress, TriangleMesh, no_progress
+from training.corpus import PatchRecipe, TrainingPatches, cut_patches, read_mesh, turn_at_random
+from training.evaluation import evaluate
+from training.patterns import PATTERNS
+from training.procedural import reliefs
+from training.sources import Source
+
+# Procedural reliefs to measure on come from seeds that no training run uses.
+HOLDOUT_SEED_OFFSET = 1_000_000
+
+
+@dataclass(frozen=True)
+class LearningOptions:
+    """What to learn from, and how.
+
+    Attributes
+    ----------
+    recipe : PatchRecipe
+    ksvd : KsvdOptions
+    n_procedural : int
+        Procedural meshes of each pattern.
+    seed : int
+    """
+
+    recipe: PatchRecipe = field(default_factory=PatchRecipe)
+    ksvd: KsvdOptions = field(default_factory=KsvdOptions)
+    n_procedural: int = 0
+    seed: int = 0
+
+
+@dataclass(frozen=True)
+class Learned:
+    """A dictionary, and how it came about.
+
+    Attributes
+    ----------
+    dictionary : Dictionary
+    errors : (n_iterations,) float64
+        Root mean square error on the training signals after each iteration; 1 is the spread of a patch.
+    n_patches : int
+        Training patches.
+    metrics : dict
+        On the meshes kept aside; empty without any.
+    """
+
+    dictionary: Dictionary
+    errors: FloatArray
+    n_patches: int
+    metrics: dict[str, float]
+
+
+def learn_dictionary(
+    sources: list[Source],
+    holdout: list[Source],
+    options: LearningOptions,
+    progress: Progress = no_progress,
+    on_iteration: OnIteration | None = None,
+) -> Learned:
+    """Learn a dictionary from meshes and procedural reliefs.
+
+    Parameters
+    ----------
+    sources : list of Source
+        Meshes to learn from.
+    holdout : list of Source
+        Meshes to measure on; with `n_procedural`, one procedural relief of each pattern joins them.
+    options : LearningOptions
+    progress : callable
+        Stages `training patches` and `held-out patches`.
+    on_iteration : callable, optional
+        Told the error after each iteration of K-SVD.
+
+    Raises
+    ------
+    StageError
+        If the meshes give fewer patches than atoms.
+    MeshError
+        If a mesh can't be read.
+    """
+    ksvd = options.ksvd
+    patches = _gather(sources, options, (options.n_procedural, options.seed), _named(progress, "training patches"))
+    if len(patches) < ksvd.n_atoms:
+        raise StageError(f"the meshes give {len(patches)} patches; {ksvd.n_atoms} atoms need at least as many")
+    patches = turn_at_random(patches, np.random.default_rng([options.seed, 1]))
+    signals, _ = to_signals(patches.detail, patches.known)
+    rng = np.random.default_rng([options.seed, 2])
+    atoms, errors = masked_ksvd(signals, patches.known.reshape(signals.shape), ksvd, rng, on_iteration)
+    dictionary = Dictionary(_in_file_precision(atoms), options.recipe.resolution, ksvd.n_nonzero)
+    made = (min(options.n_procedural, 1), options.seed + HOLDOUT_SEED_OFFSET)
+    unseen = _gather(holdout, options, made, _named(progress, "held-out patches"))
+    clean = unseen.detail[unseen.is_clean]
+    return Learned(dictionary, errors, len(patches), evaluate(dictionary, clean) if len(clean) else {})
+
+
+def _gather(
+    sources: list[Source], options: LearningOptions, made: tuple[int, int], progress: Progress
+) -> TrainingPatches:
+    """Cut the patches of all meshes, in their order; `made` is how many of each procedural relief, and their seed."""
+    cut = []
+    for i, (mesh, fraction) in enumerate(_meshes(sources, *made)):
+        cut.append(cut_patches(mesh, options.recipe, np.random.default_rng([made[1], 0, i])))
+        progress("", fraction)
+    return TrainingPatches.joined(cut, options.recipe.resolution)
+
+
+def _meshes(sources: list[Source], n_procedural: int, seed: int) -> Iterator[tuple[TriangleMesh, float]]:
+    """Read or make one mesh after the other; with the part of the work that is done after it."""
+    n_all = len(sources) + n_procedural * len(PATTERNS)
+    done = 0
+    for source in sources:
+        done += 1
+        yield read_mesh(source.path), done / n_all
+    for relief in reliefs(n_procedural, seed):
+        done += 1
+        yield relief.mesh, done / n_all
+
+
+def _named(progress: Progress, stage: str) -> Progress:
+    return lambda _, fraction: progress(stage, fraction)
+
+
+def _in_file_precision(atoms: FloatArray) -> FloatArray:
+    """Round atoms as their file will, so that what is measured is what is published."""
+    rounded = atoms.astype(np.float32).astype(np.float64)
+    return np.asarray(rounded / np.linalg.norm(rounded, axis=0))

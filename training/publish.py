@@ -1,0 +1,48 @@
+"""Publishing a model in the registry that the service and the workers use."""
+
+import re
+from pathlib import Path
+
+from jobkit.database import Database
+from jobkit.ids import MODEL_NAME
+from jobkit.registry import Registry
+from jobkit.schema import ModelVersion
+from jobkit.settings import load_settings
+from jobkit.store import open_store
+from quadpatch.errors import OptionError
+
+
+def parse_reference(text: str) -> tuple[str, int | None]:
+    """Part `name` or `name@version`.
+
+    Raises
+    ------
+    OptionError
+        If it is neither, or no name that a registry takes.
+    """
+    match = re.fullmatch(rf"(?P<name>{MODEL_NAME})(?:@(?P<version>[1-9][0-9]*))?", text)
+    if match is None:
+        raise OptionError(f"{text!r} is no name of a model; use small letters, digits, dots and dashes, then @version")
+    return match["name"], int(match["version"]) if match["version"] else None
+
+
+def publish(name: str, version: int | None, path: Path) -> ModelVersion:
+    """Register a model file as that version of a name, or as the next one.
+
+    The registry is the one that the QUADPATCH_ environment variables point to, as they do for the service; it may be
+    running meanwhile.
+
+    Raises
+    ------
+    JobkitError
+        If a setting is wrong, the name or the version is taken, or the registry can't be reached.
+    """
+    settings = load_settings()
+    settings.data_dir.mkdir(parents=True, exist_ok=True)
+    database = Database(settings.effective_database_url)
+    database.migrate()
+    try:
+        registry = Registry(database, open_store(settings.effective_object_store_url))
+        return registry.publish_file(name, path, version=version)[0]
+    finally:
+        database.close()
