@@ -1,0 +1,124 @@
+"""One real box per test process, and meshes built in code."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import psutil
+import pytest
+
+from client.sdk import Client
+from onebox.demo import running_box
+from quadpatch.types import Triangles, Vertices
+
+# Short leases, so that the loss of a worker shows within seconds.
+FAST = {"QUADPATCH_HEARTBEAT_S": "0.5", "QUADPATCH_LEASE_S": "3", "QUADPATCH_RECONCILE_S": "0.5"}
+
+
+@dataclass(frozen=True)
+class RunningBox:
+    """A box, its folder and its processes."""
+
+    url: str
+    data: Path
+
+    def workers(self) -> list[psutil.Process]:
+        """Living worker processes."""
+        return self._processes("worker")
+
+    def engines(self) -> list[psutil.Process]:
+        """Living engine children of all workers."""
+        nurseries = [n for w in self.workers() for n in w.children() if "worker.nursery" in n.cmdline()]
+        return [e for n in nurseries for e in n.children() if e.status() != psutil.STATUS_ZOMBIE]
+
+    def requests(self) -> list[Path]:
+        """Folders of requests that lie on the disk."""
+        return list((self.data / "work").glob("*/request-*"))
+
+    def _processes(self, module: str) -> list[psutil.Process]:
+        command = ["-m", module]
+        log_owner = str(self.data)
+        return [
+            process
+            for process in psutil.process_iter()
+            if _command(process)[1:] == command and process.environ().get("QUADPATCH_DATA_DIR") == log_owner
+        ]
+
+
+@pytest.fixture(scope="session")
+def box(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RunningBox]:
+    data = tmp_path_factory.mktemp("box")
+    with pytest.MonkeyPatch.context() as environment:
+        for name, value in FAST.items():
+            environment.setenv(name, value)
+        with running_box(data) as url:
+            yield RunningBox(url, data)
+
+
+@pytest.fixture
+def client(box: RunningBox) -> Iterator[Client]:
+    with Client(box.url) as client:
+        yield client
+
+
+def _command(process: psutil.Process) -> list[str]:
+    try:
+        return process.cmdline()
+    except psutil.Error:
+        return []
+
+
+def punched_relief(n: int, n_holes: int = 4) -> tuple[Vertices, Triangles]:
+    """A wavy square of n by n vertices with a row of round holes."""
+    axis = np.linspace(0.0, 1.0, n)
+    x, y = np.meshgrid(axis, axis, indexing="xy")
+    vertices = np.stack([x, y, 0.02 * np.sin(20.0 * x) * np.cos(15.0 * y)], axis=-1).reshape(-1, 3)
+    corner = (np.arange(n - 1)[:, None] * n + np.arange(n - 1)).ravel()
+    triangles = np.concatenate(
+        [
+            np.stack([corner, corner + 1, corner + n + 1], axis=1),
+            np.stack([corner, corner + n + 1, corner + n], axis=1),
+        ]
+    )
+    middles = vertices[triangles].mean(axis=1)[:, :2]
+    centres = np.stack([(np.arange(n_holes) + 0.5) / n_holes, np.full(n_holes, 0.5)], axis=1)
+    is_open = (np.linalg.norm(middles[:, None] - centres, axis=2) < 0.06).any(axis=1)
+    kept = triangles[~is_open]
+    used, renumbered = np.unique(kept, return_inverse=True)
+    return vertices[used], renumbered.reshape(-1, 3).astype(np.int64)
+
+
+def ply_bytes(vertices: Vertices, triangles: Triangles, kind: str = "float") -> bytes:
+    """Binary PLY with `float` or `double` coordinates."""
+    header = (
+        f"ply\nformat binary_little_endian 1.0\nelement vertex {len(vertices)}\n"
+        + "".join(f"property {kind} {axis}\n" for axis in "xyz")
+        + f"element face {len(triangles)}\nproperty list uchar int vertex_indices\nend_header\n"
+    )
+    faces = np.zeros(len(triangles), [("count", "u1"), ("corners", "<i4", 3)])
+    faces["count"], faces["corners"] = 3, triangles
+    return header.encode() + vertices.astype("<f4" if kind == "float" else "<f8").tobytes() + faces.tobytes()
+
+
+def stl_bytes(vertices: Vertices, triangles: Triangles) -> bytes:
+    """Binary STL with zero normals."""
+    facets = np.zeros(len(triangles), [("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+    facets["corners"] = vertices[triangles]
+    return b"\0" * 80 + np.uint32(len(triangles)).tobytes() + facets.tobytes()
+
+
+@pytest.fixture
+def relief_file(tmp_path: Path) -> Callable[[str], Path]:
+    """Writes a punched relief as `float.ply`, `double.ply` or `binary.stl`."""
+
+    def write(name: str) -> Path:
+        vertices, triangles = punched_relief(40)
+        path = tmp_path / name
+        if name.endswith(".stl"):
+            path.write_bytes(stl_bytes(vertices, triangles))
+        else:
+            path.write_bytes(ply_bytes(vertices, triangles, path.stem))
+        return path
+
+    return write

@@ -1,0 +1,122 @@
+"""A file is parsed by an engine child and nowhere else; whatever it is, the workers live on."""
+
+import itertools
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from client.errors import JobFailedError, MeshRejectedError, RefusedError
+from client.sdk import Client
+from jobkit.schema import Job, JobSpec, Mesh
+
+INPUTS = Path(__file__).resolve().parents[3] / "shared" / "inputs"
+# Side files of other meshes, and the list of all of them: nothing that anybody would upload by itself.
+NO_MESHES = {".bin", ".mtl", ".png", ".json"}
+
+HEADER = "ply\nformat ascii 1.0\nelement vertex {v}\nproperty float x\nproperty float y\nproperty float z\n"
+FACES = "element face {f}\nproperty list uchar int vertex_indices\nend_header\n"
+HOSTILE = {
+    "empty.ply": (b"", "unreadable_mesh"),
+    "garbage.ply": (bytes(range(256)) * 40, "unreadable_mesh"),
+    "garbage.stl": (b"solid nothing\n" + bytes(range(256)) * 4, "unreadable_mesh"),
+    "truncated.ply": ((HEADER + FACES).format(v=3, f=1).encode() + b"0 0 0\n1 0 0\n", "unreadable_mesh"),
+    "bomb.ply": ((HEADER + FACES).format(v=2_000_000_000, f=1).encode(), "mesh_too_large"),
+    "infinite.ply": ((HEADER + FACES).format(v=3, f=1).encode() + b"0 0 0\n1 0 inf\n0 1 0\n3 0 1 2\n", "not_finite"),
+    "index.ply": ((HEADER + FACES).format(v=3, f=1).encode() + b"0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n", "index_out_of_range"),
+    "no_faces.ply": ((HEADER + FACES).format(v=3, f=0).encode() + b"0 0 0\n1 0 0\n0 1 0\n", "empty_mesh"),
+    "notes.txt": (b"not a mesh at all", "unsupported_format"),
+    "archive.3mf": (b"PK\x03\x04" + bytes(100), "unreadable_mesh"),
+    "broken.glb": (b"glTF\x02\0\0\0\xff\xff\xff\x7f" + bytes(40), "unreadable_mesh"),
+}
+
+
+@pytest.fixture
+def steady_workers(box: Any) -> Iterator[None]:
+    """Holds the box to the processes that it had before the test."""
+    before = {worker.pid for worker in box.workers()}
+    assert before
+    yield
+    assert {worker.pid for worker in box.workers()} == before
+
+
+@pytest.mark.usefixtures("steady_workers")
+@pytest.mark.parametrize("name", HOSTILE)
+def test_a_hostile_file_is_rejected_with_its_code(client: Client, tmp_path: Path, name: str) -> None:
+    content, code = HOSTILE[name]
+    path = tmp_path / name
+    path.write_bytes(content)
+    with pytest.raises(MeshRejectedError) as caught:
+        client.wait_for_mesh(client.upload(path).id, timeout_s=60)
+    assert caught.value.problem.code == code
+    assert str(tmp_path) not in caught.value.problem.message
+
+
+@pytest.mark.usefixtures("steady_workers")
+def test_a_job_for_a_hostile_file_that_was_accepted_early_fails_with_its_code(client: Client, tmp_path: Path) -> None:
+    path = tmp_path / "cut.ply"
+    path.write_bytes((HEADER + FACES).format(v=4, f=1).encode() + b"0 0 0\n1 0 0\n")
+    mesh = client.upload(path)
+    spec = JobSpec.model_validate({"mesh_id": mesh.id, "method": {"method": "smooth"}})
+    try:
+        job = client.create_job(spec)
+    except RefusedError as refusal:
+        # The analysis was faster than this test.
+        assert refusal.problem.code == "mesh_rejected"
+        return
+    with pytest.raises(JobFailedError) as caught:
+        client.wait(job.id, timeout_s=60)
+    assert caught.value.job.error is not None
+    assert caught.value.job.error.code == "unreadable_mesh"
+    assert not caught.value.job.error.retryable
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("steady_workers")
+def test_every_file_that_people_have_gives_a_mesh_or_an_error_with_a_code(
+    client: Client, relief_file: Callable[[str], Path]
+) -> None:
+    if not INPUTS.is_dir():
+        pytest.skip(f"there is no folder {INPUTS.name} of real files beside this repository")
+    files = [path for path in sorted(INPUTS.rglob("*")) if path.is_file() and path.suffix.lower() not in NO_MESHES]
+    assert len(files) > 50
+    meshes = {str(path.relative_to(INPUTS)): client.upload(path) for path in files}
+    jobs = {name: _start(client, mesh) for name, mesh in meshes.items()}
+    endings = {name: _ending(client, meshes[name], job) for name, job in jobs.items()}
+    unclear = {name: ending for name, ending in endings.items() if ending in ("engine_error", "engine_crashed", "")}
+    assert unclear == {}
+    assert sum(ending == "mesh" for ending in endings.values()) > len(files) // 2
+    # And after all that, work goes on.
+    mesh = client.wait_for_mesh(client.upload(relief_file("float.ply")).id, timeout_s=60)
+    assert mesh.facts is not None
+
+
+def _start(client: Client, mesh: Mesh) -> Job | str:
+    spec = {"mesh_id": mesh.id, "method": {"method": "smooth"}, "output": {"preview": False}}
+    try:
+        return client.create_job(JobSpec.model_validate(spec))
+    except RefusedError as refusal:
+        return refusal.problem.code
+
+
+def _ending(client: Client, mesh: Mesh, job: Job | str) -> str:
+    """`mesh`, or the code of the error."""
+    if isinstance(job, Job):
+        try:
+            client.wait(job.id, timeout_s=120)
+        except JobFailedError as failure:
+            return failure.job.error.code if failure.job.error else ""
+        return "mesh"
+    try:
+        client.wait_for_mesh(mesh.id, timeout_s=120)
+    except MeshRejectedError as rejection:
+        return rejection.problem.code
+    return job
+
+
+def test_all_codes_of_hostile_files_are_documented() -> None:
+    from quadpatch import errors  # noqa: PLC0415 - the tree is drawn in its docstring
+
+    for code in set(itertools.chain(code for _, code in HOSTILE.values())):
+        assert f" {code} " in (errors.__doc__ or "")

@@ -1,0 +1,105 @@
+"""Cancel, crash and stop in the middle of a repair; nothing may stay behind and no job may hang."""
+
+import os
+import signal
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from client.errors import JobCanceledError, JobFailedError
+from client.sdk import Client
+from jobkit.schema import Job, JobSpec, JobState
+from onebox.demo import find_scan, running_box
+
+# Takes about ten seconds: time enough to interrupt it.
+LONG = {"method": {"method": "dictionary", "model": "self"}, "output": {"preview": False}}
+
+
+def wait_until(condition: Callable[[], object], timeout_s: float = 60.0) -> None:
+    deadline = time.monotonic() + timeout_s
+    while not condition():
+        assert time.monotonic() < deadline
+        time.sleep(0.05)
+
+
+def start_long_job(client: Client, box: Any) -> Job:
+    """Start a long job and return it when its engine is at work."""
+    mesh = client.wait_for_mesh(client.upload(find_scan()).id, timeout_s=60)
+    job = client.create_job(JobSpec.model_validate({"mesh_id": mesh.id, **LONG}))
+    wait_until(lambda: client.job(job.id).percent > 0 and box.engines())
+    return job
+
+
+def test_a_canceled_job_leaves_no_process_and_no_file(client: Client, box: Any) -> None:
+    job = start_long_job(client, box)
+    assert client.cancel(job.id).state in (JobState.CANCELING, JobState.CANCELED)
+    with pytest.raises(JobCanceledError):
+        client.wait(job.id, timeout_s=30)
+    assert box.engines() == []
+    assert box.requests() == []
+    assert not (box.data / "objects" / "results" / job.id).exists()
+
+
+def test_an_engine_killed_in_every_attempt_ends_in_a_clear_failure(client: Client, box: Any) -> None:
+    job = start_long_job(client, box)
+    while not client.job(job.id).state.is_terminal:
+        for engine in box.engines():
+            engine.kill()
+        time.sleep(0.05)
+    with pytest.raises(JobFailedError) as caught:
+        client.wait(job.id, timeout_s=30)
+    error = caught.value.job.error
+    assert error is not None
+    assert (error.code, error.message) == ("engine_crashed", "the engine was ended by SIGKILL")
+    assert caught.value.job.attempt == caught.value.job.max_attempts
+    assert box.requests() == []
+
+
+def test_a_killed_worker_takes_its_engine_along_and_another_attempt_succeeds(client: Client, box: Any) -> None:
+    job = start_long_job(client, box)
+    (engine,) = box.engines()
+    worker = engine.parent().parent()
+    worker.kill()
+    wait_until(lambda: not engine.is_running())
+    finished = client.wait(job.id, timeout_s=120)
+    assert finished.attempt == 2
+    wait_until(lambda: len(box.workers()) == 2)
+    wait_until(lambda: box.requests() == [])
+
+
+def test_a_stopped_worker_hands_its_job_back(client: Client, box: Any) -> None:
+    job = start_long_job(client, box)
+    (engine,) = box.engines()
+    engine.parent().parent().terminate()
+    finished = client.wait(job.id, timeout_s=120)
+    assert finished.state.has_result
+    assert finished.attempt <= 2
+
+
+def test_a_stopped_box_leaves_nothing_running(tmp_path: Path) -> None:
+    with running_box(tmp_path) as url, Client(url) as client:
+        (pid,) = [int(line) for line in (tmp_path / "box.lock").read_text().split()]
+        client.models()
+    assert not Path(f"/proc/{pid}").exists()
+    running = [path for path in Path("/proc").glob("[0-9]*") if _data_folder(path) == str(tmp_path)]
+    assert running == []
+
+
+def test_a_killed_box_leaves_nothing_running(tmp_path: Path) -> None:
+    with running_box(tmp_path) as url, Client(url) as client:
+        client.models()
+        os.kill(int((tmp_path / "box.lock").read_text()), signal.SIGKILL)
+        wait_until(lambda: not [p for p in Path("/proc").glob("[0-9]*") if _data_folder(p) == str(tmp_path)], 30)
+
+
+def _data_folder(process: Path) -> str:
+    try:
+        if " Z " in (process / "stat").read_text():
+            return ""
+        variables = (process / "environ").read_bytes().split(b"\0")
+    except OSError:
+        return ""
+    return next((v.partition(b"=")[2].decode() for v in variables if v.startswith(b"QUADPATCH_DATA_DIR=")), "")

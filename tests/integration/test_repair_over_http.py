@@ -1,0 +1,105 @@
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from client.sdk import Client
+from jobkit.schema import JobSpec, JobState, MeshState
+from quadpatch.formats.reading import read_scan
+from quadpatch.repair import inspect_file
+
+SMOOTH = {"method": "smooth"}
+SELF = {"method": "dictionary", "model": "self"}
+
+
+def spec(mesh_id: str, **fields: Any) -> JobSpec:
+    """A job without a picture, unless it asks for one: drawing takes longer than repairing."""
+    return JobSpec.model_validate({"mesh_id": mesh_id, "output": {"preview": False}, **fields})
+
+
+@pytest.mark.parametrize("method", [SMOOTH, SELF], ids=["smooth", "self"])
+@pytest.mark.parametrize("name", ["float.ply", "double.ply", "binary.stl"])
+def test_measured_vertices_and_faces_keep_their_bits_and_their_order(
+    client: Client, relief_file: Callable[[str], Path], tmp_path: Path, name: str, method: dict[str, str]
+) -> None:
+    source, output = relief_file(name), tmp_path / f"repaired-{name}"
+    mesh = client.upload(source)
+    job = client.wait(client.create_job(spec(mesh.id, method=method)).id, timeout_s=120)
+    client.download(job, "result", output)
+    before, after = read_scan(source), read_scan(output)
+    assert np.array_equal(after.vertices[: len(before.vertices)], before.vertices)
+    assert np.array_equal(after.triangles[: len(before.triangles)], before.triangles)
+    assert len(after.triangles) > len(before.triangles)
+    assert [hole["perimeter"] > 2 for hole in inspect_file(output)["holes"]] == [True]
+
+
+def test_a_job_leaves_a_report_and_a_picture_that_fit_its_facts(
+    client: Client, relief_file: Callable[[str], Path], tmp_path: Path
+) -> None:
+    mesh = client.upload(relief_file("float.ply"))
+    job = client.wait(client.create_job(spec(mesh.id, method=SMOOTH, output={"preview": True})).id, timeout_s=120)
+    client.download(job, "report", tmp_path / "report.json")
+    client.download(job, "preview", tmp_path / "preview.png")
+    report = json.loads((tmp_path / "report.json").read_text())
+    assert job.state == JobState.SUCCEEDED
+    assert job.percent == 100
+    assert job.result is not None
+    assert job.result.holes.model_dump() == report["counts"]
+    assert job.result.holes.found == len(report["holes"]) == 5
+    assert job.result.holes.skipped == 1
+    assert job.result.new_triangles == sum(hole["new_triangles"] for hole in report["holes"])
+    assert [stage["name"] for stage in report["stages"]][-2:] == ["write", "preview"]
+    assert (tmp_path / "preview.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_a_picture_is_drawn_on_request_only(client: Client, relief_file: Callable[[str], Path]) -> None:
+    mesh = client.upload(relief_file("float.ply"))
+    job = client.create_job(spec(mesh.id, method=SMOOTH))
+    assert client.wait(job.id, timeout_s=120).links.preview is None
+
+
+def test_the_hole_list_of_a_mesh_agrees_with_what_a_repair_finds(
+    client: Client, relief_file: Callable[[str], Path]
+) -> None:
+    mesh = client.wait_for_mesh(client.upload(relief_file("float.ply")).id, timeout_s=60)
+    plan = client.plan(spec(mesh.id, method=SMOOTH, holes={"ids": [2, 3]}))
+    job = client.wait(client.create_job(spec(mesh.id, method=SMOOTH, holes={"ids": [2, 3]})).id, timeout_s=120)
+    assert mesh.state == MeshState.READY
+    assert mesh.facts is not None
+    assert [hole.edges for hole in mesh.facts.holes] == sorted((h.edges for h in mesh.facts.holes), reverse=True)
+    assert [hole.id for hole in plan.holes if hole.selected] == [2, 3]
+    assert job.result is not None
+    assert job.result.holes.filled_smooth == plan.selected
+
+
+def test_every_format_comes_back_as_another_one_when_asked(
+    client: Client, relief_file: Callable[[str], Path], tmp_path: Path
+) -> None:
+    mesh = client.upload(relief_file("float.ply"))
+    job = client.wait(
+        client.create_job(spec(mesh.id, method=SMOOTH, output={"format": "stl", "preview": False})).id, timeout_s=120
+    )
+    client.download(job, "result", tmp_path / "repaired.stl")
+    assert read_scan(tmp_path / "repaired.stl").format == "stl"
+
+
+def test_one_idempotency_key_starts_one_job(client: Client, relief_file: Callable[[str], Path]) -> None:
+    mesh = client.upload(relief_file("float.ply"))
+    key = f"test-{mesh.id[:8]}-once"
+    first = client.create_job(spec(mesh.id, method=SMOOTH), key)
+    assert client.create_job(spec(mesh.id, method=SMOOTH), key).id == first.id
+    client.wait(first.id, timeout_s=120)
+
+
+def test_the_same_job_twice_gives_the_same_bytes(client: Client, relief_file: Callable[[str], Path]) -> None:
+    mesh = client.upload(relief_file("float.ply"))
+    jobs = [client.create_job(spec(mesh.id, method=SELF)) for _ in range(2)]
+    hashes = set()
+    for job in jobs:
+        result = client.wait(job.id, timeout_s=120).result
+        assert result is not None
+        hashes.add(result.files[0].sha256)
+    assert len(hashes) == 1
