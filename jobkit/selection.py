@@ -34,7 +34,9 @@ def resolve_method(registry: Registry, method: Method) -> ResolvedModel:
 def _pin(registry: Registry, reference: str, kind: ModelKind) -> ResolvedModel:
     version = registry.resolve(reference)
     if version.kind != kind:
-        raise ModelKindError(f"{version.name}@{version.version} is a {version.kind}; this method needs a {kind}")
+        raise ModelKindError(
+            f"{version.name}@{version.version} is of kind {version.kind}; this method needs kind {kind}"
+        )
     return ResolvedModel(
         requested=reference, kind=kind, name=version.name, version=version.version, sha256=version.sha256
     )

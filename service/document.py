@@ -50,6 +50,8 @@ def _build(app: FastAPI) -> dict[str, Any]:
         "api_key": {"type": "apiKey", "in": "header", "name": "X-API-Key", "description": "The same, in a header."},
     }
     document["security"] = [{"bearer": []}, {"api_key": []}]
+    if not app.state.settings.key_list:
+        document["security"].append({})  # as it stands, no key is asked for
     for path, operations in document["paths"].items():
         for operation in operations.values():
             _name_problems(operation["responses"])

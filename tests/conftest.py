@@ -1,8 +1,9 @@
 """What tests of several parts share: a fresh database and store, and one real Valkey per test process."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
+import numpy as np
 import pytest
 from pydantic import SecretStr
 
@@ -10,6 +11,8 @@ from jobkit.database import Database
 from jobkit.settings import Settings
 from jobkit.store import ObjectStore, open_store
 from onebox.valkey import running_valkey
+from quadpatch.model_file import save_dictionary
+from quadpatch.sparse.dictionary import Dictionary
 
 
 @pytest.fixture(scope="session")
@@ -43,3 +46,18 @@ def database(tmp_path: Path) -> Iterator[Database]:
 def store(tmp_path: Path) -> ObjectStore:
     """An empty store in the folder that `settings` names."""
     return open_store(f"file://{tmp_path / 'data' / 'objects'}")
+
+
+@pytest.fixture(scope="session")
+def dictionary_bytes(tmp_path_factory: pytest.TempPathFactory) -> Callable[[int], bytes]:
+    """Make small dictionary files as training writes them, another one for every seed."""
+    folder = tmp_path_factory.mktemp("dictionaries")
+
+    def make(seed: int) -> bytes:
+        atoms = np.random.default_rng(seed).normal(size=(64, 5))
+        dictionary = Dictionary(atoms / np.linalg.norm(atoms, axis=0), 8, 3)
+        path = folder / f"{seed}.safetensors"
+        save_dictionary(path, dictionary, {"description": f"seed {seed}", "licence": "GPL-3.0-or-later", "seed": seed})
+        return path.read_bytes()
+
+    return make

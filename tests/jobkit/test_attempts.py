@@ -1,6 +1,8 @@
 import contextlib
+import functools
 import itertools
 import threading
+from collections.abc import Callable
 from datetime import timedelta
 
 import pytest
@@ -161,12 +163,12 @@ def test_no_order_of_calls_leaves_the_drawn_life_of_a_job(
     states = [JobState.QUEUED]
     for step in steps:
         attempt = Attempt(job_id, jobs.get(job_id).attempt)
-        calls = {
+        calls: dict[str, Callable[[], object]] = {
             "start": lambda: attempts.start(job_id, "w", 30),
-            "progress": lambda a=attempt: attempts.report_progress(a, "fill", 5.0),
-            "publish": lambda a=attempt: attempts.publish(a, RESULT),
-            "fail": lambda a=attempt: attempts.fail(a, LOST),
-            "requeue": lambda a=attempt: attempts.requeue(a, LOST),
+            "progress": functools.partial(attempts.report_progress, attempt, "fill", 5.0),
+            "publish": functools.partial(attempts.publish, attempt, RESULT),
+            "fail": functools.partial(attempts.fail, attempt, LOST),
+            "requeue": functools.partial(attempts.requeue, attempt, LOST),
             "cancel": lambda: jobs.request_cancel(job_id),
             "expire": lambda: attempts.take_back_expired(utc_now() + timedelta(seconds=60)),
         }

@@ -7,6 +7,7 @@ import pytest
 from alembic.autogenerate import compare_metadata
 from alembic.migration import MigrationContext
 from sqlalchemy import create_mock_engine, inspect, text
+from sqlalchemy.dialects import postgresql
 from sqlalchemy.exc import IntegrityError
 
 from jobkit.database import Database
@@ -22,8 +23,9 @@ def test_migrations_lead_to_exactly_the_tables_of_the_models(database: Database)
 
 def test_tables_can_be_written_for_postgresql() -> None:
     statements: list[str] = []
+    dialect = postgresql.dialect()
     engine = create_mock_engine(
-        "postgresql+psycopg://", lambda sql, *_: statements.append(str(sql.compile(dialect=engine.dialect)))
+        "postgresql+psycopg://", lambda sql, *_: statements.append(str(sql.compile(dialect=dialect)))
     )
     Base.metadata.create_all(engine, checkfirst=False)
     created = "\n".join(statements)

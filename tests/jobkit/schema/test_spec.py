@@ -1,0 +1,74 @@
+from typing import Any
+
+import pytest
+from pydantic import ValidationError
+
+from jobkit.schema import CnnMethod, DictionaryMethod, JobSpec, SmoothMethod
+
+MESH = {"mesh_id": "a" * 64}
+
+
+def test_a_mesh_alone_is_a_whole_job() -> None:
+    spec = JobSpec.model_validate(MESH)
+    assert spec.method == DictionaryMethod(method="dictionary", model="default")
+    assert spec.output.format is None
+    assert spec.holes.ids is None
+
+
+def test_writing_and_reading_gives_the_same_spec() -> None:
+    spec = JobSpec.model_validate(
+        MESH | {"method": {"method": "cnn", "model": "small@2"}, "holes": {"ids": [1, 2]}, "metadata": {"order": "A"}}
+    )
+    assert JobSpec.model_validate_json(spec.model_dump_json()) == spec
+    assert JobSpec.model_validate(spec.model_dump(mode="json")) == spec
+
+
+@pytest.mark.parametrize(
+    ("name", "kind"), [("dictionary", DictionaryMethod), ("cnn", CnnMethod), ("smooth", SmoothMethod)]
+)
+def test_the_method_is_told_by_its_name(name: str, kind: type[Any]) -> None:
+    assert isinstance(JobSpec.model_validate(MESH | {"method": {"method": name}}).method, kind)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"mesh_id": "A" * 64},
+        {"mesh_id": "a" * 63},
+        {"extra": 1},
+        {"method": {"method": "magic"}},
+        {"method": {"method": "smooth", "model": "default"}},
+        {"method": {"method": "dictionary", "model": "Upper@1"}},
+        {"method": {"method": "dictionary", "model": "name@0"}},
+        {"method": {"method": "dictionary", "patches": {"resolution": 7}}},
+        {"holes": {"max_diameter": 0}},
+        {"holes": {"max_diameter": "5"}},
+        {"holes": {"max_diameter": float("inf")}},
+        {"holes": {"max_diameter": float("nan")}},
+        {"holes": {"ids": []}},
+        {"holes": {"ids": [-1]}},
+        {"seed": True},
+        {"seed": 1.5},
+        {"seed": 2**32},
+        {"limits": {"time_s": 0}},
+        {"label": "two\nlines"},
+        {"label": "a\0b"},
+        {"metadata": {f"k{i}": "v" for i in range(17)}},
+        {"metadata": {"a key": "v"}},
+        {"output": {"format": "gltf"}},
+    ],
+)
+def test_what_is_not_in_the_contract_is_refused(change: dict[str, Any]) -> None:
+    with pytest.raises(ValidationError):
+        JobSpec.model_validate(MESH | change)
+
+
+def test_a_whole_number_may_be_written_with_a_point() -> None:
+    assert JobSpec.model_validate(MESH | {"seed": 7.0}).seed == 7
+
+
+def test_every_field_of_the_document_says_what_it_is() -> None:
+    schema = JobSpec.model_json_schema()
+    for definition in (schema, *schema["$defs"].values()):
+        for name, field in definition["properties"].items():
+            assert field.get("description"), name

@@ -1,0 +1,129 @@
+from collections.abc import Iterator
+from datetime import timedelta
+
+import pytest
+from redis import Redis
+from rq import Queue
+from rq.serializers import JSONSerializer
+
+from jobkit.attempts import Attempts
+from jobkit.clock import utc_now
+from jobkit.database import Database
+from jobkit.errors import QueueUnavailableError
+from jobkit.jobs import Jobs
+from jobkit.meshes import Meshes
+from jobkit.queue import INSPECT_MESH, RUN_JOB, TaskQueue, job_entry, mesh_entry
+from jobkit.reconcile import GRACE_S, MAX_ANALYSES, reconcile, submit_analysis, submit_job
+from jobkit.schema import Job, JobState, Mesh, MeshState
+from jobkit.settings import Settings
+
+
+@pytest.fixture
+def queue(settings: Settings) -> Iterator[TaskQueue]:
+    queue = TaskQueue(settings.redis_url.get_secret_value(), settings.queue_name, 60)
+    yield queue
+    queue.close()
+
+
+@pytest.fixture
+def rq_queue(queue: TaskQueue, settings: Settings) -> Queue:
+    return Queue(settings.queue_name, connection=queue.connection, serializer=JSONSerializer)
+
+
+def test_a_submitted_job_waits_under_the_dotted_path_of_its_task(
+    database: Database, queue: TaskQueue, rq_queue: Queue, job: Job
+) -> None:
+    submit_job(database, queue, job.id, job.attempt)
+    (waiting,) = rq_queue.get_jobs()
+    assert (waiting.func_name, list(waiting.args), waiting.id) == (RUN_JOB, [job.id], job_entry(job.id, 1))
+    assert waiting.timeout == 120
+
+
+def test_an_analysis_overtakes_the_jobs(
+    database: Database, queue: TaskQueue, rq_queue: Queue, job: Job, mesh: Mesh
+) -> None:
+    submit_job(database, queue, job.id, job.attempt)
+    submit_analysis(database, queue, mesh.id)
+    assert [waiting.func_name for waiting in rq_queue.get_jobs()] == [INSPECT_MESH, RUN_JOB]
+
+
+def test_a_queue_that_lost_everything_is_filled_again(
+    database: Database, queue: TaskQueue, rq_queue: Queue, job: Job, mesh: Mesh
+) -> None:
+    submit_job(database, queue, job.id, job.attempt)
+    submit_analysis(database, queue, mesh.id)
+    rq_queue.empty()
+    found = reconcile(database, queue, utc_now() + timedelta(seconds=GRACE_S + 1))
+    assert (found.enqueued_jobs, found.enqueued_meshes) == (1, 1)
+    assert queue.waiting() == {job_entry(job.id, 1), mesh_entry(mesh.id, 1)}
+
+
+def test_what_waits_in_the_queue_is_not_put_there_twice(
+    database: Database, queue: TaskQueue, rq_queue: Queue, job: Job, mesh: Mesh
+) -> None:
+    reconcile(database, queue)
+    for _ in range(2):
+        found = reconcile(database, queue, utc_now() + timedelta(seconds=GRACE_S + 1))
+        assert (found.enqueued_jobs, found.enqueued_meshes) == (0, 0)
+    assert len(rq_queue) == 2
+
+
+def test_what_was_just_taken_out_is_left_alone_for_a_moment(
+    database: Database, queue: TaskQueue, rq_queue: Queue, job: Job
+) -> None:
+    submit_job(database, queue, job.id, job.attempt)
+    rq_queue.empty()
+    assert reconcile(database, queue).enqueued_jobs == 0
+
+
+def test_an_attempt_whose_worker_went_silent_is_started_again(database: Database, queue: TaskQueue, job: Job) -> None:
+    attempts = Attempts(database)
+    attempts.start(job.id, "w", 5)
+    found = reconcile(database, queue, utc_now() + timedelta(seconds=6))
+    assert (found.expired, found.enqueued_jobs) == (1, 1)
+    assert job_entry(job.id, 2) in queue.waiting()
+    assert attempts.start(job.id, "w", 5).attempt.number == 2
+
+
+def test_the_row_stays_queued_when_the_queue_is_away(database: Database, job: Job) -> None:
+    away = TaskQueue("redis://127.0.0.1:1/0", "none", 60)
+    for call in (lambda: submit_job(database, away, job.id, 0), lambda: reconcile(database, away), away.ping):
+        with pytest.raises(QueueUnavailableError):
+            call()
+    assert Jobs(database).get(job.id).state == JobState.QUEUED
+    away.close()
+
+
+def test_a_finished_or_canceled_job_never_comes_back(
+    database: Database, queue: TaskQueue, job: Job, mesh: Mesh
+) -> None:
+    Jobs(database).request_cancel(job.id)
+    later = utc_now() + timedelta(seconds=GRACE_S + 1)
+    assert reconcile(database, queue, later).enqueued_jobs == 0
+
+
+def test_an_analysis_that_kills_its_worker_is_given_up(database: Database, queue: TaskQueue, mesh: Mesh) -> None:
+    """A file on which the reader crashes must not take down one worker after the other for ever."""
+    meshes = Meshes(database)
+    now = utc_now()
+    for number in range(1, MAX_ANALYSES + 1):
+        analysis = meshes.start_analysis(mesh.id, "w", -1.0)
+        assert analysis.attempt == number
+    reconcile(database, queue, now + timedelta(seconds=5))
+    rejected = meshes.get(mesh.id)
+    assert rejected.state == MeshState.REJECTED
+    assert rejected.problem is not None
+    assert rejected.problem.code == "analysis_failed"
+
+
+def test_the_password_of_the_queue_stands_in_no_error(settings: Settings) -> None:
+    away = TaskQueue("redis://:s3cret@127.0.0.1:1/0", "none", 60)
+    with pytest.raises(QueueUnavailableError) as caught:
+        away.ping()
+    assert "s3cret" not in str(caught.value)
+    away.close()
+
+
+def test_the_connection_is_the_one_of_the_settings(queue: TaskQueue) -> None:
+    assert isinstance(queue.connection, Redis)
+    queue.ping()

@@ -1,0 +1,47 @@
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from jobkit.database import Database
+from jobkit.errors import ModelKindError, ModelNotFoundError, NoNetworkError
+from jobkit.registry import Registry
+from jobkit.schema import CnnMethod, DictionaryMethod, SmoothMethod
+from jobkit.selection import resolve_method
+from jobkit.store import ObjectStore
+
+
+@pytest.fixture
+def registry(
+    database: Database, store: ObjectStore, tmp_path: Path, dictionary_bytes: Callable[[int], bytes]
+) -> Registry:
+    registry = Registry(database, store)
+    (tmp_path / "atoms").write_bytes(dictionary_bytes(1))
+    registry.publish_file("reliefs", tmp_path / "atoms")
+    return registry
+
+
+def test_a_reference_is_pinned_to_the_version_it_means_now(registry: Registry) -> None:
+    registry.set_alias("default", "reliefs@1")
+    pinned = resolve_method(registry, DictionaryMethod(method="dictionary"))
+    assert (pinned.requested, pinned.name, pinned.version, pinned.kind) == ("default", "reliefs", 1, "dictionary")
+    assert pinned.sha256 == registry.resolve("reliefs").sha256
+
+
+def test_self_and_smooth_need_no_registered_model(registry: Registry) -> None:
+    assert resolve_method(registry, DictionaryMethod(method="dictionary", model="self")).kind == "self"
+    assert resolve_method(registry, SmoothMethod(method="smooth")).kind == "none"
+
+
+def test_a_network_is_asked_for_in_vain_until_one_is_registered(registry: Registry, tmp_path: Path) -> None:
+    with pytest.raises(NoNetworkError, match="upload one with POST"):
+        resolve_method(registry, CnnMethod(method="cnn"))
+    (tmp_path / "net").write_bytes(b"\x08\x0a")
+    registry.publish_file("small", tmp_path / "net")
+    with pytest.raises(ModelNotFoundError):
+        resolve_method(registry, CnnMethod(method="cnn"))
+    assert resolve_method(registry, CnnMethod(method="cnn", model="small")).kind == "autoencoder"
+    with pytest.raises(ModelKindError, match="needs kind autoencoder"):
+        resolve_method(registry, CnnMethod(method="cnn", model="reliefs"))
+    with pytest.raises(ModelKindError):
+        resolve_method(registry, DictionaryMethod(method="dictionary", model="small"))

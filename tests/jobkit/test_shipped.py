@@ -1,0 +1,60 @@
+import logging
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from jobkit.database import Database
+from jobkit.registry import Registry
+from jobkit.shipped import seed_shipped
+from jobkit.store import ObjectStore
+
+Make = Callable[[int], bytes]
+
+
+@pytest.fixture
+def registry(database: Database, store: ObjectStore) -> Registry:
+    return Registry(database, store)
+
+
+@pytest.fixture
+def folder(tmp_path: Path, dictionary_bytes: Make) -> Path:
+    shipped = tmp_path / "shipped"
+    shipped.mkdir()
+    (shipped / "general-dictionary@1.safetensors").write_bytes(dictionary_bytes(1))
+    (shipped / "small@3.onnx").write_bytes(b"\x08\x0a")
+    (shipped / "small@3.json").write_text('{"description": "a small network", "kind": "autoencoder"}')
+    (shipped / "README.md").write_text("not a model")
+    return shipped
+
+
+def test_shipped_models_are_registered_under_their_numbers(registry: Registry, folder: Path) -> None:
+    assert [(v.name, v.version) for v in seed_shipped(registry, folder)] == [("general-dictionary", 1), ("small", 3)]
+    assert registry.resolve("default").name == "general-dictionary"
+    assert registry.resolve("default-network").card.description == "a small network"
+
+
+def test_registering_again_changes_nothing(registry: Registry, folder: Path, dictionary_bytes: Make) -> None:
+    seed_shipped(registry, folder)
+    (folder.parent / "own").write_bytes(dictionary_bytes(2))
+    registry.publish_file("own", folder.parent / "own")
+    registry.set_alias("default", "own")
+    before = registry.list_all()
+    seed_shipped(registry, folder)
+    assert registry.list_all() == before
+
+
+def test_a_changed_file_without_a_new_number_is_left_out(
+    registry: Registry, folder: Path, dictionary_bytes: Make, caplog: pytest.LogCaptureFixture
+) -> None:
+    seed_shipped(registry, folder)
+    before = registry.resolve("general-dictionary@1")
+    (folder / "general-dictionary@1.safetensors").write_bytes(dictionary_bytes(9))
+    with caplog.at_level(logging.WARNING):
+        seed_shipped(registry, folder)
+    assert registry.resolve("general-dictionary@1") == before
+    assert "general-dictionary@1" in caplog.text
+
+
+def test_a_folder_that_is_not_there_ships_nothing(registry: Registry, tmp_path: Path) -> None:
+    assert seed_shipped(registry, tmp_path / "none") == []

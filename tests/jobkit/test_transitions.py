@@ -1,0 +1,14 @@
+import pytest
+
+from jobkit.schema import TRANSITIONS, JobState
+from jobkit.transitions import Move
+
+
+@pytest.mark.parametrize("source", JobState)
+@pytest.mark.parametrize("target", JobState)
+def test_only_the_drawn_steps_can_be_made(source: JobState, target: JobState) -> None:
+    if target in TRANSITIONS[source]:
+        Move(source, target, "started")
+    else:
+        with pytest.raises(ValueError, match="never"):
+            Move(source, target, "started")
