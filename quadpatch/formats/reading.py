@@ -8,6 +8,7 @@ from pathlib import Path
 
 from quadpatch.errors import ReadError
 from quadpatch.formats.detection import detect_format
+from quadpatch.formats.gltf import read_gltf
 from quadpatch.formats.limits import ReadLimits
 from quadpatch.formats.obj import read_obj
 from quadpatch.formats.off import read_off
@@ -45,4 +46,8 @@ def read_scan(path: Path, limits: ReadLimits | None = None) -> Scan:
         data = path.read_bytes()
     except OSError as error:
         raise ReadError(f"{path.name} can't be read: {error.strerror}") from error
-    return _READERS[detect_format(data, path.suffix.lower().lstrip("."))](data, limits)
+    kind = detect_format(data, path.suffix.lower().lstrip("."))
+    if kind in ("glb", "gltf"):
+        # Buffers in files of their own may lie beside the mesh.
+        return read_gltf(data, limits, path.parent)
+    return _READERS[kind](data, limits)

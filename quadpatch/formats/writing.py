@@ -4,10 +4,18 @@ from pathlib import Path
 
 from quadpatch.errors import FormatError
 from quadpatch.formats.conversion import encode_as_obj, encode_as_off, encode_as_ply, encode_as_stl
+from quadpatch.formats.gltf_encoder import encode_as_glb, encode_as_gltf
 from quadpatch.formats.scan import Fill, Scan
 from quadpatch.formats.whole import assemble
 
-_ENCODERS = {"ply": encode_as_ply, "stl": encode_as_stl, "obj": encode_as_obj, "off": encode_as_off}
+_ENCODERS = {
+    "ply": encode_as_ply,
+    "stl": encode_as_stl,
+    "obj": encode_as_obj,
+    "off": encode_as_off,
+    "glb": encode_as_glb,
+    "gltf": encode_as_gltf,
+}
 
 
 def write_scan(path: Path, scan: Scan, fill: Fill) -> None:

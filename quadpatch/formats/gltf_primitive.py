@@ -1,0 +1,178 @@
+"""New primitives of a glTF document: arrays appended to a buffer, and the entries that describe them."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from quadpatch.formats.attributes import normals_at
+from quadpatch.formats.gltf_container import GltfFile
+from quadpatch.formats.parts import PartFill
+from quadpatch.formats.scan import Fill, Scan
+from quadpatch.types import BoolArray, FloatArray, IntArray, Triangles, Vertices
+
+_COMPONENTS = {"f4": 5126, "u4": 5125}
+_TYPES = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4"}
+_ARRAY_BUFFER, _ELEMENT_ARRAY_BUFFER = 34962, 34963
+
+
+@dataclass(frozen=True)
+class Corners:
+    """What new primitives draw on.
+
+    Attributes
+    ----------
+    fill : Fill
+    n_measured : int
+        Vertices of the scan.
+    colours : (n_measured + n_new, 4) float64 or None
+        0..1, NaN where a measured vertex has none.
+    texture : (l, 3, 2) float64 or None
+        Of the fill's corners, NaN where there is none.
+    normals : (n_measured, 3) float64 or None
+        Of the measured vertices, in their part's coordinates, NaN where there is none.
+    """
+
+    fill: Fill
+    n_measured: int
+    colours: FloatArray | None
+    texture: FloatArray | None
+    normals: FloatArray | None
+
+
+class Store:
+    """A document that is being added to: lists are copied, and one buffer grows."""
+
+    def __init__(self, file: GltfFile) -> None:
+        self.document: dict[str, Any] = dict(file.document)
+        self._file = file
+        self._buffers = list(file.buffers)
+        listed = self.document.get("buffers", [])
+        # The binary chunk can grow; a buffer with an address of its own is left alone.
+        if file.is_binary and listed and "uri" not in listed[0]:
+            self._number = 0
+        else:
+            self._number = self.add("buffers", {"byteLength": 0})
+            self._buffers.append(b"")
+        self._pieces = [self._buffers[self._number]]
+        self._size = len(self._pieces[0])
+
+    @staticmethod
+    def of(file: GltfFile) -> "Store":
+        """Begin with a file as it is."""
+        return Store(file)
+
+    def add(self, name: str, entry: dict[str, Any]) -> int:
+        """Append an entry to one of the document's lists; returns its number."""
+        self.document[name] = [*self.document.get(name, []), entry]
+        return len(self.document[name]) - 1
+
+    def add_array(self, values: NDArray[Any], code: str, is_index: bool = False) -> int:
+        """Append an array (n,) or (n, k) as `f4` or `u4`; returns the number of its accessor."""
+        padding = bytes(-self._size % 4)
+        table = values.reshape(len(values), -1).astype("<" + code)
+        data = table.tobytes()
+        view = self.add(
+            "bufferViews",
+            {
+                "buffer": self._number,
+                "byteOffset": self._size + len(padding),
+                "byteLength": len(data),
+                "target": _ELEMENT_ARRAY_BUFFER if is_index else _ARRAY_BUFFER,
+            },
+        )
+        self._pieces += [padding, data]
+        self._size += len(padding) + len(data)
+        return self.add(
+            "accessors",
+            {
+                "bufferView": view,
+                "componentType": _COMPONENTS[code],
+                "count": len(table),
+                "type": _TYPES[table.shape[1]],
+                "min": table.min(axis=0).tolist(),
+                "max": table.max(axis=0).tolist(),
+            },
+        )
+
+    def finished(self) -> GltfFile:
+        """Return the file with all that was added."""
+        self._buffers[self._number] = b"".join(self._pieces)
+        return GltfFile(self.document, self._buffers, self._file.chunks, self._file.is_binary)
+
+
+def build_primitive(store: Store, piece: PartFill, rows: BoolArray, corners: Corners) -> dict[str, Any]:
+    """Store one primitive of a fill.
+
+    Parameters
+    ----------
+    store : Store
+    piece : PartFill
+    rows : (l,) bool
+        Which of the piece's triangles.
+    corners : Corners
+    """
+    triangles, fill_rows = piece.triangles[rows], piece.rows[rows]
+    texture = None if corners.texture is None else corners.texture[fill_rows]
+    if texture is not None and not np.isfinite(texture).all():
+        texture = None
+    if texture is not None and _is_turned(piece, rows, corners.fill):
+        texture = texture[:, [0, 2, 1]]
+    local, wedge, indices = split_vertices(triangles, texture)
+    vertex = piece.vertex[local]
+    attributes = {"POSITION": store.add_array(piece.positions[local], "f4")}
+    if corners.normals is not None:
+        normals = _normals(vertex, piece.positions, triangles, local, corners)
+        attributes["NORMAL"] = store.add_array(normals, "f4")
+    if corners.colours is not None:
+        attributes["COLOR_0"] = store.add_array(np.nan_to_num(corners.colours[vertex], nan=1.0), "f4")
+    if texture is not None:
+        attributes["TEXCOORD_0"] = store.add_array(wedge, "f4")
+    hole, confidence = _marks(vertex, triangles, local, corners, fill_rows)
+    attributes["_HOLE_ID"] = store.add_array(hole, "f4")
+    attributes["_CONFIDENCE"] = store.add_array(confidence, "f4")
+    return {"attributes": attributes, "indices": store.add_array(indices.ravel(), "u4", is_index=True), "mode": 4}
+
+
+def _is_turned(piece: PartFill, rows: BoolArray, fill: Fill) -> bool:
+    return bool((piece.vertex[piece.triangles[rows]] != fill.triangles[piece.rows[rows]]).any())
+
+
+def split_vertices(triangles: Triangles, texture: FloatArray | None) -> tuple[IntArray, FloatArray, Triangles]:
+    """Vertices that are one in position and texture: position of each, its texture, triangles into them."""
+    wedges = np.zeros((triangles.size, 2)) if texture is None else texture.reshape(-1, 2)
+    keys = np.column_stack([triangles.ravel().astype(np.float64), wedges])
+    unique, indices = np.unique(keys, axis=0, return_inverse=True)
+    return unique[:, 0].astype(np.int64), unique[:, 1:], indices.reshape(-1, 3).astype(np.int64)
+
+
+def _normals(
+    vertex: IntArray, positions: Vertices, triangles: Triangles, local: IntArray, corners: Corners
+) -> FloatArray:
+    """Measured normals on the rim, those of the new surface elsewhere."""
+    empty = np.zeros(0)
+    whole = Fill(np.zeros((0, 3)), triangles, empty.astype(np.int64), empty, empty.astype(np.int64), empty)
+    normals = normals_at(Scan(positions, triangles, ""), whole, local)
+    measured = vertex < corners.n_measured
+    if corners.normals is not None:
+        known = corners.normals[np.where(measured, vertex, 0)]
+        has = measured & np.isfinite(known).all(axis=1) & (known != 0).any(axis=1)
+        normals[has] = known[has]
+    # glTF wants unit vectors even where a triangle has no area.
+    normals[(normals == 0).all(axis=1)] = (0.0, 0.0, 1.0)
+    return normals
+
+
+def _marks(
+    vertex: IntArray, triangles: Triangles, local: IntArray, corners: Corners, fill_rows: IntArray
+) -> tuple[FloatArray, FloatArray]:
+    """Hole and confidence of each vertex; rim vertices, repeated here, have those of a triangle around them."""
+    hole = np.zeros(int(triangles.max()) + 1)
+    confidence = np.zeros_like(hole)
+    hole[triangles] = corners.fill.triangle_hole[fill_rows][:, np.newaxis]
+    confidence[triangles] = corners.fill.triangle_confidence[fill_rows][:, np.newaxis]
+    new = vertex >= corners.n_measured
+    result_confidence = confidence[local]
+    result_confidence[new] = corners.fill.vertex_confidence[vertex[new] - corners.n_measured]
+    return hole[local], result_confidence
