@@ -2,7 +2,7 @@
 
 Read are `v` (with colours behind the coordinates), `vt`, `vn` and `f` with polygons, negative indices, line
 continuations and any text encoding that has a byte order mark. Materials are names only; no other file is opened.
-Lines of other keywords mean nothing to a repair and come back as they were (see `obj_writer`).
+Lines of other keywords mean nothing to a repair and come back as they were (see `obj_source`).
 """
 
 import re

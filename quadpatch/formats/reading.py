@@ -8,17 +8,18 @@ from pathlib import Path
 
 from quadpatch.errors import ReadError
 from quadpatch.formats.detection import detect_format
-from quadpatch.formats.gltf import read_gltf
+from quadpatch.formats.gltf.reader import read_gltf
 from quadpatch.formats.limits import ReadLimits
 from quadpatch.formats.obj import read_obj
 from quadpatch.formats.off import read_off
-from quadpatch.formats.ply import read_ply
+from quadpatch.formats.ply.reader import read_ply
 from quadpatch.formats.scan import Scan
 from quadpatch.formats.stl import read_stl
+from quadpatch.formats.threemf.reader import read_threemf
 
 __all__ = ["ReadLimits", "read_scan"]
 
-_READERS = {"ply": read_ply, "stl": read_stl, "obj": read_obj, "off": read_off}
+_READERS = {"ply": read_ply, "stl": read_stl, "obj": read_obj, "off": read_off, "3mf": read_threemf}
 
 
 def read_scan(path: Path, limits: ReadLimits | None = None) -> Scan:

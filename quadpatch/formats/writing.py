@@ -4,8 +4,9 @@ from pathlib import Path
 
 from quadpatch.errors import FormatError
 from quadpatch.formats.conversion import encode_as_obj, encode_as_off, encode_as_ply, encode_as_stl
-from quadpatch.formats.gltf_encoder import encode_as_glb, encode_as_gltf
+from quadpatch.formats.gltf.encoder import encode_as_glb, encode_as_gltf
 from quadpatch.formats.scan import Fill, Scan
+from quadpatch.formats.threemf.encoder import encode_as_threemf
 from quadpatch.formats.whole import assemble
 
 _ENCODERS = {
@@ -15,6 +16,7 @@ _ENCODERS = {
     "off": encode_as_off,
     "glb": encode_as_glb,
     "gltf": encode_as_gltf,
+    "3mf": encode_as_threemf,
 }
 
 

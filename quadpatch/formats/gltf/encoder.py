@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from quadpatch.formats.gltf_container import GltfFile, dump_gltf
-from quadpatch.formats.gltf_primitive import Store, split_vertices
-from quadpatch.formats.gltf_source import FILL_NAME
+from quadpatch.formats.gltf.container import GltfFile, dump_gltf
+from quadpatch.formats.gltf.primitive import Store, split_vertices
+from quadpatch.formats.gltf.source import FILL_NAME
 from quadpatch.formats.whole import Whole
 from quadpatch.types import BoolArray
 

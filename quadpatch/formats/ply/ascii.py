@@ -7,8 +7,8 @@ declares, as every other reader does; a value that its type can't hold is an err
 import numpy as np
 
 from quadpatch.errors import ReadError
-from quadpatch.formats.ply_header import Element, Header, value_range
-from quadpatch.formats.ply_rows import ListColumn, Rows, Values, check_room, list_range
+from quadpatch.formats.ply.header import Element, Header, value_range
+from quadpatch.formats.ply.rows import ListColumn, Rows, Values, check_room, list_range
 from quadpatch.formats.text import parse_numbers
 from quadpatch.types import FloatArray, IntArray
 

@@ -1,7 +1,7 @@
 """Reading PLY: ascii and both binary orders, any elements and properties, polygons and triangle strips.
 
 The vertices are the `vertex` element; the triangles are those of `face` and of `tristrips`, in the order in which the
-file holds them. Everything else in the file is kept as bytes, and the writer hands it back (see `ply_writer`).
+file holds them. Everything else in the file is kept as bytes, and the writer hands it back.
 """
 
 from dataclasses import dataclass
@@ -10,13 +10,13 @@ import numpy as np
 
 from quadpatch.errors import EmptyMeshError, FormatError, ReadError
 from quadpatch.formats.limits import ReadLimits, check_indices, check_triangles, check_vertices
-from quadpatch.formats.ply_appearance import ply_appearance
-from quadpatch.formats.ply_ascii import read_ascii_body
-from quadpatch.formats.ply_binary import read_binary_body
-from quadpatch.formats.ply_file import INDEX_NAMES, PlyFile
-from quadpatch.formats.ply_header import Element, parse_header
-from quadpatch.formats.ply_rows import Rows
-from quadpatch.formats.ply_writer import append_to_ply
+from quadpatch.formats.ply.appearance import ply_appearance
+from quadpatch.formats.ply.ascii import read_ascii_body
+from quadpatch.formats.ply.binary import read_binary_body
+from quadpatch.formats.ply.file import INDEX_NAMES, PlyFile
+from quadpatch.formats.ply.header import Element, parse_header
+from quadpatch.formats.ply.rows import Rows
+from quadpatch.formats.ply.writer import append_to_ply
 from quadpatch.formats.polygons import triangulate_polygons, triangulate_strips
 from quadpatch.formats.scan import Appearance, Fill, Scan
 from quadpatch.types import IntArray, Triangles, Vertices

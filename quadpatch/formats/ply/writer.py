@@ -20,11 +20,11 @@ know no `face` element beside them, and the old row, often one single strip over
 
 import numpy as np
 
-from quadpatch.formats.ply_encoding import encode_rows, insert_behind
-from quadpatch.formats.ply_file import PlyFile
-from quadpatch.formats.ply_header import rewrite_header
-from quadpatch.formats.ply_new_rows import MARKS, new_carrier_rows, new_vertex_rows
-from quadpatch.formats.ply_rows import Rows
+from quadpatch.formats.ply.encoding import encode_rows, insert_behind
+from quadpatch.formats.ply.file import PlyFile
+from quadpatch.formats.ply.header import rewrite_header
+from quadpatch.formats.ply.new_rows import MARKS, new_carrier_rows, new_vertex_rows
+from quadpatch.formats.ply.rows import Rows
 from quadpatch.formats.scan import Fill, Scan
 from quadpatch.formats.text import word_ends
 

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quadpatch.errors import FormatError, ReadError
-from quadpatch.formats.gltf_container import GltfFile
+from quadpatch.formats.gltf.container import GltfFile
 from quadpatch.formats.limits import ReadLimits
 
 _COMPONENTS = {5120: "i1", 5121: "u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}

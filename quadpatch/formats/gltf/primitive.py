@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quadpatch.formats.attributes import normals_at
-from quadpatch.formats.gltf_container import GltfFile
+from quadpatch.formats.gltf.container import GltfFile
 from quadpatch.formats.parts import PartFill
 from quadpatch.formats.scan import Fill, Scan
 from quadpatch.types import BoolArray, FloatArray, IntArray, Triangles, Vertices

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from quadpatch.errors import ReadError
-from quadpatch.formats.gltf_accessors import get_entry, get_list
+from quadpatch.formats.gltf.accessors import get_entry, get_list
 from quadpatch.types import FloatArray
 
 

@@ -12,11 +12,11 @@ from quadpatch.formats.attributes import (
     triangle_normals,
     vertex_normals,
 )
-from quadpatch.formats.ply_appearance import wedge_texture
-from quadpatch.formats.ply_encoding import Table
-from quadpatch.formats.ply_file import INDEX_NAMES, PlyFile
-from quadpatch.formats.ply_header import Property, value_range
-from quadpatch.formats.ply_rows import ListColumn, Rows, Values
+from quadpatch.formats.ply.appearance import wedge_texture
+from quadpatch.formats.ply.encoding import Table
+from quadpatch.formats.ply.file import INDEX_NAMES, PlyFile
+from quadpatch.formats.ply.header import Property, value_range
+from quadpatch.formats.ply.rows import ListColumn, Rows, Values
 from quadpatch.formats.scan import Fill, Scan
 from quadpatch.formats.texture import spread_over_corners
 from quadpatch.types import FloatArray, IntArray

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from quadpatch.formats.ply_file import PlyFile
-from quadpatch.formats.ply_rows import Rows
+from quadpatch.formats.ply.file import PlyFile
+from quadpatch.formats.ply.rows import Rows
 from quadpatch.formats.scan import Appearance, Scan
 from quadpatch.types import FloatArray, IntArray
 

@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 
 from quadpatch.formats.attributes import nearest_rim_triangle, spread_over_vertices
-from quadpatch.formats.gltf_container import GltfFile, dump_gltf
-from quadpatch.formats.gltf_primitive import Corners, Store, build_primitive
+from quadpatch.formats.gltf.container import GltfFile, dump_gltf
+from quadpatch.formats.gltf.primitive import Corners, Store, build_primitive
 from quadpatch.formats.parts import Part, split_by_part
 from quadpatch.formats.scan import Appearance, Fill, Scan
 from quadpatch.formats.texture import spread_over_corners

@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass
 
-from quadpatch.formats.ply_header import Header
-from quadpatch.formats.ply_rows import Rows
+from quadpatch.formats.ply.header import Header
+from quadpatch.formats.ply.rows import Rows
 from quadpatch.types import IntArray
 
 INDEX_NAMES = ("vertex_indices", "vertex_index")

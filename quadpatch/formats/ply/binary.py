@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from quadpatch.errors import ReadError
-from quadpatch.formats.ply_header import Element, Header
-from quadpatch.formats.ply_rows import ListColumn, Rows, Values, check_room, list_range
+from quadpatch.formats.ply.header import Element, Header
+from quadpatch.formats.ply.rows import ListColumn, Rows, Values, check_room, list_range
 from quadpatch.types import IntArray
 
 _STRUCT_CODES = {"i1": "b", "u1": "B", "i2": "h", "u2": "H", "i4": "i", "u4": "I", "i8": "q", "u8": "Q"}

@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from quadpatch.formats.ply_header import Element, Header, value_range
-from quadpatch.formats.ply_rows import Values
+from quadpatch.formats.ply.header import Element, Header, value_range
+from quadpatch.formats.ply.rows import Values
 from quadpatch.formats.text import to_words
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quadpatch.errors import ReadError
-from quadpatch.formats.ply_header import Element
+from quadpatch.formats.ply.header import Element
 from quadpatch.types import IntArray
 
 Values = NDArray[Any]

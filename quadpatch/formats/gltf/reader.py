@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 
 from quadpatch.errors import EmptyMeshError, FormatError, IndexRangeError, ReadError
-from quadpatch.formats.gltf_accessors import get_count, get_entry, get_list, get_object, read_accessor
-from quadpatch.formats.gltf_container import GltfFile, load_gltf
-from quadpatch.formats.gltf_scene import placed_nodes
-from quadpatch.formats.gltf_source import GltfSource, Primitive
+from quadpatch.formats.gltf.accessors import get_count, get_entry, get_list, get_object, read_accessor
+from quadpatch.formats.gltf.container import GltfFile, load_gltf
+from quadpatch.formats.gltf.scene import placed_nodes
+from quadpatch.formats.gltf.source import GltfSource, Primitive
 from quadpatch.formats.limits import ReadLimits, check_triangles, check_vertices
 from quadpatch.formats.parts import Part, place
 from quadpatch.formats.polygons import triangulate_strips

@@ -1,0 +1,1 @@
+"""PLY: reading any element and property, and handing files back with rows appended."""
