@@ -22,7 +22,7 @@ from worker.spec import repair_request
 from worker.watch import Observer, run_engine
 
 # A repair that is nearly done may finish when its worker is asked to stop; the others are handed back.
-_DRAIN_GRACE_S = 5.0
+_DRAIN_GRACE_S = 2.0
 _DRAINED = JobError(code="worker_drained", message="the worker was stopped in the middle of the job", retryable=True)
 
 _log = logging.getLogger("quadpatch.worker.repairs")

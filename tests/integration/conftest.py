@@ -122,3 +122,11 @@ def relief_file(tmp_path: Path) -> Callable[[str], Path]:
         return path
 
     return write
+
+
+@pytest.fixture(scope="session")
+def large_relief(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A relief of 25,600 vertices with four holes."""
+    path = tmp_path_factory.mktemp("meshes") / "large.ply"
+    path.write_bytes(ply_bytes(*punched_relief(160)))
+    return path

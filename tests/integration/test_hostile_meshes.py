@@ -18,16 +18,15 @@ NO_MESHES = {".bin", ".mtl", ".png", ".json"}
 HEADER = "ply\nformat ascii 1.0\nelement vertex {v}\nproperty float x\nproperty float y\nproperty float z\n"
 FACES = "element face {f}\nproperty list uchar int vertex_indices\nend_header\n"
 HOSTILE = {
-    "empty.ply": (b"", "unreadable_mesh"),
     "garbage.ply": (bytes(range(256)) * 40, "unreadable_mesh"),
-    "garbage.stl": (b"solid nothing\n" + bytes(range(256)) * 4, "unreadable_mesh"),
+    "garbage.stl": (b"solid nothing\n" + bytes(range(256)) * 4, "empty_mesh"),
     "truncated.ply": ((HEADER + FACES).format(v=3, f=1).encode() + b"0 0 0\n1 0 0\n", "unreadable_mesh"),
     "bomb.ply": ((HEADER + FACES).format(v=2_000_000_000, f=1).encode(), "mesh_too_large"),
     "infinite.ply": ((HEADER + FACES).format(v=3, f=1).encode() + b"0 0 0\n1 0 inf\n0 1 0\n3 0 1 2\n", "not_finite"),
     "index.ply": ((HEADER + FACES).format(v=3, f=1).encode() + b"0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n", "index_out_of_range"),
     "no_faces.ply": ((HEADER + FACES).format(v=3, f=0).encode() + b"0 0 0\n1 0 0\n0 1 0\n", "empty_mesh"),
     "notes.txt": (b"not a mesh at all", "unsupported_format"),
-    "archive.3mf": (b"PK\x03\x04" + bytes(100), "unreadable_mesh"),
+    "archive.3mf": (b"PK\x03\x04" + bytes(100), "unsupported_format"),
     "broken.glb": (b"glTF\x02\0\0\0\xff\xff\xff\x7f" + bytes(40), "unreadable_mesh"),
 }
 
@@ -54,22 +53,12 @@ def test_a_hostile_file_is_rejected_with_its_code(client: Client, tmp_path: Path
 
 
 @pytest.mark.usefixtures("steady_workers")
-def test_a_job_for_a_hostile_file_that_was_accepted_early_fails_with_its_code(client: Client, tmp_path: Path) -> None:
+def test_a_job_for_a_hostile_file_ends_with_its_code_too(client: Client, tmp_path: Path) -> None:
     path = tmp_path / "cut.ply"
     path.write_bytes((HEADER + FACES).format(v=4, f=1).encode() + b"0 0 0\n1 0 0\n")
     mesh = client.upload(path)
-    spec = JobSpec.model_validate({"mesh_id": mesh.id, "method": {"method": "smooth"}})
-    try:
-        job = client.create_job(spec)
-    except RefusedError as refusal:
-        # The analysis was faster than this test.
-        assert refusal.problem.code == "mesh_rejected"
-        return
-    with pytest.raises(JobFailedError) as caught:
-        client.wait(job.id, timeout_s=60)
-    assert caught.value.job.error is not None
-    assert caught.value.job.error.code == "unreadable_mesh"
-    assert not caught.value.job.error.retryable
+    code = _ending(client, mesh, _start(client, mesh))
+    assert code == "unreadable_mesh"
 
 
 @pytest.mark.slow
