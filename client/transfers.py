@@ -70,14 +70,15 @@ def download(transport: Transport, path: str, target: Path, sha256: str, progres
 
 def _fetch_rest(transport: Transport, path: str, partial: Path, progress: ByteProgress) -> None:
     start = partial.stat().st_size
-    headers = {"Range": f"bytes={start}-"} if start else {}
+    # Compressed on the way, the bytes could neither be counted nor taken up in the middle.
+    headers = {"Accept-Encoding": "identity"} | ({"Range": f"bytes={start}-"} if start else {})
     with transport.stream(path, headers) as response:
         # A service that does not know ranges, or whose file has changed, sends everything again.
         resumes = response.status_code == httpx.codes.PARTIAL_CONTENT
         done = start if resumes else 0
         total = done + int(response.headers.get("Content-Length", 0))
         with partial.open("ab" if resumes else "wb") as file:
-            for chunk in response.iter_bytes(CHUNK_BYTES):
+            for chunk in response.iter_raw():
                 file.write(chunk)
                 done += len(chunk)
                 progress(done, max(done, total))

@@ -1,0 +1,117 @@
+"""The client's command line against a real box."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from client.exits import ExitCode
+from jobkit.schema import JobState
+
+
+@pytest.fixture
+def run(box: Any) -> Callable[..., subprocess.CompletedProcess[str]]:
+    """Runs `python -m client` and returns how it ended."""
+
+    def run_client(*arguments: str | Path, **environment: str) -> subprocess.CompletedProcess[str]:
+        command = [sys.executable, "-m", "client", *map(str, arguments)]
+        variables = {**os.environ, "QUADPATCH_CLIENT_URL": box.url, "COLUMNS": "200", **environment}
+        return subprocess.run(command, env=variables, capture_output=True, text=True, check=False, timeout=120)
+
+    return run_client
+
+
+def test_repair_writes_what_was_asked_for_and_tells_so(
+    run: Callable[..., subprocess.CompletedProcess[str]], relief_file: Callable[[str], Path], tmp_path: Path
+) -> None:
+    output, report, preview = tmp_path / "out.ply", tmp_path / "r.json", tmp_path / "p.png"
+    arguments = ["-o", output, "--method", "smooth", "--report", report, "--preview", preview]
+    done = run("repair", relief_file("float.ply"), *arguments)
+    assert done.returncode == ExitCode.OK, done.stderr
+    assert done.stdout == ""
+    assert "float.ply has 5 holes: 4 filled smoothly, 1 left open by rule" in done.stderr
+    assert all(f"wrote {path}" in done.stderr for path in (output, report, preview))
+    assert all(path.stat().st_size > 0 for path in (output, report, preview))
+
+
+def test_json_on_stdout_is_the_job(
+    run: Callable[..., subprocess.CompletedProcess[str]], relief_file: Callable[[str], Path], tmp_path: Path
+) -> None:
+    done = run(
+        "repair", relief_file("float.ply"), "-o", tmp_path / "out.ply", "--method", "smooth", "--json", "--quiet"
+    )
+    assert json.loads(done.stdout)["result"]["holes"]["filled_smooth"] == 4
+    assert done.stderr == ""
+
+
+def test_holes_lists_every_hole_and_what_would_be_filled(
+    run: Callable[..., subprocess.CompletedProcess[str]], relief_file: Callable[[str], Path]
+) -> None:
+    done = run("holes", relief_file("float.ply"), "--max-diameter", "0.05")
+    assert done.returncode == ExitCode.OK, done.stderr
+    assert "5 holes; lengths in mesh units" in done.stdout
+    assert done.stdout.count("no: too wide") == 5
+    plan = json.loads(run("holes", relief_file("float.ply"), "--json").stdout)
+    assert [hole["selected"] for hole in plan["holes"]] == [False, True, True, True, True]
+
+
+def test_jobs_and_models_are_listed(run: Callable[..., subprocess.CompletedProcess[str]]) -> None:
+    assert isinstance(json.loads(run("jobs", "--limit", "2", "--json").stdout), list)
+    assert set(json.loads(run("models", "--json").stdout)) == {"models", "aliases"}
+    assert run("jobs").returncode == run("models").returncode == ExitCode.OK
+
+
+def test_exit_codes_tell_what_went_wrong(
+    run: Callable[..., subprocess.CompletedProcess[str]], relief_file: Callable[[str], Path], tmp_path: Path
+) -> None:
+    mesh, garbage, output = relief_file("float.ply"), tmp_path / "garbage.ply", tmp_path / "out.ply"
+    garbage.write_bytes(b"ply\n" + os.urandom(500))
+    wrong = {
+        ("repair", mesh, "-o", output, "--method", "smooth", "--model", "self"): ExitCode.USAGE,
+        ("repair", mesh, "-o", output, "--max-diameter", "-1"): ExitCode.USAGE,
+        ("repair", tmp_path / "absent.ply", "-o", output): ExitCode.USAGE,
+        ("repair", mesh, "-o", tmp_path / "absent" / "out.ply", "--method", "smooth"): ExitCode.USAGE,
+        ("repair", mesh, "-o", output, "--model", "no-such-model@1"): ExitCode.REJECTED,
+        ("repair", mesh, "-o", output, "--method", "cnn"): ExitCode.REJECTED,
+        ("repair", mesh, "-o", output, "--method", "smooth", "--hole", "99"): ExitCode.REJECTED,
+        ("holes", garbage): ExitCode.REJECTED,
+        ("cancel", "job_00000000000000000000000000"): ExitCode.REJECTED,
+        ("models", "--url", "http://127.0.0.1:9"): ExitCode.UNREACHABLE,
+    }
+    assert {arguments: run(*arguments).returncode for arguments in wrong} == wrong
+    assert not output.exists()
+
+
+def test_a_timeout_cancels_the_job(
+    run: Callable[..., subprocess.CompletedProcess[str]], large_relief: Path, tmp_path: Path
+) -> None:
+    done = run("repair", large_relief, "-o", tmp_path / "out.ply", "--model", "self", "--timeout", "0.5")
+    assert done.returncode == ExitCode.CANCELED
+    assert "did not end within 0.5 s" in done.stderr
+    assert not (tmp_path / "out.ply").exists()
+
+
+def test_ctrl_c_cancels_the_job_and_says_so(client: Any, box: Any, large_relief: Path, tmp_path: Path) -> None:
+    command = [sys.executable, "-m", "client", "repair", str(large_relief), "-o", str(tmp_path / "out.ply")]
+    process = subprocess.Popen(
+        [*command, "--model", "self", "--url", box.url, "--label", "interrupted"], stderr=subprocess.PIPE, text=True
+    )
+    deadline = time.monotonic() + 60
+    while not (jobs := [j for j in client.jobs(20) if j.spec.label == "interrupted" and j.state == JobState.RUNNING]):
+        assert time.monotonic() < deadline
+        time.sleep(0.05)
+    process.send_signal(signal.SIGINT)
+    _, said = process.communicate(timeout=60)
+    assert process.returncode == ExitCode.INTERRUPTED
+    assert f"job {jobs[0].id}: cancel" in said
+    while not client.job(jobs[0].id).state.is_terminal:
+        assert time.monotonic() < deadline
+        time.sleep(0.05)
+    assert client.job(jobs[0].id).state == JobState.CANCELED
