@@ -5,11 +5,13 @@ array of that size is made, so a file of 300 bytes that claims 10**12 faces cost
 """
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from quadpatch.errors import EmptyMeshError, IndexRangeError, NotFiniteError, TooLargeError
-from quadpatch.types import IntArray, Triangles, Vertices
+from quadpatch.types import FloatArray, IntArray, Triangles, Vertices
 
 # Products of four lengths (squared areas) of coordinates below this stay finite in float64.
 LARGEST_COORDINATE = 1e60
@@ -47,6 +49,12 @@ class ReadLimits:
 def _check(what: str, count: int, limit: int) -> None:
     if count > limit:
         raise TooLargeError(f"the file has {count:,} {what}; the limit is {limit:,}")
+
+
+def to_float64(values: NDArray[Any]) -> FloatArray:
+    """Cast stored numbers without a word on NaN: whether one matters is for the checks to say."""
+    with np.errstate(invalid="ignore"):
+        return np.asarray(values.astype(np.float64))
 
 
 def check_vertices(vertices: Vertices) -> None:

@@ -14,7 +14,7 @@ import numpy as np
 
 from quadpatch.errors import EmptyMeshError, ReadError
 from quadpatch.formats.attributes import joined_vertices, triangle_normals
-from quadpatch.formats.limits import ReadLimits, check_vertices
+from quadpatch.formats.limits import ReadLimits, check_vertices, to_float64
 from quadpatch.formats.scan import Appearance, Fill, Scan
 from quadpatch.formats.text import line_end_of, parse_numbers, to_words
 from quadpatch.types import BoolArray, FloatArray
@@ -107,7 +107,7 @@ def _read_binary(data: bytes, limits: ReadLimits) -> Scan:
         raise ReadError(f"the STL header declares {n_facets:,} facets; the file has room for {room:,}")
     _check_counts(n_facets, limits)
     facets = np.frombuffer(data, _FACET, n_facets, _HEADER_SIZE)
-    vertices = facets["vertices"].reshape(-1, 3).astype(np.float64)
+    vertices = to_float64(facets["vertices"].reshape(-1, 3))
     return _scan(vertices, BinaryStl(data, n_facets))
 
 

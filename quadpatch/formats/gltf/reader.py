@@ -16,7 +16,7 @@ from quadpatch.formats.gltf.accessors import get_count, get_entry, get_list, get
 from quadpatch.formats.gltf.container import GltfFile, load_gltf
 from quadpatch.formats.gltf.scene import placed_nodes
 from quadpatch.formats.gltf.source import GltfSource, Primitive
-from quadpatch.formats.limits import ReadLimits, check_triangles, check_vertices
+from quadpatch.formats.limits import ReadLimits, check_triangles, check_vertices, to_float64
 from quadpatch.formats.parts import Part, place
 from quadpatch.formats.polygons import triangulate_strips
 from quadpatch.formats.scan import Scan
@@ -115,7 +115,7 @@ def _read_primitive(
     attributes = get_object(primitive, "attributes")
     if "POSITION" not in attributes:
         raise ReadError("a glTF primitive has no POSITION")
-    positions = read_accessor(file, attributes["POSITION"], (3,), limits).astype(np.float64)
+    positions = to_float64(read_accessor(file, attributes["POSITION"], (3,), limits))
     if primitive.get("indices") is None:
         corners = np.arange(len(positions), dtype=np.int64)
     else:
@@ -151,7 +151,7 @@ def _read_attributes(
     for name, width in wanted:
         if name not in attributes:
             continue
-        values = read_accessor(file, attributes[name], width, limits).astype(np.float64)
+        values = to_float64(read_accessor(file, attributes[name], width, limits))
         if len(values) == n_vertices:
             # A wrong normal is no reason to refuse a scan; it counts as zero.
             found[name] = np.where(np.isfinite(values), values, 0.0)

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from quadpatch.formats.limits import to_float64
 from quadpatch.formats.ply.file import PlyFile
 from quadpatch.formats.ply.rows import Rows
 from quadpatch.formats.scan import Appearance, Scan
@@ -37,7 +38,7 @@ def _columns(rows: Rows, choices: tuple[tuple[str, ...], ...]) -> FloatArray | N
     for names in choices:
         columns = [column for name in names if (column := rows.scalar(name)) is not None]
         if len(columns) == len(names):
-            return np.stack(columns, axis=1).astype(np.float64)
+            return np.stack([to_float64(column) for column in columns], axis=1)
     return None
 
 

@@ -12,6 +12,7 @@ from quadpatch.formats.attributes import (
     triangle_normals,
     vertex_normals,
 )
+from quadpatch.formats.limits import to_float64
 from quadpatch.formats.ply.appearance import wedge_texture
 from quadpatch.formats.ply.encoding import Table
 from quadpatch.formats.ply.file import INDEX_NAMES, PlyFile
@@ -54,8 +55,8 @@ def _spread_columns(rows: Rows, fill: Fill, given: dict[str, Values]) -> dict[st
     ]
     if not names:
         return {}
-    values = np.stack([column for name in names if (column := rows.scalar(name)) is not None], axis=1)
-    return dict(zip(names, spread_over_vertices(fill, values.astype(np.float64)).T, strict=True))
+    columns = [to_float64(column) for name in names if (column := rows.scalar(name)) is not None]
+    return dict(zip(names, spread_over_vertices(fill, np.stack(columns, axis=1)).T, strict=True))
 
 
 def _is_continuous(prop: Property) -> bool:

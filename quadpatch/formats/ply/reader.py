@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from quadpatch.errors import EmptyMeshError, FormatError, ReadError
-from quadpatch.formats.limits import ReadLimits, check_indices, check_triangles, check_vertices
+from quadpatch.formats.limits import ReadLimits, check_indices, check_triangles, check_vertices, to_float64
 from quadpatch.formats.ply.appearance import ply_appearance
 from quadpatch.formats.ply.ascii import read_ascii_body
 from quadpatch.formats.ply.binary import read_binary_body
@@ -77,7 +77,7 @@ def _vertices(rows: Rows | None) -> Vertices:
     columns = [column for name in "xyz" if (column := rows.scalar(name)) is not None]
     if len(columns) < 3:
         raise ReadError("the PLY element `vertex` lacks a number x, y or z")
-    return np.stack(columns, axis=1, dtype=np.float64)
+    return np.stack([to_float64(column) for column in columns], axis=1)
 
 
 def _triangles(by_name: dict[str, Rows], vertices: Vertices) -> tuple[Triangles, IntArray, str]:

@@ -95,6 +95,11 @@ def open_package(data: bytes, limits: ReadLimits) -> Package:
     if len(set(names)) < len(names) or len(names) > _MOST_ENTRIES:
         raise ReadError(f"the 3MF package has {len(names):,} entries, {len(set(names)):,} of them with different names")
     limits.check_bytes(sum(info.file_size for info in infos))
+    with _archive(data) as archive:
+        # Every entry has to be packed again at the end: a broken one is better named now.
+        broken = archive.testzip()
+    if broken is not None:
+        raise ReadError(f"the entry {broken[:80]!r} of the 3MF package is broken")
     package = Package(data, names, "")
     return Package(data, names, _find_root(package))
 
