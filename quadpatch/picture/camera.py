@@ -1,0 +1,78 @@
+"""Orthographic cameras.
+
+A camera looks along ``-towards`` at `centre`; `right` and `up` span its picture. Its rays start on a plane in front
+of `centre`, so that a close-up looks past whatever stands farther in front.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from quadpatch.types import FloatArray, Vertices
+
+# Scans mostly stand along y; a view along y itself takes z.
+UP = np.array([0.0, 1.0, 0.0])
+_UP_SEEN_ALONG_IT = np.array([0.0, 0.0, 1.0])
+_ALONG = 0.9
+# Part of the picture left free around what it shows.
+_MARGIN = 0.05
+
+
+@dataclass(frozen=True)
+class Camera:
+    """Orthographic view.
+
+    Attributes
+    ----------
+    centre, right, up, towards : (3,) float64
+        Middle of the picture; unit axes, right-handed; `towards` points to the viewer.
+    width : float
+        Of the picture, in mesh units.
+    clearance : float
+        Distance in front of `centre` where the rays start, in mesh units.
+    """
+
+    centre: FloatArray
+    right: FloatArray
+    up: FloatArray
+    towards: FloatArray
+    width: float
+    clearance: float
+
+    def ray_origins(self, columns: FloatArray, rows: FloatArray, size: tuple[int, int]) -> Vertices:
+        """Start points (n, 3) of the rays through places in a picture of `size` (columns, rows), in pixels."""
+        pixel = self.width / size[0]
+        across = (columns - size[0] / 2) * pixel
+        upwards = (size[1] / 2 - rows) * pixel
+        start = self.centre + self.clearance * self.towards
+        return start + across[:, None] * self.right + upwards[:, None] * self.up
+
+
+def view_of(points: Vertices, towards: FloatArray, aspect: float) -> Camera:
+    """Look at all of some points.
+
+    Parameters
+    ----------
+    points : (n, 3) float64
+        At least one.
+    towards : (3,) float64
+        Unit vector to the viewer.
+    aspect : float
+        Width over height of the picture.
+    """
+    right, up = _picture_axes(towards)
+    axes = np.stack([right, up, towards])
+    local = points @ axes.T
+    low, high = local.min(axis=0), local.max(axis=0)
+    extent = high - low
+    width = float(max(extent[0], extent[1] * aspect)) * (1 + 2 * _MARGIN)
+    centre = (0.5 * (low + high)) @ axes
+    # A point has no width, a picture must have one.
+    return Camera(centre, right, up, towards, width or 1.0, float(extent[2]))
+
+
+def _picture_axes(towards: FloatArray) -> tuple[FloatArray, FloatArray]:
+    above = _UP_SEEN_ALONG_IT if abs(towards @ UP) > _ALONG else UP
+    right = np.cross(above, towards)
+    right /= np.linalg.norm(right)
+    return right, np.cross(towards, right)

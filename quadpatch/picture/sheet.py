@@ -1,0 +1,168 @@
+"""The sheet: the mesh before and after, close-ups of its largest holes, captions and a legend."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from PIL import Image, ImageDraw, ImageFont
+
+from quadpatch.errors import EmptyMeshError
+from quadpatch.mesh.normals import area_vectors
+from quadpatch.picture.camera import Camera
+from quadpatch.picture.parts import filled_holes, main_pieces, part_of
+from quadpatch.picture.shading import BACK, CLAY, Clay
+from quadpatch.picture.viewpoints import close_ups, is_inside_out, overview
+from quadpatch.raycast import RayScene
+from quadpatch.types import BoolArray, FloatArray, TriangleMesh
+
+# What was invented with full confidence, and with none.
+SURE = np.array([0.98, 0.74, 0.42])
+UNSURE = np.array([0.89, 0.38, 0.30])
+
+# In pixels. Three pairs of tiles are as wide as the two panels.
+_MARGIN = 28
+_GAP = 16
+_PANEL = (760, 600)
+_TILE = (246, 246)
+_PAIR_GAP = 4
+_GROUP_GAP = 24
+_WIDTH = 2 * _MARGIN + 2 * _PANEL[0] + _GAP
+_TITLE_HEIGHT = 46
+_CAPTION_HEIGHT = 28
+_LEGEND_HEIGHT = 30
+_SWATCH = (120, 16)
+
+_N_CLOSE_UPS = 3
+# Holes looked at to find three that can be seen.
+_N_CANDIDATES = 8
+_INK = (42, 46, 54)
+_GREY = (110, 116, 126)
+_PAPER = (255, 255, 255)
+
+
+@dataclass
+class _Sheet:
+    """A white sheet that grows downwards: `top` is where the next row begins."""
+
+    image: Image.Image
+    pen: ImageDraw.ImageDraw
+    top: int
+
+    def write(self, text: str, left: int, size: int, colour: tuple[int, int, int]) -> None:
+        """Write a line of text at the top of the row."""
+        self.pen.text((left, self.top), text, font=ImageFont.load_default(size), fill=colour)
+
+    def paste(self, picture: FloatArray, left: int) -> None:
+        """Paste a picture (rows, columns, 3) of 0..1 at the top of the row."""
+        pixels = np.round(picture * 255).astype(np.uint8)
+        self.image.paste(Image.fromarray(pixels), (left, self.top))
+
+
+def render_before_after(
+    before: TriangleMesh,
+    after: TriangleMesh,
+    invented: BoolArray,
+    path: Path,
+    confidence: FloatArray | None = None,
+    title: str = "",
+) -> None:
+    """Draw a mesh before and after its repair, and its largest holes in close-up, as a PNG file.
+
+    Parameters
+    ----------
+    before, after : TriangleMesh
+        In the same place.
+    invented : (n_triangles of `after`,) bool
+        True for the triangles that were not measured: they are tinted.
+    path : Path
+    confidence : (n_triangles of `after`,) float64, optional
+        0..1; the less, the redder the tint. Only that of invented triangles counts.
+    title : str
+        First line of the sheet.
+
+    Raises
+    ------
+    EmptyMeshError
+        If `after` has no triangle of any area.
+    """
+    if not area_vectors(after.vertices, after.triangles).any():
+        raise EmptyMeshError("there is no surface to draw")
+    scene, shown = RayScene(after), after
+    if is_inside_out(scene, part_of(after, main_pieces(after))):
+        before, shown = _turned(before), _turned(after)
+    old = Clay(before, RayScene(before), np.tile(CLAY, (len(before.triangles), 1)))
+    new = Clay(shown, scene, _colours(invented, confidence))
+    holes = [part_of(shown, hole) for hole in filled_holes(shown, invented, _N_CANDIDATES)]
+    cameras = close_ups(scene, holes, _TILE[0] / _TILE[1], _N_CLOSE_UPS)
+    sheet = _blank_sheet(has_title=bool(title), has_close_ups=bool(cameras))
+    if title:
+        sheet.write(title, _MARGIN, 24, _INK)
+        sheet.top += _TITLE_HEIGHT
+    _draw_overview(sheet, old, new, _overview_camera(scene, shown, invented))
+    if cameras:
+        _draw_close_ups(sheet, old, new, cameras)
+    _draw_legend(sheet, has_confidence=confidence is not None)
+    sheet.image.save(path, format="PNG", compress_level=4)
+
+
+def _colours(invented: BoolArray, confidence: FloatArray | None) -> FloatArray:
+    sure = np.ones(len(invented)) if confidence is None else np.clip(confidence, 0.0, 1.0)
+    tint = UNSURE + sure[:, None] * (SURE - UNSURE)
+    return np.where(invented[:, None], tint, CLAY)
+
+
+def _blank_sheet(*, has_title: bool, has_close_ups: bool) -> _Sheet:
+    height = 2 * _MARGIN + _CAPTION_HEIGHT + _PANEL[1] + _GAP + _LEGEND_HEIGHT
+    height += _TITLE_HEIGHT if has_title else 0
+    height += _CAPTION_HEIGHT + _TILE[1] + _GAP if has_close_ups else 0
+    image = Image.new("RGB", (_WIDTH, height), _PAPER)
+    return _Sheet(image, ImageDraw.Draw(image), _MARGIN)
+
+
+def _turned(mesh: TriangleMesh) -> TriangleMesh:
+    return TriangleMesh(mesh.vertices, mesh.triangles[:, ::-1])
+
+
+def _overview_camera(scene: RayScene, mesh: TriangleMesh, invented: BoolArray) -> Camera:
+    whole = part_of(mesh, main_pieces(mesh))
+    filled = part_of(mesh, np.flatnonzero(invented)) if invented.any() else None
+    return overview(scene, whole, filled, _PANEL[0] / _PANEL[1])
+
+
+def _draw_overview(sheet: _Sheet, old: Clay, new: Clay, camera: Camera) -> None:
+    left, right = _MARGIN, _MARGIN + _PANEL[0] + _GAP
+    sheet.write("before", left, 17, _INK)
+    sheet.write("after", right, 17, _INK)
+    sheet.top += _CAPTION_HEIGHT
+    sheet.paste(old.draw(camera, _PANEL), left)
+    sheet.paste(new.draw(camera, _PANEL), right)
+    sheet.top += _PANEL[1] + _GAP
+
+
+def _draw_close_ups(sheet: _Sheet, old: Clay, new: Clay, cameras: list[Camera]) -> None:
+    group_width = 2 * _TILE[0] + _PAIR_GAP + _GROUP_GAP
+    for k, _ in enumerate(cameras):
+        sheet.write(f"close-up {k + 1}: before, after", _MARGIN + k * group_width, 15, _GREY)
+    sheet.top += _CAPTION_HEIGHT
+    for k, camera in enumerate(cameras):
+        left = _MARGIN + k * group_width
+        sheet.paste(old.draw(camera, _TILE), left)
+        sheet.paste(new.draw(camera, _TILE), left + _TILE[0] + _PAIR_GAP)
+    sheet.top += _TILE[1] + _GAP
+
+
+def _draw_legend(sheet: _Sheet, *, has_confidence: bool) -> None:
+    """Draw a swatch per kind of surface; that of invented surface runs from unsure to sure if there is a confidence."""
+    share = np.linspace(0, 1, _SWATCH[0]) if has_confidence else np.ones(_SWATCH[0])
+    tint = UNSURE + share[:, None] * (SURE - UNSURE)
+    text = "invented surface" + (", confidence 0 to 1" if has_confidence else "")
+    left = _MARGIN
+    for colours, label in (
+        (tint, text),
+        (np.tile(CLAY, (40, 1)), "measured surface"),
+        (np.tile(BACK, (40, 1)), "inside"),
+    ):
+        sheet.paste(np.tile(colours, (_SWATCH[1], 1, 1)), left)
+        left += len(colours) + 8
+        sheet.write(label, left, 15, _GREY)
+        left += round(ImageFont.load_default(15).getlength(label)) + 32
