@@ -8,19 +8,21 @@ from quadpatch.filling.fill import FilledMesh
 from quadpatch.inpainters.dictionary import learn_from_patches
 from quadpatch.inpainters.inpainter import Inpainter
 from quadpatch.judge import Evidence, gather, trusted
-from quadpatch.mesh.holes import Hole
-from quadpatch.mesh.measures import mean_edge_length
 from quadpatch.mesh.smoothing import laplacian_smooth
 from quadpatch.options import RepairOptions
-from quadpatch.patches.layout import lay_out, patchify, seeds_near, take
+from quadpatch.patches.folding import is_height_map
+from quadpatch.patches.layout import Sampled, lay_out, patchify, pick, seeds_near, take
 from quadpatch.patches.scale import PatchScale, choose_scale
 from quadpatch.patches.seeds import Seeds
-from quadpatch.practice import Practice, believed_share, error_per_hole, practise
+from quadpatch.practice import Practice, believed_share, distance_to_truth, error_per_gap
 from quadpatch.reconstruction.displacement import displace, join_at_rim, rim_vertices
 from quadpatch.stages import Stages
 from quadpatch.types import BoolArray, FloatArray, Patches, TriangleMesh
 
 SMOOTHING_ITERATIONS = 30
+
+# Believed of a model's displacement where the mesh has no room for practice.
+UNTRIED_SHARE = 0.0
 
 # Patches that a self-similar dictionary is learned from.
 _MAX_SEEDS_TO_LEARN_FROM = 2000
@@ -54,8 +56,31 @@ class Completion:
 
 
 @dataclass(frozen=True)
-class _Ground:
-    """What completion of the real and of the practice holes share."""
+class Problem:
+    """What is to be completed.
+
+    Attributes
+    ----------
+    filled : FilledMesh
+    diameters : list of float
+        Of the filled holes, in mesh units.
+    edge_length : float
+        Mean edge length, in mesh units.
+    practice : Practice or None
+    practice_filled : FilledMesh or None
+        The practice holes, filled like the real ones.
+    """
+
+    filled: FilledMesh
+    diameters: list[float]
+    edge_length: float
+    practice: Practice | None
+    practice_filled: FilledMesh | None
+
+
+@dataclass(frozen=True)
+class _Model:
+    """A model, and the layout of the patches that it is applied to."""
 
     inpainter: Inpainter
     seeds: Seeds
@@ -63,25 +88,17 @@ class _Ground:
 
 
 def complete(
-    mesh: TriangleMesh,
-    filled: FilledMesh,
-    holes: list[Hole],
-    inpainter: Inpainter | None,
-    options: RepairOptions,
-    stages: Stages,
+    problem: Problem, inpainter: Inpainter | None, options: RepairOptions, rng: np.random.Generator, stages: Stages
 ) -> Completion | None:
     """Displace the fill of every hole by what a model makes of the patches around it.
 
     Parameters
     ----------
-    mesh : TriangleMesh
-        With its holes open.
-    filled : FilledMesh
-    holes : list of Hole
-        In the order of the filled loops.
+    problem : Problem
     inpainter : Inpainter or None
         None: learn a dictionary from the mesh's own patches.
     options : RepairOptions
+    rng : numpy.random.Generator
     stages : Stages
 
     Returns
@@ -94,37 +111,37 @@ def complete(
     NoQuadsError
         If the outline can't carry one quad.
     """
-    rng = np.random.default_rng(options.seed)
-    diameters = [hole.diameter for hole in holes]
-    edge = mean_edge_length(mesh)
-    scale = choose_scale(diameters, edge, options.patches, inpainter.resolution if inpainter else None)
+    filled = problem.filled
+    model_resolution = inpainter.resolution if inpainter else None
+    scale = choose_scale(problem.diameters, problem.edge_length, options.patches, model_resolution)
     with stages.stage("smooth"):
         outline = laplacian_smooth(filled.mesh, SMOOTHING_ITERATIONS)
     with stages.stage("quadrangulate"):
         seeds = lay_out(outline, scale)
     with stages.stage("patchify"):
-        new = filled.mesh.vertices[filled.n_measured_vertices :]
-        near = take(seeds, seeds_near(seeds, new, scale.length))
-        sampled = patchify(filled, outline, near, scale)
+        sampled = _around_holes(filled, outline, seeds, scale)
     with stages.stage("learn"):
         if inpainter is None:
-            some = _some(seeds, rng)
-            everywhere = patchify(filled, outline, some, scale)
+            everywhere = patchify(filled, outline, _some(seeds, rng), scale)
             inpainter = learn_from_patches(everywhere.patches, everywhere.outline, rng, stages.progress)
         if inpainter is None:
             return None
-        ground = _Ground(inpainter, seeds, scale)
-        practice = practise(mesh, float(np.median(diameters)), edge, rng)
-        believed, error_per_gap = (1.0, None) if practice is None else _rehearse(practice, ground)
+        believed, per_gap = _rehearse(problem, _Model(inpainter, seeds, scale))
     with stages.stage("inpaint"):
         predicted = inpainter.predict(sampled.patches, sampled.outline)
     with stages.stage("reconstruct"):
-        joined, evidence = _displacements(filled, sampled.patches, predicted, len(holes))
+        joined, evidence = _displacements(filled, sampled.patches, predicted)
         trust = trusted(evidence) & (believed > 0)
+        new = filled.mesh.vertices[filled.n_measured_vertices :]
         moved = new + believed * np.where(trust[filled.vertex_hole][:, None], joined, 0.0)
-    return Completion(
-        filled.with_vertices(moved), evidence, trust, believed, error_per_gap, scale, len(sampled.patches)
-    )
+    return Completion(filled.with_vertices(moved), evidence, trust, believed, per_gap, scale, len(sampled.patches))
+
+
+def _around_holes(filled: FilledMesh, outline: TriangleMesh, seeds: Seeds, scale: PatchScale) -> Sampled:
+    """Patches that see a new vertex and are height maps."""
+    new = filled.mesh.vertices[filled.n_measured_vertices :]
+    sampled = patchify(filled, outline, take(seeds, seeds_near(seeds, new, scale.length)), scale)
+    return pick(sampled, is_height_map(sampled.patches))
 
 
 def _some(seeds: Seeds, rng: np.random.Generator) -> Seeds:
@@ -134,29 +151,25 @@ def _some(seeds: Seeds, rng: np.random.Generator) -> Seeds:
     return take(seeds, np.sort(rng.choice(count, _MAX_SEEDS_TO_LEARN_FROM, replace=False)))
 
 
-def _rehearse(practice: Practice, ground: _Ground) -> tuple[float, float]:
+def _rehearse(problem: Problem, model: _Model) -> tuple[float, float | None]:
     """Complete the practice holes: the share of the displacement to believe, and the error per gap that is left."""
-    filled = practice.filled
+    filled = problem.practice_filled
+    if problem.practice is None or filled is None:
+        return UNTRIED_SHARE, None
     outline = laplacian_smooth(filled.mesh, SMOOTHING_ITERATIONS)
-    new = filled.mesh.vertices[filled.n_measured_vertices :]
-    near = take(ground.seeds, seeds_near(ground.seeds, new, ground.scale.length))
-    sampled = patchify(filled, outline, near, ground.scale)
-    predicted = ground.inpainter.predict(sampled.patches, sampled.outline)
-    n_holes = len(filled.gap)
-    joined, evidence = _displacements(filled, sampled.patches, predicted, n_holes)
-    joined = np.where(trusted(evidence)[filled.vertex_hole][:, None], joined, 0.0)
-    share = believed_share(practice, joined)
-    present, errors = error_per_hole(practice, joined, share)
-    gap = filled.gap[present]
-    return share, float(errors.sum() / gap.sum()) if gap.sum() > 0 else 0.0
+    sampled = _around_holes(filled, outline, model.seeds, model.scale)
+    predicted = model.inpainter.predict(sampled.patches, sampled.outline)
+    joined, evidence = _displacements(filled, sampled.patches, predicted)
+    truth, normals = distance_to_truth(problem.practice, filled)
+    along = np.where(trusted(evidence)[filled.vertex_hole], np.einsum("ij,ij->i", joined, normals), 0.0)
+    share = believed_share(truth, along)
+    return share, error_per_gap(filled, truth - share * along)
 
 
-def _displacements(
-    filled: FilledMesh, patches: Patches, predicted: FloatArray, n_holes: int
-) -> tuple[FloatArray, Evidence]:
+def _displacements(filled: FilledMesh, patches: Patches, predicted: FloatArray) -> tuple[FloatArray, Evidence]:
     """Displacements (n_invented, 3), zero at the rims, and the evidence behind them."""
     rim, rim_hole = rim_vertices(filled)
     inside = displace(filled, np.flatnonzero(filled.invented_vertices), patches, predicted)
     at_rim = displace(filled, rim, patches, predicted)
     joined = join_at_rim(filled, inside.mean, rim, at_rim.mean)
-    return joined, gather(filled, n_holes, inside, joined, rim_hole, at_rim)
+    return joined, gather(filled, inside, joined, rim_hole, at_rim)

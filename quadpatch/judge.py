@@ -25,9 +25,6 @@ MOST_DISAGREEMENT = 1.5
 
 _FALL_PER_ERROR = 10.0
 
-# Without practice on the mesh: mean error of a fill, in units of its gap to the thin plate.
-ERROR_PER_GAP = 0.5
-
 
 @dataclass(frozen=True)
 class HoleResult:
@@ -77,10 +74,10 @@ class Evidence:
 
 
 def gather(
-    filled: FilledMesh, n_holes: int, inside: Displacement, joined: FloatArray, rim_hole: IntArray, at_rim: Displacement
+    filled: FilledMesh, inside: Displacement, joined: FloatArray, rim_hole: IntArray, at_rim: Displacement
 ) -> Evidence:
     """Collect the evidence of all holes from the displacements inside them and at their rims."""
-    hole = filled.vertex_hole
+    hole, n_holes = filled.vertex_hole, len(filled.gap)
     covered = (inside.overlap > 0).astype(np.float64)
     return Evidence(
         _mean_by(hole, covered, n_holes),
@@ -98,9 +95,12 @@ def trusted(evidence: Evidence) -> BoolArray:
 
 
 def judge(
-    holes: list[Hole], selection: Selection, filled: FilledMesh, completion: "Completion | None"
+    holes: list[Hole], selection: Selection, filled: FilledMesh, completion: "Completion | None", per_gap: float
 ) -> list[HoleResult]:
-    """Say of every hole what became of it, in the order of their ids."""
+    """Say of every hole what became of it, in the order of their ids.
+
+    `per_gap` is the mean error of a fill in units of its gap to the thin plate.
+    """
     position = {hole.id: i for i, hole in enumerate(selection.chosen)}
     n_vertices = np.bincount(filled.vertex_hole, minlength=len(position))
     n_triangles = np.bincount(filled.triangle_hole, minlength=len(position))
@@ -114,7 +114,6 @@ def judge(
             why = "every triangulation of the rim would give an existing edge a third face"
             results.append(HoleResult(hole, "refused", "no_triangulation", why))
             continue
-        per_gap = ERROR_PER_GAP if completion is None or completion.error_per_gap is None else completion.error_per_gap
         expected = float(per_gap * filled.gap[i])
         verdict, code, reason = _verdict(i, completion)
         results.append(

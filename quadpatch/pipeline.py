@@ -6,16 +6,27 @@ geometric fill, outline, quads, patches, learning, completion, reconstruction, v
 
 from dataclasses import dataclass
 
-from quadpatch.completion import Completion, complete
+import numpy as np
+
+from quadpatch.completion import Completion, Problem, complete
 from quadpatch.errors import NoQuadsError
-from quadpatch.filling.fill import FilledMesh, fill_holes
+from quadpatch.filling.fairing import THIN_PLATE, Energy
+from quadpatch.filling.fill import FilledMesh, close_holes, fair_holes
 from quadpatch.inpainters.inpainter import Inpainter
 from quadpatch.judge import HoleResult, judge
 from quadpatch.mesh.holes import Hole, find_holes, select_holes
-from quadpatch.mesh.measures import diagonal
+from quadpatch.mesh.measures import diagonal, mean_edge_length
 from quadpatch.options import RepairOptions
+from quadpatch.practice import choose_energy, distance_to_truth, error_per_gap, practise
 from quadpatch.stages import Stages
 from quadpatch.types import TriangleMesh
+
+# From rough to smooth: a noisy or sharp-edged surface is continued best by the first, a smooth one by the last.
+ENERGIES = (THIN_PLATE, Energy(plate=1.0, variation=2.0), Energy(plate=1.0, variation=20.0))
+
+# Where the surface has no room for practice: the energy in the middle, and the mean error of a fill in units of its gap.
+UNTRIED_ENERGY = ENERGIES[1]
+ERROR_PER_GAP = 1.0
 
 
 @dataclass(frozen=True)
@@ -30,6 +41,8 @@ class Repair:
         In the order of the filled loops.
     results : list of HoleResult
         One per hole, by id.
+    energy : Energy
+        What the fill was faired by.
     completion : Completion or None
         None where geometry alone filled the holes.
     warnings : list of str
@@ -38,6 +51,7 @@ class Repair:
     filled: FilledMesh
     chosen: list[Hole]
     results: list[HoleResult]
+    energy: Energy
     completion: Completion | None
     warnings: list[str]
 
@@ -73,19 +87,37 @@ def inpaint(
         If the options don't fit the mesh.
     """
     stages = stages or Stages()
+    rng = np.random.default_rng(options.seed)
     with stages.stage("holes"):
         holes = find_holes(mesh)
         selection = select_holes(holes, options.holes, diagonal(mesh))
     with stages.stage("fill"):
-        filled = fill_holes(mesh, [hole.loop for hole in selection.chosen])
+        problem, energy, per_gap = _fill(mesh, selection.chosen, rng)
     completion, warnings = None, []
-    if (inpainter is not None or learn) and len(filled.vertex_hole):
+    if (inpainter is not None or learn) and len(problem.filled.vertex_hole):
         try:
-            completion = complete(mesh, filled, selection.chosen, inpainter, options, stages)
+            completion = complete(problem, inpainter, options, rng, stages)
             if completion is None:
                 warnings.append("too little undamaged surface to learn from; the holes were filled by geometry alone")
         except NoQuadsError as error:
             warnings.append(f"{error}; the holes were filled by geometry alone")
     with stages.stage("judge"):
-        results = judge(holes, selection, filled, completion)
-    return Repair(completion.filled if completion else filled, selection.chosen, results, completion, warnings)
+        if completion and completion.error_per_gap is not None:
+            per_gap = completion.error_per_gap
+        results = judge(holes, selection, problem.filled, completion, per_gap)
+    filled = completion.filled if completion else problem.filled
+    return Repair(filled, selection.chosen, results, energy, completion, warnings)
+
+
+def _fill(mesh: TriangleMesh, chosen: list[Hole], rng: np.random.Generator) -> tuple[Problem, Energy, float]:
+    """Fill the holes by the energy that suits this surface; also that energy and its mean error per gap."""
+    edge = mean_edge_length(mesh)
+    diameters = [hole.diameter for hole in chosen]
+    energy, per_gap, filled_again = UNTRIED_ENERGY, ERROR_PER_GAP, None
+    practice = practise(mesh, float(np.median(diameters)), edge, rng) if chosen else None
+    if practice is not None:
+        energy = choose_energy(practice, ENERGIES)
+        filled_again = fair_holes(practice.closed, energy)
+        per_gap = error_per_gap(filled_again, distance_to_truth(practice, filled_again)[0])
+    filled = fair_holes(close_holes(mesh, [hole.loop for hole in chosen]), energy)
+    return Problem(filled, diameters, edge, practice, filled_again), energy, per_gap

@@ -4,9 +4,11 @@ New vertices minimise an energy of the surface while every measured vertex stays
 minimises curvature, ``L M^-1 L x = 0`` with L the cotangent Laplacian and M the vertex areas; the minimum variation
 surface minimises the change of curvature, ``L M^-1 L M^-1 L x = 0``, and so carries the curvature of the rim on into
 the hole (M. Botsch and L. Kobbelt, "An intuitive framework for real-time freeform modeling", 2004). The first needs two
-rings of measured vertices at the rim, the second three. Alone, the second magnifies noise at the rim; blended, the
-thin plate rules over detail shorter than `PLATE_LENGTH` and the minimum variation over the rest.
+rings of measured vertices at the rim, the second three. The smoother the energy, the better it continues a smooth
+surface and the worse a rough one, whose noise at the rim it magnifies: `Energy` blends them.
 """
+
+from dataclasses import dataclass
 
 import numpy as np
 from scipy import sparse
@@ -14,27 +16,39 @@ from scipy.sparse.linalg import splu
 
 from quadpatch.types import BoolArray, FloatArray, IntArray, Triangles, Vertices
 
-# Where thin plate and minimum variation weigh the same, in mean edge lengths of the fill (see docs/method.md).
-PLATE_LENGTH = 4.5
+
+@dataclass(frozen=True)
+class Energy:
+    """Weights of membrane (area), thin plate (curvature) and minimum variation (change of curvature).
+
+    Without unit: lengths in them are mean edge lengths of the fill.
+    """
+
+    membrane: float = 0.0
+    plate: float = 0.0
+    variation: float = 0.0
+
+
+MEMBRANE = Energy(membrane=1.0)
+THIN_PLATE = Energy(plate=1.0)
 
 # Cotangents beyond this come from slivers and would drown every other weight.
 _MAX_COTANGENT = 50.0
 
 
 def fair(
-    vertices: Vertices, triangles: Triangles, free: BoolArray, plate_length: float, *, uniform: bool = False
+    vertices: Vertices, triangles: Triangles, free: BoolArray, energy: Energy, *, uniform: bool = False
 ) -> Vertices:
-    """Move the free vertices to where the surface is smoothest.
+    """Move the free vertices to where the surface has least energy.
 
     Parameters
     ----------
     vertices : (n, 3) float64
     triangles : (m, 3) int64
-        The fill and three rings of triangles around its rim.
+        The fill and, around its rim, as many rings of triangles as the energy reads, plus one.
     free : (n,) bool
         Vertices that may move.
-    plate_length : float
-        In mean edge lengths; 0 is the pure thin plate.
+    energy : Energy
     uniform : bool
         The graph Laplacian in place of the cotangent one: for a start too crumpled to take weights from.
 
@@ -47,14 +61,16 @@ def fair(
     if not free.any():
         return result
     laplacian, area = _laplacian(vertices, triangles, uniform=uniform)
-    step = sparse.diags_array(1.0 / area) @ laplacian
+    step = sparse.diags_array(area[free].mean() / area) @ laplacian
     # Rows of free vertices only: those of the outermost ring have lost triangles at the cut.
-    energy = laplacian[free] @ step
-    if plate_length:
-        energy = energy + (plate_length**2 * area[free].mean()) * (energy @ step)
-    energy = energy.tocsc()
-    inner, right = energy[:, free], -(energy[:, ~free] @ vertices[~free])
-    factors = splu(inner, permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True}, diag_pivot_thresh=0.0)
+    rows = laplacian[free]
+    equations = energy.membrane * rows
+    for weight in (energy.plate, energy.variation):
+        rows = rows @ step
+        equations = equations + weight * rows
+    equations = equations.tocsc()
+    inner, right = equations[:, free], -(equations[:, ~free] @ vertices[~free])
+    factors = splu(inner.tocsc(), permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True}, diag_pivot_thresh=0.0)
     result[free] = factors.solve(right)
     return result
 

@@ -1,4 +1,4 @@
-"""The geometric answer: every chosen hole closed, refined and faired.
+"""The geometric answer: holes closed, refined and faired.
 
 It is the floor that learning must beat, and the carrier of the new vertices.
 """
@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from quadpatch.filling.fairing import PLATE_LENGTH, fair, triangles_around
+from quadpatch.filling.fairing import THIN_PLATE, Energy, fair, triangles_around
 from quadpatch.filling.refinement import Refined, refine, relax
 from quadpatch.filling.triangulation import EdgeSet, triangulate_loops
 from quadpatch.mesh.boundary import directed_edges
@@ -17,6 +17,7 @@ from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Trian
 # The minimum variation surface takes position, slope and curvature from three rings of vertices, and the
 # Laplacian of the third needs the triangles around it.
 _RINGS = 4
+
 
 # Fill and thin plate of one hole further apart than this share of its width: something ran away.
 RUNAWAY_SHARE = 0.2
@@ -64,49 +65,84 @@ class FilledMesh:
         return replace(self, mesh=TriangleMesh(vertices, self.mesh.triangles))
 
 
-def fill_holes(mesh: TriangleMesh, loops: list[IntArray]) -> FilledMesh:
-    """Close boundary loops with a faired surface.
+@dataclass(frozen=True)
+class ClosedMesh:
+    """Holes triangulated and refined, not faired to their end: what every energy starts from.
+
+    Attributes
+    ----------
+    mesh : TriangleMesh
+        The input.
+    used : (n_local,) int64
+        Input vertices next to a hole.
+    centre : (3,) float64
+        Origin of the local coordinates: far-away scans would lose digits without it.
+    around : (k, 3) int64
+        Input triangles next to a hole, in local vertices.
+    plate : Refined
+        The thin plate, in local vertices and coordinates.
+    n_holes : int
+    unfilled : list of int
+    """
+
+    mesh: TriangleMesh
+    used: IntArray
+    centre: FloatArray
+    around: Triangles
+    plate: Refined
+    n_holes: int
+    unfilled: list[int]
+
+
+def close_holes(mesh: TriangleMesh, loops: list[IntArray]) -> ClosedMesh:
+    """Triangulate and refine boundary loops, and lay a thin plate over each.
 
     Parameters
     ----------
     mesh : TriangleMesh
     loops : list of (n_loop,) int64
         Simple loops with the surface on their left, as `boundary_loops` gives them.
+    """
+    rim = np.unique(np.concatenate([np.zeros(0, np.int64), *loops]))
+    # Nothing below looks further than four rings from a rim: work on that part alone.
+    near = triangles_around(mesh.triangles, rim, len(mesh.vertices), _RINGS)
+    used, local = np.unique(mesh.triangles[near], return_inverse=True)
+    around = local.reshape(-1, 3)
+    centre = mesh.vertices[used].mean(axis=0) if len(used) else np.zeros(3)
+    taken = EdgeSet(directed_edges(around))
+    local_loops = [np.searchsorted(used, loop) for loop in loops]
+    patch, unfilled = _close(mesh.vertices[used] - centre, around, local_loops, taken)
+    # A first, crumpled fairing; its bulge makes room for more vertices, and its shape better weights.
+    patch = _faired(patch, around, THIN_PLATE, uniform=True)
+    patch = relax(refine(patch, taken), around, taken)
+    plate = _faired(patch, around, THIN_PLATE)
+    return ClosedMesh(mesh, used, centre, around, plate, len(loops), unfilled)
+
+
+def fair_holes(closed: ClosedMesh, energy: Energy) -> FilledMesh:
+    """Fair all holes by one energy.
 
     Returns
     -------
     FilledMesh
         The input's vertices and triangles are its bit-exact prefix.
     """
-    if not loops:
-        none = np.zeros(0, np.int64)
-        return FilledMesh(mesh, len(mesh.vertices), len(mesh.triangles), none, none, np.zeros(0), [])
-    rim = np.unique(np.concatenate(loops))
-    # Nothing below looks further than four rings from a rim: work on that part alone.
-    near = triangles_around(mesh.triangles, rim, len(mesh.vertices), _RINGS)
-    used, local = np.unique(mesh.triangles[near], return_inverse=True)
-    around = local.reshape(-1, 3)
-    vertices = mesh.vertices[used]
-    centre = vertices.mean(axis=0)
-    local_loops = [np.searchsorted(used, loop) for loop in loops]
-    taken = EdgeSet(directed_edges(around))
-    patch, unfilled = _close(vertices - centre, around, local_loops, taken)
-    patch, gap = _fair_patch(patch, around, taken, len(loops))
-    n_local, n_input = len(used), len(mesh.vertices)
-    to_mesh = np.concatenate([used, n_input + np.arange(len(patch.vertices) - n_local)])
+    patch, gap = _fair_patch(closed.plate, closed.around, energy, closed.n_holes)
+    mesh, n_local = closed.mesh, len(closed.used)
+    n_input = len(mesh.vertices)
+    to_mesh = np.concatenate([closed.used, n_input + np.arange(len(patch.vertices) - n_local)])
     vertex_hole = np.zeros(len(patch.vertices), np.int64)
     vertex_hole[patch.triangles] = patch.hole[:, None]
+    vertices = np.concatenate([mesh.vertices, patch.vertices[n_local:] + closed.centre])
+    triangles = np.concatenate([mesh.triangles, to_mesh[patch.triangles]])
     return FilledMesh(
-        TriangleMesh(
-            np.concatenate([mesh.vertices, patch.vertices[n_local:] + centre]),
-            np.concatenate([mesh.triangles, to_mesh[patch.triangles]]),
-        ),
+        TriangleMesh(vertices, triangles),
         n_input,
         len(mesh.triangles),
         patch.hole,
         vertex_hole[n_local:],
         gap,
-        unfilled,
+        closed.unfilled,
     )
 
 
@@ -137,25 +173,22 @@ def _rim_normals(vertices: FloatArray, around: Triangles, loops: list[IntArray])
     return found
 
 
-def _fair_patch(patch: Refined, around: Triangles, taken: EdgeSet, n_holes: int) -> tuple[Refined, FloatArray]:
-    """Fair a first, crumpled triangulation; its bulge makes room for more vertices, and its shape better weights."""
-    patch = _faired(patch, around, plate_length=0.0, uniform=True)
-    patch = relax(refine(patch, taken), around, taken)
-    plate = _faired(patch, around, plate_length=0.0)
-    faired = _faired(plate, around, plate_length=PLATE_LENGTH)
-    faired = _faired(faired, around, plate_length=PLATE_LENGTH)
+def _fair_patch(plate: Refined, around: Triangles, energy: Energy, n_holes: int) -> tuple[Refined, FloatArray]:
+    """Fair twice, since the weights depend on the shape; give back the gap to the plate as well."""
+    faired = _faired(_faired(plate, around, energy), around, energy)
     apart = np.linalg.norm(faired.vertices - plate.vertices, axis=1)
-    hole = np.full(len(patch.vertices), -1)
-    hole[patch.triangles] = patch.hole[:, None]
-    hole[: patch.n_measured] = -1
-    # Curvature carried on from a ragged rim can run away; such a hole takes the thin plate.
+    hole = np.full(len(plate.vertices), -1)
+    hole[plate.triangles] = plate.hole[:, None]
+    hole[: plate.n_measured] = -1
+    new = hole >= 0
     furthest = np.zeros(n_holes)
-    np.maximum.at(furthest, hole[hole >= 0], apart[hole >= 0])
+    np.maximum.at(furthest, hole[new], apart[new])
+    # Curvature carried on from a ragged rim can run away; such a hole takes the thin plate.
     runaway = furthest > RUNAWAY_SHARE * _hole_widths(plate, n_holes)
-    keep = (hole >= 0) & runaway[hole]
-    vertices = np.where(keep[:, None], plate.vertices, faired.vertices)
-    count = np.bincount(hole[hole >= 0], minlength=n_holes)
-    gap = np.bincount(hole[hole >= 0], apart[hole >= 0], minlength=n_holes) / np.maximum(count, 1)
+    vertices = np.where((new & runaway[hole])[:, None], plate.vertices, faired.vertices)
+    gap = np.bincount(hole[new], apart[new], minlength=n_holes) / np.maximum(
+        np.bincount(hole[new], minlength=n_holes), 1
+    )
     return replace(faired, vertices=vertices), gap
 
 
@@ -170,6 +203,6 @@ def _hole_widths(patch: Refined, n_holes: int) -> FloatArray:
     return np.linalg.norm(np.where(np.isfinite(high - low), high - low, 0.0), axis=1)
 
 
-def _faired(patch: Refined, around: Triangles, *, plate_length: float, uniform: bool = False) -> Refined:
+def _faired(patch: Refined, around: Triangles, energy: Energy, *, uniform: bool = False) -> Refined:
     triangles = np.concatenate([around, patch.triangles])
-    return replace(patch, vertices=fair(patch.vertices, triangles, patch.is_new, plate_length, uniform=uniform))
+    return replace(patch, vertices=fair(patch.vertices, triangles, patch.is_new, energy, uniform=uniform))
