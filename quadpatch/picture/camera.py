@@ -13,7 +13,7 @@ from quadpatch.types import FloatArray, Vertices
 # Scans mostly stand along y; a view along y itself takes z.
 UP = np.array([0.0, 1.0, 0.0])
 _UP_SEEN_ALONG_IT = np.array([0.0, 0.0, 1.0])
-_ALONG = 0.9
+_ALONG = 0.98
 # Part of the picture left free around what it shows.
 _MARGIN = 0.05
 

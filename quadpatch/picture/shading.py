@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from quadpatch.mesh.normals import triangle_normals, vertex_normals
+from quadpatch.mesh.normals import triangle_normals, unit
 from quadpatch.mesh.weld import weld
 from quadpatch.picture.camera import Camera
 from quadpatch.raycast import RayScene
@@ -17,8 +17,8 @@ BACK = np.array([0.30, 0.34, 0.42])
 # the right that keeps the shadows open, and light from everywhere.
 _LIGHTS = (((-0.45, 0.60, 0.66), 0.82), ((0.75, 0.05, 0.66), 0.24))
 _AMBIENT = 0.20
-# Corners whose normal is farther than about 40 degrees from their triangle's belong to a sharp edge.
-_SHARP = 0.77
+# Corners whose normal is farther than about 28 degrees from their triangle's belong to a sharp edge.
+_SHARP = 0.88
 # Pixels that differ from a neighbour by more than this (of 1) get more rays.
 _EDGE = 0.04
 # Places of the rays within such a pixel: a rotated square, which has no two on one row or column.
@@ -45,7 +45,7 @@ class Clay:
         self._colours = colours
         self._flat = triangle_normals(mesh.vertices, mesh.triangles)
         welded = weld(mesh.vertices, mesh.triangles)
-        self._smooth = vertex_normals(welded.mesh.vertices, welded.mesh.triangles)[welded.from_file]
+        self._smooth = _smooth_normals(welded.mesh)[welded.from_file]
 
     def draw(self, camera: Camera, size: tuple[int, int]) -> FloatArray:
         """Draw a picture.
@@ -108,6 +108,23 @@ class Clay:
         length = np.linalg.norm(total, axis=1, keepdims=True)
         normals: FloatArray = np.divide(total, length, out=flat.copy(), where=length > 0)
         return normals
+
+
+def _smooth_normals(mesh: TriangleMesh) -> FloatArray:
+    """Mean normal (n_vertices, 3) of the triangles around each vertex, weighted by their angle there.
+
+    The angle, unlike the area, does not depend on how a flat side was cut into triangles, so that an edge between
+    two flat sides is recognised as sharp from both.
+    """
+    flat = triangle_normals(mesh.vertices, mesh.triangles)
+    total = np.zeros_like(mesh.vertices)
+    for k in range(3):
+        here, after, before = (mesh.vertices[mesh.triangles[:, (k + step) % 3]] for step in range(3))
+        cosine = np.einsum("ij,ij->i", unit(after - here), unit(before - here))
+        vectors = np.arccos(np.clip(cosine, -1.0, 1.0))[:, None] * flat
+        for axis in range(3):
+            total[:, axis] += np.bincount(mesh.triangles[:, k], vectors[:, axis], minlength=len(total))
+    return unit(total)
 
 
 def _barycentric(points: Vertices, a: Vertices, b: Vertices, c: Vertices) -> FloatArray:

@@ -1,0 +1,91 @@
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from quadpatch.errors import EmptyMeshError
+from quadpatch.picture import render_before_after
+from quadpatch.picture.shading import BACK
+from quadpatch.picture.sheet import SURE, UNSURE
+from quadpatch.types import BoolArray, FloatArray, TriangleMesh
+
+
+def sphere(n: int = 40) -> TriangleMesh:
+    u, v = np.meshgrid(np.linspace(0, np.pi, n), np.linspace(0, 2 * np.pi, 2 * n), indexing="ij")
+    vertices = np.stack([np.sin(u) * np.sin(v), np.cos(u), np.sin(u) * np.cos(v)], axis=-1).reshape(-1, 3)
+    index = np.arange(2 * n * n).reshape(n, 2 * n)
+    a, b, c, d = (part.ravel() for part in (index[:-1, :-1], index[1:, :-1], index[1:, 1:], index[:-1, 1:]))
+    return TriangleMesh(vertices, np.concatenate([np.stack([a, b, c], 1), np.stack([a, c, d], 1)]))
+
+
+def repaired() -> tuple[TriangleMesh, TriangleMesh, BoolArray]:
+    after = sphere()
+    invented = np.asarray(after.vertices[after.triangles].mean(axis=1) @ np.array([0.6, 0, 0.8]) > 0.93)
+    return TriangleMesh(after.vertices, after.triangles[~invented]), after, invented
+
+
+def pixels(path: Path) -> FloatArray:
+    with Image.open(path) as image:
+        assert image.format == "PNG"
+        return np.asarray(image, dtype=np.float64) / 255
+
+
+def share_of_hue(picture: FloatArray, colour: FloatArray) -> float:
+    """Share of pixels that are a shade of a colour, however lit."""
+    dark = picture.max(axis=2) < 0.1
+    level = picture / np.maximum(picture.max(axis=2, keepdims=True), 1e-9)
+    alike = np.abs(level - colour / colour.max()).max(axis=2) < 0.03
+    return float((alike & ~dark).mean())
+
+
+@pytest.fixture(scope="module")
+def plain(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("sheet") / "plain.png"
+    render_before_after(*repaired(), path)
+    return path
+
+
+def test_holes_show_the_inside_before_and_the_tint_after(plain: Path) -> None:
+    sheet = pixels(plain)
+    middle = sheet.shape[1] // 2
+    left, right = sheet[60:640, :middle], sheet[60:640, middle:]
+    assert share_of_hue(left, BACK) > 0.01
+    assert share_of_hue(left, SURE) == 0
+    assert share_of_hue(right, SURE) > 0.01
+    assert share_of_hue(right, BACK) == 0
+
+
+def test_the_tint_follows_the_confidence_and_a_title_takes_a_line(plain: Path, tmp_path: Path) -> None:
+    before, after, invented = repaired()
+    nothing = np.zeros(len(invented))
+    render_before_after(before, after, invented, tmp_path / "sheet.png", confidence=nothing, title="a sphere")
+    sheet = pixels(tmp_path / "sheet.png")
+    assert share_of_hue(sheet[120:680], UNSURE) > 0.005
+    assert share_of_hue(sheet[120:680], SURE) == 0
+    assert sheet.shape[0] > pixels(plain).shape[0]
+
+
+def test_a_surface_turned_inside_out_gives_the_same_sheet(plain: Path, tmp_path: Path) -> None:
+    before, after, invented = repaired()
+    before, after = (TriangleMesh(mesh.vertices, mesh.triangles[:, ::-1]) for mesh in (before, after))
+    render_before_after(before, after, invented, tmp_path / "sheet.png")
+    assert np.abs(pixels(plain) - pixels(tmp_path / "sheet.png")).mean() < 1e-3
+
+
+def test_the_same_repair_gives_the_same_bytes(plain: Path, tmp_path: Path) -> None:
+    render_before_after(*repaired(), tmp_path / "sheet.png")
+    assert plain.read_bytes() == (tmp_path / "sheet.png").read_bytes()
+
+
+def test_without_invented_surface_there_are_no_close_ups(plain: Path, tmp_path: Path) -> None:
+    _, after, invented = repaired()
+    render_before_after(after, after, np.zeros_like(invented), tmp_path / "sheet.png")
+    assert pixels(tmp_path / "sheet.png").shape[0] < pixels(plain).shape[0] - 200
+
+
+def test_nothing_to_draw_is_said(tmp_path: Path) -> None:
+    empty = TriangleMesh(np.zeros((0, 3)), np.zeros((0, 3), dtype=np.int64))
+    with pytest.raises(EmptyMeshError):
+        render_before_after(empty, empty, np.zeros(0, dtype=bool), tmp_path / "sheet.png")
+    assert not (tmp_path / "sheet.png").exists()
