@@ -92,7 +92,7 @@ def _fetch(client: Client, screen: Screen, task: Task, job: Job) -> None:
             client.download(job, "result", task.output, progress)
         if task.preview is not None:
             client.download(job, "preview", task.preview)
-        screen.say(paragraph(task.source.name, job, json.loads(report.read_text(encoding="utf-8"))))
+        screen.tell(paragraph(task.source.name, job, json.loads(report.read_text(encoding="utf-8"))))
     for path in (task.output, task.report, task.preview):
         if path is not None:
             screen.say(f"wrote {path}", style="green")

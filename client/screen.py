@@ -43,6 +43,11 @@ class Screen:
         if not self._quiet:
             self.console.print(text, style=style, markup=False, soft_wrap=True)
 
+    def tell(self, paragraph: str) -> None:
+        """Print a paragraph, wrapped between words on a terminal, in one line elsewhere."""
+        if not self._quiet:
+            self.console.print(paragraph, markup=False, soft_wrap=not self.console.is_terminal)
+
     def complain(self, text: str) -> None:
         """Print an error, quiet or not."""
         self.console.print(f"error: {text}", style="red", markup=False, soft_wrap=True)

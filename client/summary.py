@@ -1,6 +1,5 @@
 """A finished repair in sentences."""
 
-from collections import Counter
 from collections.abc import Iterable, Mapping
 from typing import Any
 
@@ -22,12 +21,13 @@ def verdicts(counts: HoleCounts) -> str:
 
 def open_holes(report: Mapping[str, Any]) -> str:
     """Say which holes stay open and why, the commonest reason first; empty if none does."""
-    reasons = Counter(
-        str(hole.get("reason") or hole.get("code") or "no reason given")
-        for hole in report["holes"]
-        if hole["verdict"] in ("skipped", "refused")
-    )
-    return "; ".join(f"{count} × {reason}" for reason, count in reasons.most_common(_LONGEST_LIST))
+    reasons: dict[str, list[str]] = {}
+    for hole in report["holes"]:
+        if hole["verdict"] in ("skipped", "refused"):
+            reason = str(hole.get("reason") or "no reason was given")
+            reasons.setdefault(str(hole.get("code") or reason), []).append(f"hole {hole['id']}: {reason}")
+    commonest = sorted(reasons.items(), key=lambda item: -len(item[1]))[:_LONGEST_LIST]
+    return "; ".join(_reason_in_words(code, examples) for code, examples in commonest)
 
 
 def stage_seconds(report: Mapping[str, Any]) -> str:
@@ -68,3 +68,9 @@ def _warnings(warnings: Iterable[str]) -> list[str]:
 
 def _counted(number: int, noun: str) -> str:
     return f"{number:,} {noun}" if number == 1 else f"{number:,} {noun}s"
+
+
+def _reason_in_words(code: str, examples: list[str]) -> str:
+    if len(examples) == 1:
+        return examples[0]
+    return f"{len(examples)} × {code.replace('_', ' ')} ({examples[0]})"

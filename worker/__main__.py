@@ -13,14 +13,15 @@ from jobkit.database import Database
 from jobkit.errors import SettingsError
 from jobkit.queue import TaskQueue
 from jobkit.settings import Settings, load_settings
-from jobkit.store import open_store
+from jobkit.store import ObjectStore, open_store
 from worker.context import Context, use_context, worker_name
 from worker.executor import Executor
 from worker.folders import worker_folder
-from worker.nursing import Nursery
+from worker.nursing import Nursery, NurseryLostError
 from worker.upkeep import Upkeep
 
 THREADS_VARIABLE = "OMP_NUM_THREADS"
+_EXIT_BROKEN = 1
 _EXIT_SETTINGS = 2
 
 
@@ -30,11 +31,13 @@ def main() -> int:
         settings = load_settings()
         store = open_store(settings.effective_object_store_url)
     except SettingsError as error:
-        print(f"worker: {error}", file=sys.stderr)  # noqa: T201 - the log is not set up yet
+        sys.stderr.write(f"worker: {error}\n")
         return _EXIT_SETTINGS
-    logging.basicConfig(
-        level=settings.log_level.upper(), format="%(asctime)s %(levelname)s %(name)s: %(message)s", stream=sys.stderr
-    )
+    logging.basicConfig(level=settings.log_level.upper(), format="%(asctime)s %(levelname)s %(name)s: %(message)s")
+    return _run(settings, store)
+
+
+def _run(settings: Settings, store: ObjectStore) -> int:
     n_threads = _n_threads()
     with ExitStack() as stack:
         database = stack.enter_context(closing(Database(settings.effective_database_url)))
@@ -52,7 +55,12 @@ def main() -> int:
         upkeep_queue = stack.enter_context(closing(_open_queue(settings)))
         stack.enter_context(Upkeep(database, upkeep_queue, settings.reconcile_s))
         stack.enter_context(use_context(context))
-        context.nursery.warm_up()
+        try:
+            context.nursery.start()
+        except NurseryLostError as error:
+            # A worker that can't work takes no job: each would cost it an attempt.
+            logging.critical("%s", error)
+            return _EXIT_BROKEN
         Executor(context.queue, settings.queue_name, context.name, context.draining).work(
             logging_level=settings.log_level.upper()
         )

@@ -10,6 +10,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import quadpatch.picture  # noqa: F401 - loaded once, before the fork, instead of by every child
 from quadpatch.errors import QuadpatchError
 from quadpatch.options import RepairOptions
 from quadpatch.repair import draw_repair, inspect_file, repair_file

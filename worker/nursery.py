@@ -5,7 +5,8 @@ needs none of it. It never touches a mesh itself, has one thread, and holds no o
 cross a fork.
 
 Requests come over a socket, one at a time: a JSON line with the folder of the request, and the write end of the
-pipe for the child's reports. The answers are `{"pid"}` when the child runs and `{"pid", "status"}` when it is gone.
+pipe for the child's reports. The answers are `{"ready"}` once the method is loaded, `{"pid"}` when a child runs, and
+`{"pid", "status"}` when it is gone.
 """
 
 import contextlib
@@ -44,6 +45,7 @@ def main(arguments: list[str]) -> int:
     gc.collect()
     gc.freeze()
     with socket.socket(fileno=int(arguments[0])) as connection:
+        _answer(connection, {"ready": 1})
         while _serve_one(connection, engine, tie):
             pass
     return 0

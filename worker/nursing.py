@@ -48,8 +48,14 @@ class Nursery:
         self._connection: socket.socket | None = None
         self._buffer = b""
 
-    def warm_up(self) -> None:
-        """Start the nursery now, without waiting for it, so that the first child need not wait for the imports."""
+    def start(self) -> None:
+        """Start the nursery and wait until it has loaded the method.
+
+        Raises
+        ------
+        NurseryLostError
+            If it can't: the installation is broken, and its words about that went to stderr.
+        """
         if self._connection is None:
             self._start()
 
@@ -125,6 +131,11 @@ class Nursery:
                 start_new_session=True,
             )
         self._connection = here
+        try:
+            self._read_answer(_START_TIMEOUT_S)
+        except (NurseryLostError, OSError) as error:
+            self.close()
+            raise NurseryLostError("no engine can be started here") from error
         return here
 
     def _read_answer(self, timeout_s: float) -> dict[str, Any]:
