@@ -36,15 +36,17 @@ def create_app(settings: Settings) -> FastAPI:
         docs_url=None,
         redoc_url=None,
         openapi_url="/openapi.json",
+        redirect_slashes=False,
         generate_unique_id_function=operation_id,
         lifespan=_lifespan,
     )
     app.state.settings = settings
     app.state.max_json_bytes = settings.max_json_kb << 10
-    for module in (meshes, jobs, results, repairs, models, health):
-        app.include_router(module.router)
+    routers = [module.router for module in (meshes, jobs, results, repairs, models, health)]
+    for router in routers:
+        app.include_router(router)
     install_document(app)
-    install_handlers(app)
+    install_handlers(app, [route for router in routers for route in router.routes])
     # The last one added is the outermost: ids and headers also stand on the answers of the auth middleware.
     app.add_middleware(AuthMiddleware, settings=settings)
     app.add_middleware(FrameMiddleware)

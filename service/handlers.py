@@ -1,6 +1,6 @@
 """Exception handlers: whatever goes wrong is answered with a problem document."""
 
-import re
+from collections.abc import Sequence
 from http import HTTPStatus
 
 from fastapi import FastAPI
@@ -8,6 +8,7 @@ from fastapi.exceptions import RequestValidationError
 from starlette.exceptions import HTTPException
 from starlette.requests import ClientDisconnect, Request
 from starlette.responses import Response
+from starlette.routing import BaseRoute, Route
 
 from jobkit.errors import JobkitError
 from service.problems import ProblemError, invalid_request, problem_response, to_problem_error
@@ -19,8 +20,8 @@ _CODES = {
 }
 
 
-def install_handlers(app: FastAPI) -> None:
-    """Make the app answer every error with a problem document."""
+def install_handlers(app: FastAPI, routes: Sequence[BaseRoute]) -> None:
+    """Make the app answer every error with a problem document; `routes` are those that it knows."""
 
     @app.exception_handler(ProblemError)
     async def on_problem(request: Request, error: ProblemError) -> Response:
@@ -47,7 +48,7 @@ def install_handlers(app: FastAPI) -> None:
         status = HTTPStatus(error.status_code)
         headers = dict(error.headers or {})
         if status == HTTPStatus.METHOD_NOT_ALLOWED:
-            headers["Allow"] = ", ".join(allowed_methods(app, request.url.path))
+            headers["Allow"] = ", ".join(allowed_methods(routes, request.url.path))
         details = {
             HTTPStatus.NOT_FOUND: f"there is nothing at {request.url.path}",
             HTTPStatus.METHOD_NOT_ALLOWED: f"{request.method} is not possible at {request.url.path}",
@@ -61,10 +62,7 @@ def malformed_json(reason: str) -> ProblemError:
     return ProblemError(HTTPStatus.BAD_REQUEST, "malformed_json", f"the body is no JSON: {reason}")
 
 
-def allowed_methods(app: FastAPI, path: str) -> list[str]:
+def allowed_methods(routes: Sequence[BaseRoute], path: str) -> list[str]:
     """Return all methods at a path. The router itself only knows those of the first route that fits."""
-    methods: set[str] = set()
-    for template, operations in app.openapi()["paths"].items():
-        if re.fullmatch(re.sub(r"\\\{[^}]+\\\}", "[^/]+", re.escape(template)), path):
-            methods |= {name.upper() for name in operations}
-    return sorted(methods) or ["GET"]
+    fitting = [route for route in routes if isinstance(route, Route) and route.path_regex.match(path)]
+    return sorted(set().union(*(route.methods or () for route in fitting))) or ["GET"]

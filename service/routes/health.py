@@ -81,7 +81,11 @@ def readyz(services: ServicesDep) -> Readiness:
 @router.get("/openapi.yaml", include_in_schema=False)
 def openapi_yaml(request: Request) -> Response:
     """Hand out the description of this service."""
-    return Response(to_yaml(request.app.openapi()), media_type="application/yaml")
+    state = request.app.state
+    if not hasattr(state, "openapi_yaml"):
+        # Writing YAML takes a second, and anybody may ask for it.
+        state.openapi_yaml = to_yaml(request.app.openapi())
+    return Response(state.openapi_yaml, media_type="application/yaml")
 
 
 @router.get("/", include_in_schema=False)

@@ -1,0 +1,220 @@
+import threading
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+from starlette.testclient import TestClient
+
+from jobkit.schema import Job, JobError, JobState
+from service.services import Services
+
+SMOOTH = {"method": "smooth"}
+
+
+def test_a_job_is_promised_with_its_place_and_its_defaults(
+    client: TestClient, services: Services, mesh_id: str
+) -> None:
+    answer = client.post("/v1/jobs", json={"mesh_id": mesh_id, "method": SMOOTH})
+    job = answer.json()
+    assert answer.status_code == 202
+    assert answer.headers["location"] == f"/v1/jobs/{job['id']}"
+    assert answer.headers["retry-after"] == "2"
+    assert job["spec"]["output"] == {"format": None, "preview": True}
+    assert client.get(answer.headers["location"]).json() == job
+    assert f"{job['id']}-1" in services.queue.waiting()
+
+
+def test_a_mesh_id_alone_is_a_job_for_the_default_dictionary(
+    client: TestClient, mesh_id: str, dictionary_bytes: Callable[[int], bytes]
+) -> None:
+    missing = client.post("/v1/jobs", json={"mesh_id": mesh_id})
+    assert (missing.status_code, missing.json()["code"]) == (404, "model_not_found")
+    client.post("/v1/models/reliefs/versions", content=dictionary_bytes(1))
+    client.put("/v1/aliases/default", json={"model": "reliefs@1"})
+    job = client.post("/v1/jobs", json={"mesh_id": mesh_id}).json()
+    assert (job["model"]["name"], job["model"]["version"], job["model"]["requested"]) == ("reliefs", 1, "default")
+    client.post("/v1/models/reliefs/versions", content=dictionary_bytes(2))
+    client.put("/v1/aliases/default", json={"model": "reliefs@2"})
+    assert client.get(f"/v1/jobs/{job['id']}").json()["model"] == job["model"]
+
+
+@pytest.mark.parametrize(
+    ("change", "status", "code"),
+    [
+        ({"mesh_id": "f" * 64}, 404, "mesh_not_found"),
+        ({"method": {"method": "dictionary", "model": "none@3"}}, 404, "model_not_found"),
+        ({"method": {"method": "cnn"}}, 409, "no_network_registered"),
+        ({"limits": {"time_s": 86_000}}, 403, "over_service_limit"),
+        ({"limits": {"memory_mb": 1_000_000}}, 403, "over_service_limit"),
+    ],
+)
+def test_a_job_that_cannot_work_is_refused_at_once(
+    client: TestClient, mesh_id: str, change: dict[str, Any], status: int, code: str
+) -> None:
+    answer = client.post("/v1/jobs", json={"mesh_id": mesh_id, "method": SMOOTH} | change)
+    assert (answer.status_code, answer.json()["code"]) == (status, code)
+    assert client.get("/v1/jobs").json()["items"] == []
+
+
+def test_a_hole_that_is_not_there_is_refused_once_the_holes_are_known(
+    client: TestClient, mesh_id: str, analyse: Callable[[str], None]
+) -> None:
+    spec = {"mesh_id": mesh_id, "method": SMOOTH, "holes": {"ids": [0, 7]}}
+    assert client.post("/v1/jobs", json=spec).status_code == 202
+    analyse(mesh_id)
+    answer = client.post("/v1/jobs", json=spec)
+    assert (answer.status_code, answer.json()["code"]) == (409, "unknown_hole")
+    assert "id 7" in answer.json()["detail"]
+
+
+def test_a_dry_run_says_what_would_happen_and_does_nothing(
+    client: TestClient, mesh_id: str, analyse: Callable[[str], None]
+) -> None:
+    spec = {"mesh_id": mesh_id, "method": SMOOTH, "limits": {"time_s": 5}}
+    early = client.post("/v1/jobs?dry_run=true", json=spec)
+    assert (early.status_code, early.json()["code"], early.json()["retryable"]) == (409, "mesh_not_ready", True)
+    analyse(mesh_id)
+    answer = client.post("/v1/jobs?dry_run=true", json=spec)
+    plan = answer.json()
+    assert answer.status_code == 200
+    assert [(hole["selected"], hole["reason"]) for hole in plan["holes"]] == [
+        (False, "too_wide"),
+        (True, None),
+        (True, None),
+    ]
+    assert plan["selected"] == 2
+    assert plan["limits"] == {"time_s": 5.0, "memory_mb": 4096}
+    assert plan["model"]["kind"] == "none"
+    assert client.get("/v1/jobs").json()["items"] == []
+
+
+def test_a_repeated_key_starts_nothing_twice(client: TestClient, mesh_id: str) -> None:
+    headers = {"Idempotency-Key": "order-17"}
+    spec = {"mesh_id": mesh_id, "method": SMOOTH}
+    first = client.post("/v1/jobs", json=spec, headers=headers)
+    again = client.post("/v1/jobs", json=spec | {"seed": 0}, headers=headers)
+    assert again.status_code == 202
+    assert again.json() == first.json()
+    assert again.headers["idempotent-replayed"] == "true"
+    assert "idempotent-replayed" not in first.headers
+    other = client.post("/v1/jobs", json=spec | {"seed": 1}, headers=headers)
+    assert (other.status_code, other.json()["code"]) == (409, "idempotency_conflict")
+    assert len(client.get("/v1/jobs").json()["items"]) == 1
+
+
+def test_a_key_is_honoured_even_after_its_model_is_gone(
+    client: TestClient, mesh_id: str, dictionary_bytes: Callable[[int], bytes]
+) -> None:
+    client.post("/v1/models/reliefs/versions", content=dictionary_bytes(1))
+    client.put("/v1/aliases/default", json={"model": "reliefs@1"})
+    headers = {"Idempotency-Key": "order-18"}
+    first = client.post("/v1/jobs", json={"mesh_id": mesh_id}, headers=headers).json()
+    client.post("/v1/models/reliefs/versions", content=dictionary_bytes(2))
+    client.put("/v1/aliases/default", json={"model": "reliefs@2"})
+    assert client.post("/v1/jobs", json={"mesh_id": mesh_id}, headers=headers).json() == first
+
+
+@pytest.mark.parametrize("key", ["", "a b", "x" * 256, "\xe4"])
+def test_a_key_that_is_no_key_is_refused(client: TestClient, mesh_id: str, key: str) -> None:
+    headers = {"Idempotency-Key": key.encode("latin-1")}
+    answer = client.post("/v1/jobs", json={"mesh_id": mesh_id, "method": SMOOTH}, headers=headers)
+    assert answer.status_code == 422
+
+
+def test_a_client_that_prefers_to_wait_gets_the_end(
+    client: TestClient, services: Services, mesh_id: str, finish: Callable[[str], Job]
+) -> None:
+    def work() -> None:
+        while not (jobs := services.jobs.page(1).items):
+            pass
+        finish(jobs[0].id)
+
+    worker = threading.Thread(target=work)
+    worker.start()
+    spec = {"mesh_id": mesh_id, "method": SMOOTH}
+    answer = client.post("/v1/jobs", json=spec, headers={"Prefer": "wait=30"})
+    worker.join()
+    assert answer.status_code == 200
+    assert answer.json()["state"] == "succeeded"
+    assert answer.headers["preference-applied"] == "wait=30"
+
+
+def test_a_poller_is_told_when_nothing_has_changed(client: TestClient, services: Services, job_id: str) -> None:
+    first = client.get(f"/v1/jobs/{job_id}")
+    same = client.get(f"/v1/jobs/{job_id}", headers={"If-None-Match": first.headers["etag"]})
+    assert (same.status_code, same.content) == (304, b"")
+    attempt = services.attempts.start(job_id, "test", 30).attempt
+    services.attempts.report_progress(attempt, "fill", 12.5)
+    changed = client.get(f"/v1/jobs/{job_id}", headers={"If-None-Match": first.headers["etag"]})
+    assert changed.status_code == 200
+    assert (changed.json()["stage"], changed.json()["percent"]) == ("fill", 12.5)
+
+
+def test_pages_hold_every_job_once_though_new_ones_arrive(client: TestClient, mesh_id: str) -> None:
+    spec = {"mesh_id": mesh_id, "method": SMOOTH}
+    old = [client.post("/v1/jobs", json=spec).json()["id"] for _ in range(5)]
+    seen, cursor = [], ""
+    while cursor is not None:
+        query = {"limit": 2} | ({"cursor": cursor} if cursor else {})
+        page = client.get("/v1/jobs", params=query).json()
+        seen += [job["id"] for job in page["items"]]
+        client.post("/v1/jobs", json=spec)
+        cursor = page["next_cursor"]
+    assert sorted(seen) == sorted(old)
+
+
+def test_jobs_can_be_listed_by_state(client: TestClient, services: Services, job_id: str) -> None:
+    services.attempts.start(job_id, "test", 30)
+    assert [job["id"] for job in client.get("/v1/jobs?state=running").json()["items"]] == [job_id]
+    assert client.get("/v1/jobs?state=queued").json()["items"] == []
+
+
+def test_a_queued_job_is_canceled_at_once(client: TestClient, job_id: str) -> None:
+    for _ in range(2):
+        answer = client.post(f"/v1/jobs/{job_id}/cancel")
+        assert (answer.status_code, answer.json()["state"]) == (200, "canceled")
+    assert answer.json()["links"]["cancel"] is None
+
+
+def test_a_running_job_is_asked_to_stop(client: TestClient, services: Services, job_id: str) -> None:
+    attempt = services.attempts.start(job_id, "test", 30).attempt
+    for _ in range(2):
+        answer = client.post(f"/v1/jobs/{job_id}/cancel")
+        assert (answer.status_code, answer.json()["state"]) == (202, "canceling")
+    services.attempts.acknowledge_cancel(attempt)
+    answer = client.post(f"/v1/jobs/{job_id}/cancel")
+    assert (answer.status_code, answer.json()["state"]) == (200, "canceled")
+
+
+@pytest.mark.parametrize("end", ["succeeded", "failed"])
+def test_a_job_that_has_ended_cannot_be_canceled(
+    client: TestClient, services: Services, job_id: str, finish: Callable[[str], Job], end: str
+) -> None:
+    if end == "succeeded":
+        finish(job_id)
+    else:
+        attempt = services.attempts.start(job_id, "test", 30).attempt
+        services.attempts.fail(attempt, JobError(code="time_limit", message="too slow"))
+    answer = client.post(f"/v1/jobs/{job_id}/cancel")
+    assert (answer.status_code, answer.json()["code"]) == (409, "job_finished")
+    assert services.jobs.get(job_id).state == JobState(end)
+
+
+def test_a_rerun_is_a_new_job_with_the_same_spec(client: TestClient, job_id: str) -> None:
+    answer = client.post(f"/v1/jobs/{job_id}/rerun", headers={"Idempotency-Key": "again"})
+    job = answer.json()
+    assert answer.status_code == 202
+    assert job["id"] != job_id
+    assert job["rerun_of"] == job_id
+    assert job["spec"] == client.get(f"/v1/jobs/{job_id}").json()["spec"]
+    again = client.post(f"/v1/jobs/{job_id}/rerun", headers={"Idempotency-Key": "again"})
+    assert again.json() == job
+
+
+def test_events_are_paged_by_their_number(client: TestClient, job_id: str, finish: Callable[[str], Job]) -> None:
+    finish(job_id)
+    first = client.get(f"/v1/jobs/{job_id}/events?limit=2").json()
+    assert [event["type"] for event in first["items"]] == ["queued", "started"]
+    rest = client.get(f"/v1/jobs/{job_id}/events?after={first['next_after']}").json()
+    assert [event["type"] for event in rest["items"]] == ["succeeded"]
+    assert rest["next_after"] is None

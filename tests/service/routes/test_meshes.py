@@ -1,0 +1,128 @@
+import hashlib
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from starlette.testclient import TestClient
+
+from jobkit.schema import MeshProblem
+from jobkit.settings import Settings
+from service.app import create_app
+from service.services import Services
+
+DATA = b"ply\nformat binary_little_endian 1.0\n"
+
+
+@pytest.fixture
+def small(settings: Settings) -> Iterator[TestClient]:
+    limited = settings.model_copy(update={"max_upload_mb": 1})
+    with TestClient(create_app(limited), base_url="http://127.0.0.1") as client:
+        yield client
+
+
+def stored_files(settings: Settings) -> list[Path]:
+    return [path for path in (settings.data_dir / "objects").rglob("*") if path.is_file()]
+
+
+@pytest.mark.parametrize(
+    "request_of",
+    [
+        {"content": DATA, "params": {"filename": "scan.ply"}},
+        {"content": DATA, "headers": {"Content-Disposition": 'attachment; filename="scan.ply"'}},
+        {"content": DATA, "headers": {"Content-Type": "model/ply"}, "params": {"filename": "scan.ply"}},
+        {"content": iter([DATA[:5], DATA[5:]]), "params": {"filename": "scan.ply", "format": "ply"}},
+        {"files": {"file": ("scan.ply", DATA)}},
+    ],
+    ids=["raw", "named by header", "media type", "chunked", "form"],
+)
+def test_a_mesh_can_be_uploaded_in_every_usual_way(client: TestClient, request_of: dict[str, Any]) -> None:
+    answer = client.post("/v1/meshes", **request_of)
+    assert answer.status_code == 201
+    mesh = answer.json()
+    assert mesh["id"] == hashlib.sha256(DATA).hexdigest()
+    assert (mesh["filename"], mesh["format"], mesh["size_bytes"]) == ("scan.ply", "ply", len(DATA))
+    assert mesh["state"] == "analysing"
+    assert answer.headers["location"] == mesh["links"]["self"]
+    assert client.get(mesh["links"]["content"]).content == DATA
+
+
+def test_the_same_bytes_are_the_same_mesh(client: TestClient, settings: Settings) -> None:
+    first = client.post("/v1/meshes?filename=a.ply", content=DATA)
+    second = client.post("/v1/meshes?filename=b.ply", content=DATA)
+    assert (first.status_code, second.status_code) == (201, 200)
+    assert second.json() == first.json()
+    assert len(stored_files(settings)) == 1
+
+
+def test_a_fresh_mesh_is_queued_for_its_analysis(client: TestClient, services: Services, mesh_id: str) -> None:
+    assert f"mesh_{mesh_id}-1" in services.queue.waiting()
+
+
+@pytest.mark.parametrize("kind", ["stated", "chunked", "form"])
+def test_a_body_over_the_limit_is_refused_and_leaves_nothing(small: TestClient, settings: Settings, kind: str) -> None:
+    too_much = b"0" * ((1 << 20) + 1)
+    if kind == "form":
+        answer = small.post("/v1/meshes", files={"file": ("a.ply", too_much)})
+    else:
+        answer = small.post("/v1/meshes", content=iter([too_much]) if kind == "chunked" else too_much)
+    assert answer.status_code == 413
+    assert answer.json()["code"] == "body_too_large"
+    assert str(1 << 20) in answer.json()["detail"]
+    assert stored_files(settings) == []
+
+
+def test_a_body_of_exactly_the_limit_is_taken(small: TestClient) -> None:
+    assert small.post("/v1/meshes", content=b"0" * (1 << 20)).status_code == 201
+
+
+@pytest.mark.parametrize(
+    ("request_of", "status", "code"),
+    [
+        ({"content": b""}, 400, "empty_file"),
+        ({"files": {"file": ("a.ply", b"")}}, 400, "empty_file"),
+        ({"files": {"mesh": ("a.ply", DATA)}}, 422, "invalid_request"),
+        ({"files": [("file", ("a.ply", DATA)), ("file", ("b.ply", DATA))]}, 400, "malformed_multipart"),
+        ({"content": DATA, "headers": {"Content-Type": "application/json"}}, 415, "unsupported_media_type"),
+        ({"data": {"file": "ply"}}, 415, "unsupported_media_type"),
+        ({"content": DATA, "headers": {"Content-Type": "multipart/form-data"}}, 400, "malformed_multipart"),
+        ({"content": DATA, "params": {"format": "dwg"}}, 422, "invalid_request"),
+        ({"content": DATA, "params": {"filename": "a" * 256}}, 422, "invalid_request"),
+    ],
+)
+def test_an_upload_that_makes_no_sense_is_refused(
+    client: TestClient, settings: Settings, request_of: dict[str, Any], status: int, code: str
+) -> None:
+    answer = client.post("/v1/meshes", **request_of)
+    assert (answer.status_code, answer.json()["code"]) == (status, code)
+    assert stored_files(settings) == []
+
+
+def test_a_file_of_unknown_format_is_left_to_the_worker(client: TestClient) -> None:
+    answer = client.post("/v1/meshes?filename=scan.xyz", content=b"1 2 3")
+    assert answer.status_code == 201
+    assert answer.json()["format"] is None
+
+
+def test_facts_and_holes_show_once_the_mesh_is_analysed(
+    client: TestClient, mesh_id: str, analyse: Callable[[str], None]
+) -> None:
+    waiting = client.get(f"/v1/meshes/{mesh_id}")
+    assert waiting.json()["facts"] is None
+    assert waiting.headers["retry-after"] == "2"
+    analyse(mesh_id)
+    ready = client.get(f"/v1/meshes/{mesh_id}?wait=30", headers={"Prefer": "wait=30"})
+    assert ready.json()["state"] == "ready"
+    assert [hole["diameter"] for hole in ready.json()["facts"]["holes"]] == [10.0, 2.0, 1.0]
+    assert "retry-after" not in ready.headers
+    assert ready.headers["preference-applied"] == "wait=30"
+
+
+def test_a_rejected_mesh_says_why_and_takes_no_job(client: TestClient, services: Services, mesh_id: str) -> None:
+    problem = MeshProblem(code="unreadable_mesh", message="the header promises 10 vertices, 3 follow")
+    services.meshes.reject(services.meshes.start_analysis(mesh_id, "test", 30), problem)
+    mesh = client.get(f"/v1/meshes/{mesh_id}").json()
+    assert (mesh["state"], mesh["problem"]["code"]) == ("rejected", "unreadable_mesh")
+    answer = client.post("/v1/jobs", json={"mesh_id": mesh_id, "method": {"method": "smooth"}})
+    assert (answer.status_code, answer.json()["code"]) == (409, "mesh_rejected")
+    assert "3 follow" in answer.json()["detail"]

@@ -1,0 +1,72 @@
+from collections.abc import Callable
+
+import pytest
+from starlette.testclient import TestClient
+
+from jobkit.schema import Job, JobError
+from service.services import Services
+
+PATHS = [
+    ("result", "application/octet-stream", b"ply, repaired", "part 7-repaired.ply"),
+    ("report", "application/json", b'{"schema": 1}', "part 7-repaired.json"),
+    ("preview.png", "image/png", b"\x89PNG\r\n\x1a\n", "part 7-repaired.png"),
+]
+
+
+@pytest.mark.parametrize("expected", PATHS)
+def test_each_file_comes_with_its_type_and_a_sensible_name(
+    client: TestClient,
+    job_id: str,
+    finish: Callable[[str], Job],
+    expected: tuple[str, str, bytes, str],
+) -> None:
+    path, media_type, data, filename = expected
+    finish(job_id)
+    answer = client.get(f"/v1/jobs/{job_id}/{path}")
+    assert answer.content == data
+    assert answer.headers["content-type"] == media_type
+    assert answer.headers["content-disposition"] == f'attachment; filename="{filename}"'
+    part = client.get(f"/v1/jobs/{job_id}/{path}", headers={"Range": "bytes=2-3"})
+    assert (part.status_code, part.content) == (206, data[2:4])
+    same = client.get(f"/v1/jobs/{job_id}/{path}", headers={"If-None-Match": answer.headers["etag"]})
+    assert same.status_code == 304
+
+
+@pytest.mark.parametrize("path", ["result", "report", "preview.png"])
+def test_a_job_that_has_not_ended_has_no_result_yet(client: TestClient, job_id: str, path: str) -> None:
+    answer = client.get(f"/v1/jobs/{job_id}/{path}")
+    assert (answer.status_code, answer.json()["code"]) == (409, "job_not_finished")
+    assert answer.headers["retry-after"] == "2"
+    assert answer.json()["retryable"] is True
+
+
+def test_a_failed_job_says_why_there_is_no_result(client: TestClient, services: Services, job_id: str) -> None:
+    attempt = services.attempts.start(job_id, "test", 30).attempt
+    error = JobError(code="time_limit", message="the repair took longer than 120 s", stage="learn", retryable=False)
+    services.attempts.fail(attempt, error)
+    assert client.get(f"/v1/jobs/{job_id}").json()["error"] == error.model_dump()
+    answer = client.get(f"/v1/jobs/{job_id}/result")
+    assert (answer.status_code, answer.json()["code"]) == (409, "job_has_no_result")
+    assert "longer than 120 s" in answer.json()["detail"]
+
+
+def test_the_files_of_a_lost_attempt_are_never_handed_out(
+    client: TestClient, services: Services, job_id: str, finish: Callable[[str], Job]
+) -> None:
+    """The first attempt writes its files and is lost; what clients see is the second one's."""
+    first = services.attempts.start(job_id, "lost", 30).attempt
+    with services.store.writer("") as writer:
+        writer.write(b"of the lost attempt")
+        writer.commit(f"results/{job_id}/1/repaired.ply")
+    services.attempts.requeue(first, JobError(code="worker_lost", message="lost", retryable=True))
+    assert finish(job_id).attempt == 2
+    assert client.get(f"/v1/jobs/{job_id}/result").content == b"ply, repaired"
+
+
+def test_a_file_that_the_store_has_lost_is_a_clear_error(
+    client: TestClient, services: Services, job_id: str, finish: Callable[[str], Job]
+) -> None:
+    finish(job_id)
+    services.store.delete_prefix(f"results/{job_id}")
+    answer = client.get(f"/v1/jobs/{job_id}/result")
+    assert (answer.status_code, answer.json()["code"]) == (404, "object_not_found")

@@ -1,0 +1,51 @@
+import os
+import subprocess
+import sys
+
+import pytest
+
+from service.__main__ import main
+
+
+@pytest.fixture(autouse=True)
+def no_settings(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in [name for name in os.environ if name.startswith("QUADPATCH_")]:
+        monkeypatch.delenv(name)
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "message"),
+    [
+        ("QUADPATCH_HOST", "0.0.0.0", "QUADPATCH_API_KEYS is empty"),
+        ("QUADPATCH_API_KEY", "a-key-of-station-1", "the closest one is QUADPATCH_API_KEYS"),
+        ("QUADPATCH_PORT", "eighty", "QUADPATCH_PORT"),
+    ],
+)
+def test_wrong_settings_stop_the_start_with_one_line(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], name: str, value: str, message: str
+) -> None:
+    monkeypatch.setenv(name, value)
+    assert main([]) == 1
+    error = capsys.readouterr().err
+    assert message in error
+    assert error.count("\n") == 1
+
+
+def test_the_settings_are_printed_as_a_table(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["settings"]) == 0
+    assert "| `QUADPATCH_DATABASE_URL` |" in capsys.readouterr().out
+
+
+def test_an_unknown_command_says_how_it_is_used(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["sevre"]) == 2
+    assert capsys.readouterr().err.startswith("usage:")
+
+
+def test_serving_loads_no_numeric_library() -> None:
+    """A mesh is never parsed in this process, so nothing that could do it has a place there."""
+    code = (
+        "import sys; import service.app; "
+        "heavy = {'numpy', 'scipy', 'trimesh', 'pymeshlab', 'quadpatch', 'worker'}; print(heavy & set(sys.modules))"
+    )
+    ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=True)
+    assert ended.stdout.strip() == "set()"
