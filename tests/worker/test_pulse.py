@@ -1,0 +1,71 @@
+import threading
+from collections.abc import Callable
+
+import pytest
+from sqlalchemy.exc import OperationalError
+
+from jobkit.errors import StaleAttemptError
+from worker.failures import StopReason
+from worker.pulse import Pulse, Vitals
+
+
+class Patient:
+    """Stands in for the database; counts what is asked of it, and may fall ill."""
+
+    def __init__(self, renewal: Exception | None = None, is_canceled: bool = False) -> None:
+        self.renewal = renewal
+        self.cancel = is_canceled
+        self.renewals = 0
+        self.reports: list[tuple[str, float]] = []
+        self.has_beaten = threading.Event()
+
+    def renew(self) -> None:
+        self.renewals += 1
+        if self.renewals >= 2:
+            self.has_beaten.set()
+        if self.renewal is not None:
+            raise self.renewal
+
+    def vitals(self, lease_s: float = 30.0) -> Vitals:
+        return Vitals(self.renew, lambda: self.cancel, lambda *report: self.reports.append(report), 0.0, lease_s)
+
+
+def wait_for(reason: Callable[[], StopReason | None]) -> StopReason | None:
+    ticks = threading.Event()
+    for _ in range(200):
+        if reason() is not None:
+            break
+        ticks.wait(0.05)
+    return reason()
+
+
+def test_the_lease_is_renewed_and_progress_written_once() -> None:
+    patient = Patient()
+    with Pulse(patient.vitals()) as pulse:
+        pulse.reach("fill", 1.0)
+        assert patient.has_beaten.wait(10)
+        assert pulse.stop_reason is None
+    assert patient.reports == [("fill", 16.0)]
+
+
+def test_a_cancel_flag_is_brought_back() -> None:
+    with Pulse(Patient(is_canceled=True).vitals()) as pulse:
+        assert wait_for(lambda: pulse.stop_reason) is StopReason.CANCELED
+
+
+def test_an_attempt_that_was_taken_away_is_lost() -> None:
+    with Pulse(Patient(renewal=StaleAttemptError("taken")).vitals()) as pulse:
+        assert wait_for(lambda: pulse.stop_reason) is StopReason.LOST
+
+
+@pytest.mark.parametrize(("lease_s", "reason"), [(0.0, StopReason.LOST), (3600.0, None)])
+def test_a_database_that_is_away_costs_the_attempt_only_after_the_lease(
+    lease_s: float, reason: StopReason | None
+) -> None:
+    patient = Patient(renewal=OperationalError("UPDATE", {}, Exception("disk I/O error")))
+    with Pulse(patient.vitals(lease_s)) as pulse:
+        if reason is None:
+            assert patient.has_beaten.wait(10)
+            assert pulse.stop_reason is None
+        else:
+            assert wait_for(lambda: pulse.stop_reason) is reason

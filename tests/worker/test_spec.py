@@ -1,0 +1,78 @@
+from typing import Any
+
+import pytest
+
+from jobkit.meshes import MeshSource
+from jobkit.schema import JobSpec
+from quadpatch.options import HoleOptions, PatchOptions, RepairOptions
+from worker.limits import EngineLimits
+from worker.spec import inspect_request, method_options, output_format, repair_request, source_name
+
+MESH_ID = "0" * 64
+LIMITS = EngineLimits(time_s=900.0, memory_mb=4096, n_threads=2)
+
+
+def source(mesh_format: Any = "ply", filename: str | None = None) -> MeshSource:
+    return MeshSource(MESH_ID, "meshes/00/00", filename, mesh_format)
+
+
+def spec(**fields: Any) -> JobSpec:
+    return JobSpec.model_validate({"mesh_id": MESH_ID, **fields})
+
+
+def test_a_job_without_wishes_is_a_repair_with_all_defaults() -> None:
+    assert RepairOptions.from_dict(method_options(spec())) == RepairOptions()
+    assert RepairOptions.from_dict(method_options(spec(method={"method": "smooth"}))) == RepairOptions()
+
+
+def test_every_option_of_a_job_reaches_the_method() -> None:
+    job = spec(
+        method={"method": "dictionary", "model": "self", "patches": {"length": 2.5, "resolution": 16, "overlap": 3}},
+        holes={"max_diameter": 9.0, "max_perimeter": 30.0, "all_but_largest": True, "ids": [4, 1]},
+        seed=7,
+    )
+    assert RepairOptions.from_dict(method_options(job)) == RepairOptions(
+        HoleOptions(9.0, 30.0, True, (4, 1)), PatchOptions(2.5, 16, 3), seed=7
+    )
+
+
+def test_every_field_of_the_contract_is_one_of_the_method() -> None:
+    options = method_options(spec())
+    assert set(options["holes"]) == set(vars(HoleOptions()))
+    assert set(options["patches"]) == set(vars(PatchOptions()))
+
+
+@pytest.mark.parametrize(
+    ("mesh_format", "filename", "asked", "name", "output"),
+    [
+        ("stl", "part.stl", None, "source.stl", "stl"),
+        ("ply", "part.ply", "obj", "source.ply", "obj"),
+        ("gltf", "part.gltf", None, "source.gltf", "glb"),
+        (None, "PART.OFF", None, "source.off", "off"),
+        (None, "part.xyz", None, "source", "ply"),
+        (None, None, None, "source", "ply"),
+    ],
+)
+def test_a_station_gets_back_the_format_that_it_sent(
+    mesh_format: Any, filename: str | None, asked: str | None, name: str, output: str
+) -> None:
+    mesh = source(mesh_format, filename)
+    assert source_name(mesh) == name
+    assert output_format(spec(output={"format": asked}), mesh) == output
+
+
+def test_a_filename_never_leads_out_of_the_folder() -> None:
+    assert source_name(source(None, "../../etc/passwd.ply")) == "source.ply"
+    assert source_name(source(None, "x.ply/../../y")) == "source"
+
+
+def test_a_job_can_lower_the_limits_and_never_raise_them() -> None:
+    lowered = repair_request(spec(limits={"time_s": 10.0, "memory_mb": 512}), source(), "smooth", LIMITS)
+    raised = repair_request(spec(limits={"time_s": 5000.0, "memory_mb": 65536}), source(), "smooth", LIMITS)
+    assert (lowered.limits.time_s, lowered.limits.memory_mb) == (10.0, 512)
+    assert raised.limits == LIMITS
+
+
+def test_an_inspection_writes_no_mesh() -> None:
+    request = inspect_request(source(), LIMITS)
+    assert (request.task, request.output, request.model) == ("inspect", "", "")
