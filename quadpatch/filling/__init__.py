@@ -1,0 +1,1 @@
+"""Geometric hole filling: triangulate, refine, fair."""

@@ -1,0 +1,1 @@
+"""From completed height maps back to the surface."""
