@@ -61,7 +61,8 @@ def _encode_ascii(element: Element, table: Table, marks: list[str], line_end: by
     for prop, column in zip(element.properties, table.columns, strict=True):
         if prop.count_code is not None:
             words.append([str(column.shape[1])] * table.count)
-        for values in column.reshape(table.count, -1).T:
+        # Not reshape(count, -1): of no rows at all, -1 can be anything.
+        for values in column.T if column.ndim > 1 else [column]:
             words.append(to_words(fit(values, prop.code)))
     words += [to_words(table.marks[name]) for name in marks]
     end = line_end.decode()
