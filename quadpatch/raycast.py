@@ -49,10 +49,9 @@ class RayScene:
         self._is_empty = len(mesh.triangles) == 0
         if not self._is_empty:
             self._geometry = EmbreeMesh(self._scene, self._vertex_buffer, self._triangle_buffer)
-        corners = unit[mesh.triangles]
-        self._corner = corners[:, 0].copy()
+        self._corner, second, third = (unit[mesh.triangles[:, k]] for k in range(3))
         # Not of unit length: only its direction enters the distance.
-        self._normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        self._normal = np.cross(second - self._corner, third - self._corner)
 
     def cast(self, origins: FloatArray, directions: FloatArray) -> tuple[IntArray, FloatArray]:
         """Find the first triangle along each ray.

@@ -38,6 +38,8 @@ def cluster_vertices(mesh: TriangleMesh, cell: float) -> TriangleMesh:
     count = np.bincount(label)
     vertices = np.stack([np.bincount(label, weights=mesh.vertices[:, axis]) / count for axis in range(3)], axis=1)
     triangles = label[mesh.triangles]
+    # Most triangles vanish here; what follows is slower.
+    triangles = triangles[(triangles != np.roll(triangles, 1, axis=1)).all(axis=1)]
     triangles = triangles[_has_area(vertices, triangles)]
     triangles = triangles[_is_first_of_its_corners(triangles, len(vertices))]
     corner_vertex, triangles = split_fans(triangles)
