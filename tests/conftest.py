@@ -1,9 +1,17 @@
 """What tests of several parts share: a fresh database and store, and one real Valkey per test process."""
 
+import os
 import shutil
+import socket
+import subprocess
+import sys
+import time
 from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 
+import httpx
 import numpy as np
 import pytest
 from pydantic import SecretStr
@@ -80,3 +88,57 @@ def dictionary_bytes(tmp_path_factory: pytest.TempPathFactory) -> Callable[[int]
         return path.read_bytes()
 
     return make
+
+
+@dataclass(frozen=True)
+class RunningService:
+    """`python -m service` in a process of its own."""
+
+    url: str
+    process: subprocess.Popen[bytes]
+
+
+@pytest.fixture
+def serve(settings: Settings, tmp_path: Path) -> Callable[..., AbstractContextManager[RunningService]]:
+    """Make a context manager that runs the service with `settings`, some of them changed by keyword."""
+
+    @contextmanager
+    def run(**changes: object) -> Iterator[RunningService]:
+        with socket.socket() as free:
+            free.bind(("127.0.0.1", 0))
+            port = free.getsockname()[1]
+        values = {
+            "data_dir": settings.data_dir,
+            "redis_url": settings.redis_url.get_secret_value(),
+            "queue_name": settings.queue_name,
+            "models_dir": settings.models_dir,
+            "port": port,
+            "log_level": "warning",
+        } | changes
+        named = {f"QUADPATCH_{name.upper()}": str(value) for name, value in values.items()}
+        environment = {name: value for name, value in os.environ.items() if not name.startswith("QUADPATCH_")}
+        with (tmp_path / f"service-{port}.log").open("wb") as log:
+            process = subprocess.Popen(
+                [sys.executable, "-m", "service"], env=environment | named, stdout=log, stderr=subprocess.STDOUT
+            )
+        try:
+            _wait_until_it_answers(f"http://127.0.0.1:{port}", process, Path(log.name))
+            yield RunningService(f"http://127.0.0.1:{port}", process)
+        finally:
+            process.terminate()
+            process.wait(20)
+
+    return run
+
+
+def _wait_until_it_answers(url: str, process: subprocess.Popen[bytes], log: Path) -> None:
+    deadline = time.monotonic() + 60
+    while True:
+        try:
+            httpx.get(f"{url}/healthz")
+        except httpx.TransportError:
+            assert process.poll() is None, log.read_text()
+            assert time.monotonic() < deadline, log.read_text()
+            time.sleep(0.05)
+        else:
+            return

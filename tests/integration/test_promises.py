@@ -1,0 +1,68 @@
+"""A 202 is a promise: it outlives the process that gave it, and the queue."""
+
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import ExitStack
+from datetime import timedelta
+from typing import Any
+
+import httpx
+from rq import Queue
+from rq.serializers import JSONSerializer
+from sqlalchemy import update
+
+from jobkit.clock import utc_now
+from jobkit.database import Database
+from jobkit.queue import TaskQueue, job_entry
+from jobkit.reconcile import GRACE_S
+from jobkit.settings import Settings
+from jobkit.tables import JobRow
+
+SMOOTH = {"method": "smooth"}
+
+
+def post_job(url: str, **headers: str) -> httpx.Response:
+    mesh = httpx.post(f"{url}/v1/meshes?filename=a.ply", content=b"ply").raise_for_status().json()
+    return httpx.post(f"{url}/v1/jobs", json={"mesh_id": mesh["id"], "method": SMOOTH}, headers=headers)
+
+
+def test_a_job_outlives_the_service_and_the_queue(
+    serve: Callable[..., Any], settings: Settings, database: Database
+) -> None:
+    with serve() as service:
+        job = post_job(service.url).raise_for_status().json()
+        service.process.kill()
+        service.process.wait()
+    queue = TaskQueue(settings.redis_url.get_secret_value(), settings.queue_name, 60)
+    Queue(settings.queue_name, connection=queue.connection, serializer=JSONSerializer).empty()
+    with database.write() as session:
+        session.execute(update(JobRow).values(enqueued_at=utc_now() - timedelta(seconds=GRACE_S + 1)))
+    with serve() as service:
+        again = httpx.get(f"{service.url}/v1/jobs/{job['id']}", headers={"Prefer": "wait=1"}).json()
+        assert again == job
+        assert job_entry(job["id"], 1) in queue.waiting()
+    queue.close()
+
+
+def test_services_that_start_at_once_share_one_database(
+    serve: Callable[..., Any], settings: Settings, dictionary_bytes: Callable[[int], bytes]
+) -> None:
+    (settings.data_dir / "quadpatch.db").unlink()
+    assert settings.models_dir is not None
+    settings.models_dir.mkdir()
+    (settings.models_dir / "general-dictionary@1.safetensors").write_bytes(dictionary_bytes(1))
+    with ExitStack() as stack, ThreadPoolExecutor(2) as pool:
+        first, second = pool.map(lambda _: stack.enter_context(serve()), range(2))
+        job = post_job(first.url).raise_for_status().json()
+        assert httpx.get(f"{second.url}/v1/jobs/{job['id']}").json() == job
+        models = httpx.get(f"{second.url}/v1/models").json()
+        assert [(model["name"], model["latest"]) for model in models["models"]] == [("general-dictionary", 1)]
+
+
+def test_a_station_that_repeats_itself_through_a_bad_line_gets_one_job(serve: Callable[..., Any]) -> None:
+    with serve() as service, ThreadPoolExecutor(8) as pool:
+        answers = list(pool.map(lambda _: post_job(service.url, **{"Idempotency-Key": "order-17"}), range(16)))
+        jobs = httpx.get(f"{service.url}/v1/jobs").json()["items"]
+    assert {answer.status_code for answer in answers} == {202}
+    assert {answer.json()["id"] for answer in answers} == {jobs[0]["id"]}
+    assert len(jobs) == 1
