@@ -104,7 +104,7 @@ def _resolve(model: str | Path) -> tuple[Inpainter | None, dict[str, Any]]:
 
 
 def _fill(scan: Scan, welded: Weld, repair: Repair) -> Fill:
-    """The invented part of a repair in the file's own vertex numbers."""
+    """Put the invented part of a repair into the file's own vertex numbers."""
     filled = repair.filled
     ids = np.array([hole.id for hole in repair.chosen], np.int64)
     confidence = np.array([repair.results[i].confidence or 0.0 for i in ids.tolist()])

@@ -65,12 +65,16 @@ def fair(
     # Rows of free vertices only: those of the outermost ring have lost triangles at the cut.
     rows = laplacian[free]
     equations = energy.membrane * rows
-    for weight in (energy.plate, energy.variation):
+    if energy.plate or energy.variation:
         rows = rows @ step
-        equations = equations + weight * rows
-    equations = equations.tocsc()
-    inner, right = equations[:, free], -(equations[:, ~free] @ vertices[~free])
-    factors = splu(inner.tocsc(), permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True}, diag_pivot_thresh=0.0)
+        equations = equations + energy.plate * rows
+    if energy.variation:
+        equations = equations + energy.variation * (rows @ step)
+    columns = sparse.csc_array(equations)
+    inner, right = columns[:, free], -(columns[:, ~free] @ vertices[~free])
+    factors = splu(
+        sparse.csc_array(inner), permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True}, diag_pivot_thresh=0.0
+    )
     result[free] = factors.solve(right)
     return result
 
@@ -93,10 +97,11 @@ def _laplacian(vertices: Vertices, triangles: Triangles, *, uniform: bool) -> tu
     adjacency = sparse.csr_array(
         (np.concatenate(weights), (np.concatenate(rows), np.concatenate(columns))), shape=(n, n)
     )
-    laplacian = (sparse.diags_array(adjacency.sum(axis=1)) - adjacency).tocsr()
-    area = np.bincount(triangles.ravel(), np.repeat(double_area / 6, 3), minlength=n)
-    area = np.ones(n) if uniform else np.maximum(area, 1e-6 * area[area > 0].mean())
-    return laplacian, area
+    laplacian = sparse.csr_array(sparse.diags_array(adjacency.sum(axis=1)) - adjacency)
+    if uniform:
+        return laplacian, np.ones(n)
+    area: FloatArray = np.bincount(triangles.ravel(), np.repeat(double_area / 6, 3), minlength=n)
+    return laplacian, np.maximum(area, 1e-6 * area[area > 0].mean())
 
 
 def triangles_around(triangles: Triangles, core: IntArray, n_vertices: int, n_rings: int) -> IntArray:
@@ -105,6 +110,6 @@ def triangles_around(triangles: Triangles, core: IntArray, n_vertices: int, n_ri
     inside[core] = True
     touched = np.zeros(len(triangles), bool)
     for _ in range(n_rings):
-        touched = inside[triangles].any(axis=1)
+        touched = np.asarray(inside[triangles].any(axis=1))
         inside[triangles[touched]] = True
     return np.flatnonzero(touched)

@@ -161,7 +161,7 @@ def _close(vertices: FloatArray, around: Triangles, loops: list[IntArray], taken
 
 
 def _rim_normals(vertices: FloatArray, around: Triangles, loops: list[IntArray]) -> list[FloatArray]:
-    """Unit normals of the faces at the rim edges of every loop."""
+    """Look up the unit normals of the faces at the rim edges of every loop."""
     normals = triangle_normals(vertices, around)
     edges = directed_edges(around)
     keys = edges[:, 0] * np.int64(len(vertices)) + edges[:, 1]
@@ -200,7 +200,8 @@ def _hole_widths(patch: Refined, n_holes: int) -> FloatArray:
     low, high = np.full((n_holes, 3), np.inf), np.full((n_holes, 3), -np.inf)
     np.minimum.at(low, hole[on_rim], patch.vertices[corners[on_rim]])
     np.maximum.at(high, hole[on_rim], patch.vertices[corners[on_rim]])
-    return np.linalg.norm(np.where(np.isfinite(high - low), high - low, 0.0), axis=1)
+    size = np.where(np.isfinite(low), high, 0.0) - np.where(np.isfinite(low), low, 0.0)
+    return np.asarray(np.linalg.norm(size, axis=1))
 
 
 def _faired(patch: Refined, around: Triangles, energy: Energy, *, uniform: bool = False) -> Refined:

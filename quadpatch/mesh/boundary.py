@@ -68,8 +68,8 @@ def edge_keys(edges: IntArray, n_vertices: int) -> IntArray:
 
 def boundary_edge_mask(triangles: Triangles) -> BoolArray:
     """Which of the `directed_edges` have exactly one face, (3 n_triangles,) bool."""
-    counts = _edge_counts(triangles)
-    return counts == 1
+    single: BoolArray = _edge_counts(triangles) == 1
+    return single
 
 
 def _edge_counts(triangles: Triangles) -> IntArray:

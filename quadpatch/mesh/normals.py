@@ -8,12 +8,12 @@ _TINY = 1e-300
 
 
 def triangle_normals(vertices: Vertices, triangles: Triangles) -> FloatArray:
-    """Unit normals (n_triangles, 3); zero where a triangle has no area."""
+    """Give unit normals (n_triangles, 3); zero where a triangle has no area."""
     return unit(area_vectors(vertices, triangles))
 
 
 def vertex_normals(vertices: Vertices, triangles: Triangles) -> FloatArray:
-    """Unit normals (n_vertices, 3), the mean of the triangles around weighted by area; zero where there is none."""
+    """Average the normals around each vertex, weighted by area: (n_vertices, 3), unit length or zero."""
     vectors = area_vectors(vertices, triangles)
     corners = triangles.ravel()
     return unit(

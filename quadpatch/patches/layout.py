@@ -75,12 +75,12 @@ def seeds_near(seeds: Seeds, points: Vertices, length: float) -> BoolArray:
 
 
 def take(seeds: Seeds, which: BoolArray | IntArray) -> Seeds:
-    """Some of the seeds."""
+    """Pick some of the seeds."""
     return Seeds(seeds.origins[which], seeds.frames[which], seeds.quad[which])
 
 
 def pick(sampled: Sampled, which: BoolArray) -> Sampled:
-    """Some of the patches."""
+    """Pick some of the patches."""
     p = sampled.patches
     patches = Patches(
         p.origins[which], p.frames[which], p.length, p.heights[which], p.known[which], p.seen[which], p.triangle[which]
