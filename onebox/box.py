@@ -17,8 +17,11 @@ from onebox.errors import StartError
 from onebox.processes import Program
 from onebox.valkey import answers, prepare_valkey
 from worker.limits import thread_environment
+from worker.readiness import READY_FILE_VARIABLE
 
 LOCK_NAME = "box.lock"
+# Below the data folder; holds the address while the whole box is up.
+ADDRESS_FILE = Path("run/address")
 _LOOPBACK = "127.0.0.1"
 # Handing back a job takes a worker some seconds.
 _WORKER_STOP_S = 20.0
@@ -70,14 +73,8 @@ def programs(box: Box) -> list[Program]:
         "QUADPATCH_PORT": str(box.port),
     }
     n_threads = max(min(2, _n_cores()), _n_cores() // box.n_workers)
-    worker_environment = {**shared, **thread_environment(n_threads)}
     workers = [
-        Program(
-            f"worker-{number}",
-            (sys.executable, "-m", "worker"),
-            worker_environment,
-            stop_timeout_s=_WORKER_STOP_S,
-        )
+        _worker(box.data / "run" / f"worker-{number}.ready", {**shared, **thread_environment(n_threads)})
         for number in range(1, box.n_workers + 1)
     ]
     return [
@@ -85,6 +82,18 @@ def programs(box: Box) -> list[Program]:
         Program("api", (sys.executable, "-m", "service"), shared, ready=ready_check(f"{box.url}/readyz")),
         *workers,
     ]
+
+
+def _worker(ready_file: Path, environment: dict[str, str]) -> Program:
+    ready_file.parent.mkdir(parents=True, exist_ok=True)
+    ready_file.unlink(missing_ok=True)
+    return Program(
+        ready_file.stem,
+        (sys.executable, "-m", "worker"),
+        {**environment, READY_FILE_VARIABLE: str(ready_file.resolve())},
+        ready=ready_file.exists,
+        stop_timeout_s=_WORKER_STOP_S,
+    )
 
 
 def ready_check(url: str) -> Callable[[], bool]:

@@ -17,7 +17,7 @@ from client.options import HoleChoice, MethodChoice
 from client.repairing import Task, repair
 from client.screen import Screen
 from client.sdk import Client
-from onebox.box import LOCK_NAME, ready_check, usable_port
+from onebox.box import ADDRESS_FILE, LOCK_NAME
 from onebox.errors import DemoError
 from onebox.logs import log_tail
 from worker.leash import leash
@@ -91,12 +91,13 @@ def running_box(data: Path) -> Iterator[str]:
     DemoError
         If it does not come up; the message carries its last words.
     """
-    port = usable_port(_HOST, 0)
+    address_file = data / ADDRESS_FILE
+    address_file.unlink(missing_ok=True)
     data.mkdir(parents=True, exist_ok=True)
     log_path = data / "box.log"
     with log_path.open("wb") as log:
         process = subprocess.Popen(
-            [sys.executable, "-m", "onebox", "serve", "--port", str(port), "--data", str(data)],
+            [sys.executable, "-m", "onebox", "serve", "--port", "0", "--data", str(data)],
             stdin=subprocess.DEVNULL,
             stdout=log,
             stderr=log,
@@ -105,9 +106,7 @@ def running_box(data: Path) -> Iterator[str]:
             start_new_session=True,
         )
     try:
-        url = f"http://{_HOST}:{port}"
-        _wait_until_ready(url, process, log_path)
-        yield url
+        yield _wait_for_address(address_file, process, log_path)
     finally:
         process.terminate()
         try:
@@ -117,15 +116,15 @@ def running_box(data: Path) -> Iterator[str]:
             process.wait()
 
 
-def _wait_until_ready(url: str, process: subprocess.Popen[bytes], log_path: Path) -> None:
-    is_ready = ready_check(f"{url}/readyz")
+def _wait_for_address(address_file: Path, process: subprocess.Popen[bytes], log_path: Path) -> str:
     deadline = time.monotonic() + _READY_TIMEOUT_S
-    while not is_ready():
+    while not address_file.exists() or not (address := address_file.read_text(encoding="ascii")):
         if process.poll() is not None:
             raise DemoError(f"the box ended before it was ready; {log_tail(log_path)}")
         if time.monotonic() > deadline:
             raise DemoError(f"the box was not ready within {_READY_TIMEOUT_S:.0f} s; {log_tail(log_path)}")
         time.sleep(0.1)
+    return address
 
 
 def _clear(data: Path) -> None:

@@ -90,7 +90,9 @@ class Supervisor:
         self._is_stopping = True
 
     def start(self, timeout_s: float = 60.0) -> None:
-        """Start every program, each once the one before it is ready; returns early when a stop is requested.
+        """Start the programs, each once the one before it is ready; returns early when a stop is requested.
+
+        Neighbours with one command come up side by side.
 
         Raises
         ------
@@ -99,9 +101,11 @@ class Supervisor:
             call `stop`.
         """
         self._log_folder.mkdir(parents=True, exist_ok=True)
-        for child in self._children:
-            self._launch(child)
-            self._wait_until_ready(child, timeout_s)
+        for group in _alike(self._children):
+            for child in group:
+                self._launch(child)
+            for child in group:
+                self._wait_until_ready(child, timeout_s)
 
     def watch(self) -> None:
         """Restart what dies, with growing delays, until a stop is requested."""
@@ -113,7 +117,7 @@ class Supervisor:
     def stop(self) -> None:
         """End every program, the last started first: SIGTERM, patience, SIGKILL."""
         self._is_stopping = True
-        for group in _by_patience(self._children):
+        for group in reversed(_alike(self._children)):
             for child in group:
                 if child.process is not None and child.process.poll() is None:
                     child.process.send_signal(signal.SIGTERM)
@@ -179,10 +183,10 @@ class Supervisor:
             child.process.wait()
 
 
-def _by_patience(children: Sequence[_Child]) -> list[list[_Child]]:
-    """Group children for stopping: neighbours of one command stop side by side, so N workers drain at once."""
+def _alike(children: Sequence[_Child]) -> list[list[_Child]]:
+    """Group neighbours of one command: N workers start side by side, and stop side by side."""
     groups: list[list[_Child]] = []
-    for child in reversed(children):
+    for child in children:
         if groups and list(groups[-1][0].program.command) == list(child.program.command):
             groups[-1].append(child)
         else:

@@ -1,6 +1,7 @@
 """`python -m worker`: take tasks from the queue until SIGTERM.
 
-Settings come from the environment, see `jobkit.settings`. The first SIGTERM or SIGINT drains: a task that is nearly
+Settings come from the environment, see `jobkit.settings`; WORKER_READY_FILE names a file that exists while the worker
+can take tasks. The first SIGTERM or SIGINT drains: a task that is nearly
 done is finished, another one is handed back to the queue.
 """
 
@@ -18,6 +19,7 @@ from worker.context import Context, use_context, worker_name
 from worker.executor import Executor
 from worker.folders import worker_folder
 from worker.nursing import Nursery, NurseryLostError
+from worker.readiness import ready_file
 from worker.upkeep import Upkeep
 
 THREADS_VARIABLE = "OMP_NUM_THREADS"
@@ -61,6 +63,7 @@ def _run(settings: Settings, store: ObjectStore) -> int:
             # A worker that can't work takes no job: each would cost it an attempt.
             logging.critical("%s", error)
             return _EXIT_BROKEN
+        stack.enter_context(ready_file())
         Executor(context.queue, settings.queue_name, context.name, context.draining).work(
             logging_level=settings.log_level.upper()
         )

@@ -1,0 +1,16 @@
+import os
+from pathlib import Path
+
+from worker.readiness import READY_FILE_VARIABLE, ready_file
+
+
+def test_the_file_stands_while_the_worker_is_ready(tmp_path: Path) -> None:
+    path = tmp_path / "ready"
+    with ready_file({READY_FILE_VARIABLE: str(path)}):
+        assert path.read_text() == str(os.getpid())
+    assert not path.exists()
+
+
+def test_without_a_name_there_is_no_file() -> None:
+    with ready_file({}):
+        pass
