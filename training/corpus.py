@@ -11,16 +11,19 @@ import numpy as np
 
 from quadpatch.completion import SMOOTHING_ITERATIONS
 from quadpatch.errors import NoQuadsError
-from quadpatch.filling.fill import fill_holes
 from quadpatch.formats.reading import read_scan
 from quadpatch.mesh.measures import mean_edge_length
 from quadpatch.mesh.smoothing import laplacian_smooth
 from quadpatch.mesh.weld import weld
 from quadpatch.patches.folding import is_height_map
-from quadpatch.patches.layout import Sampled, lay_out, patchify, take
-from quadpatch.patches.scale import EDGES_PER_BIN, PatchScale
+from quadpatch.patches.height_map import sample_height_maps
+from quadpatch.patches.scale import EDGES_PER_BIN
+from quadpatch.patches.seeds import Seeds, seed_points
+from quadpatch.quads.frames import quad_frames
+from quadpatch.quads.mesher import quadrangulate
+from quadpatch.raycast import RayScene
 from quadpatch.sparse.signals import to_signals
-from quadpatch.types import BoolArray, FloatArray, TriangleMesh
+from quadpatch.types import BoolArray, FloatArray, Patches, TriangleMesh
 
 # Patches that vary less than this part of their side show noise, not a pattern worth an atom.
 LEAST_RELIEF = 1e-4
@@ -110,29 +113,36 @@ def cut_patches(mesh: TriangleMesh, recipe: PatchRecipe, rng: np.random.Generato
     TrainingPatches
         None where the mesh is too small to carry one.
     """
-    undamaged = fill_holes(mesh, [])
     outline = laplacian_smooth(mesh, SMOOTHING_ITERATIONS)
     length = recipe.length or EDGES_PER_BIN * recipe.resolution * mean_edge_length(mesh)
     try:
-        seeds = lay_out(outline, PatchScale(length / QUADS_PER_LENGTH, recipe.resolution, recipe.overlap))
+        quad_mesh = quadrangulate(outline, length / QUADS_PER_LENGTH)
     except NoQuadsError:
         return TrainingPatches.joined([], recipe.resolution)
+    seeds = seed_points(quad_mesh, quad_frames(quad_mesh), recipe.overlap)
     if len(seeds) > recipe.max_seeds:
-        seeds = take(seeds, np.sort(rng.choice(len(seeds), recipe.max_seeds, replace=False)))
-    sizes = (PatchScale(scale * length, recipe.resolution, recipe.overlap) for scale in recipe.scales)
-    return TrainingPatches.joined(
-        [_worth_learning(patchify(undamaged, outline, seeds, size)) for size in sizes], recipe.resolution
-    )
+        chosen = np.sort(rng.choice(len(seeds), recipe.max_seeds, replace=False))
+        seeds = Seeds(seeds.origins[chosen], seeds.frames[chosen], seeds.quad[chosen])
+    cut = []
+    scenes = RayScene(mesh), RayScene(outline)
+    nothing_invented = np.zeros(len(mesh.triangles), dtype=np.bool_)
+    for scale in recipe.scales:
+        surface, smooth = (
+            sample_height_maps(scene, m, nothing_invented, seeds, scale * length, recipe.resolution)
+            for scene, m in zip(scenes, (mesh, outline), strict=True)
+        )
+        cut.append(_worth_learning(surface, smooth))
+    return TrainingPatches.joined(cut, recipe.resolution)
 
 
-def _worth_learning(sampled: Sampled) -> TrainingPatches:
+def _worth_learning(surface: Patches, smooth: Patches) -> TrainingPatches:
     """Keep the patches that are height maps, known almost everywhere and not flat."""
-    patches = sampled.patches
-    detail = np.where(patches.known, patches.heights - sampled.outline, 0.0)
-    _, scaling = to_signals(detail, patches.known)
-    keep = is_height_map(patches) & (patches.known.mean(axis=(1, 2)) >= LEAST_KNOWN)
-    keep &= scaling.spread > LEAST_RELIEF * patches.length
-    return TrainingPatches(detail[keep], patches.known[keep])
+    known = surface.known & smooth.seen
+    detail = np.where(known, surface.heights - smooth.heights, 0.0)
+    _, scaling = to_signals(detail, known)
+    keep = is_height_map(surface) & (known.mean(axis=(1, 2)) >= LEAST_KNOWN)
+    keep &= scaling.spread > LEAST_RELIEF * surface.length
+    return TrainingPatches(detail[keep], known[keep])
 
 
 def turn_at_random(patches: TrainingPatches, rng: np.random.Generator) -> TrainingPatches:

@@ -4,8 +4,7 @@ Everything random follows from one seed, so the same meshes and options give the
 processor and the same numpy: elsewhere matrix products may round differently).
 """
 
-from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -13,7 +12,7 @@ from quadpatch.errors import StageError
 from quadpatch.sparse.dictionary import Dictionary
 from quadpatch.sparse.ksvd import KsvdOptions, OnIteration, masked_ksvd
 from quadpatch.sparse.signals import to_signals
-from quadpatch.types import FloatArray, Progress, TriangleMesh, no_progress
+from quadpatch.types import FloatArray, Progress, no_progress
 from training.corpus import PatchRecipe, TrainingPatches, cut_patches, read_mesh, turn_at_random
 from training.evaluation import evaluate
 from training.patterns import PATTERNS
@@ -22,6 +21,8 @@ from training.sources import Source
 
 # Procedural reliefs to measure on come from seeds that no training run uses.
 HOLDOUT_SEED_OFFSET = 1_000_000
+# Places taken from one procedural relief: rather many reliefs than many views of the same one.
+PROCEDURAL_SEEDS = 250
 
 
 @dataclass(frozen=True)
@@ -34,12 +35,15 @@ class LearningOptions:
     ksvd : KsvdOptions
     n_procedural : int
         Procedural meshes of each pattern.
+    relief_side : int
+        Vertices along one side of a procedural mesh.
     seed : int
     """
 
     recipe: PatchRecipe = field(default_factory=PatchRecipe)
     ksvd: KsvdOptions = field(default_factory=KsvdOptions)
     n_procedural: int = 0
+    relief_side: int = 120
     seed: int = 0
 
 
@@ -111,23 +115,18 @@ def _gather(
     sources: list[Source], options: LearningOptions, made: tuple[int, int], progress: Progress
 ) -> TrainingPatches:
     """Cut the patches of all meshes, in their order; `made` is how many of each procedural relief, and their seed."""
-    cut = []
-    for i, (mesh, fraction) in enumerate(_meshes(sources, *made)):
-        cut.append(cut_patches(mesh, options.recipe, np.random.default_rng([made[1], 0, i])))
-        progress("", fraction)
-    return TrainingPatches.joined(cut, options.recipe.resolution)
-
-
-def _meshes(sources: list[Source], n_procedural: int, seed: int) -> Iterator[tuple[TriangleMesh, float]]:
-    """Read or make one mesh after the other; with the part of the work that is done after it."""
+    n_procedural, seed = made
+    recipe = options.recipe
+    few = replace(recipe, max_seeds=min(recipe.max_seeds, PROCEDURAL_SEEDS))
     n_all = len(sources) + n_procedural * len(PATTERNS)
-    done = 0
+    cut: list[TrainingPatches] = []
     for source in sources:
-        done += 1
-        yield read_mesh(source.path), done / n_all
-    for relief in reliefs(n_procedural, seed):
-        done += 1
-        yield relief.mesh, done / n_all
+        cut.append(cut_patches(read_mesh(source.path), recipe, np.random.default_rng([seed, 0, len(cut)])))
+        progress("", len(cut) / n_all)
+    for relief in reliefs(n_procedural, seed, options.relief_side):
+        cut.append(cut_patches(relief.mesh, few, np.random.default_rng([seed, 0, len(cut)])))
+        progress("", len(cut) / n_all)
+    return TrainingPatches.joined(cut, recipe.resolution)
 
 
 def _named(progress: Progress, stage: str) -> Progress:

@@ -1,9 +1,9 @@
 """How well a dictionary completes patches that it has never seen.
 
 A disk in the middle of each patch is hidden, the rest is coded, and the error inside the disk is compared with that
-of a thin plate over the same hole and with that of coding the whole patch, nothing hidden. All within one patch: the
-outline is that of the undamaged mesh, and no neighbouring patch helps, so the figures rank dictionaries and do not
-foretell the error of a repair.
+of a thin plate and of a membrane over the same hole, and with that of coding the whole patch, nothing hidden. All
+within one patch: the outline is that of the undamaged mesh, and no neighbouring patch helps, so the figures rank
+dictionaries and do not foretell the error of a repair.
 """
 
 import numpy as np
@@ -30,8 +30,8 @@ def evaluate(dictionary: Dictionary, patches: FloatArray) -> dict[str, float]:
     -------
     dict of str to float
         For each hole share s (in percent of the patch's side): `hole_s_error`, root mean square error in the hidden
-        bins in units of the patch's own spread; `hole_s_to_plate`, the same divided by that of a thin plate; and
-        `hole_s_to_unhidden`, divided by that of coding the patch with nothing hidden.
+        bins in units of the patch's own spread; `hole_s_to_plate` and `hole_s_to_membrane`, the same divided by that of
+        a thin plate and of a membrane; `hole_s_to_unhidden`, divided by that of coding the patch with nothing hidden.
     """
     measures: dict[str, float] = {"n_patches": float(len(patches))}
     spreads = patches.std(axis=(1, 2))
@@ -41,14 +41,17 @@ def evaluate(dictionary: Dictionary, patches: FloatArray) -> dict[str, float]:
     for share in HOLE_SHARES:
         known = disk(dictionary.resolution, share)
         hidden = np.where(known, patches, 0.0)
-        error, plate, unhidden = (
-            _error(filled, patches, spreads, ~known)
-            for filled in (join(complete(dictionary, hidden, known), hidden, known), spread(hidden, known, 2), whole)
-        )
+        fills = {
+            "plate": spread(hidden, known, 2),
+            "membrane": spread(hidden, known, 1),
+            "unhidden": whole,
+        }
         name = f"hole_{round(100 * share)}"
+        completed = join(complete(dictionary, hidden, known), hidden, known)
+        error = _error(completed, patches, spreads, ~known)
         measures[f"{name}_error"] = error
-        measures[f"{name}_to_plate"] = error / plate
-        measures[f"{name}_to_unhidden"] = error / unhidden
+        for other, filled in fills.items():
+            measures[f"{name}_to_{other}"] = error / _error(filled, patches, spreads, ~known)
     return {key: round(value, 4) for key, value in measures.items()}
 
 

@@ -1,0 +1,57 @@
+import numpy as np
+import pytest
+
+from quadpatch.mesh.measures import mean_edge_length
+from quadpatch.types import TriangleMesh
+from training.corpus import LEAST_KNOWN, PatchRecipe, TrainingPatches, cut_patches, turn_at_random
+from training.procedural import relief_mesh
+
+RECIPE = PatchRecipe(resolution=12, scales=(1.0, 1.5), max_seeds=60)
+
+
+@pytest.fixture(scope="module")
+def relief() -> TriangleMesh:
+    return relief_mesh("waves", np.random.default_rng(0), 50)
+
+
+def test_patches_show_the_relief_and_are_known_almost_everywhere(relief: TriangleMesh) -> None:
+    patches = cut_patches(relief, RECIPE, np.random.default_rng(1))
+    assert 30 < len(patches) <= 120
+    assert patches.detail.shape[1:] == (12, 12)
+    assert (patches.known.mean(axis=(1, 2)) >= LEAST_KNOWN).all()
+    assert (patches.detail[~patches.known] == 0.0).all()
+    assert np.isfinite(patches.detail).all()
+    assert patches.is_clean.any()
+
+
+def test_detail_is_measured_from_the_outline_and_not_from_the_plane_of_the_patch(relief: TriangleMesh) -> None:
+    """Bending a sheet with the same relief leaves its detail nearly alone: the outline bends with it."""
+    x, y, z = relief.vertices.T
+    bent = TriangleMesh(np.stack([x, y, z + 0.01 * x**2], axis=1), relief.triangles)
+    plain, lifted = (cut_patches(mesh, RECIPE, np.random.default_rng(1)) for mesh in (relief, bent))
+    assert lifted.detail.std() < 1.5 * plain.detail.std()
+
+
+def test_a_smooth_sheet_has_nothing_to_learn(relief: TriangleMesh) -> None:
+    flat = TriangleMesh(relief.vertices * (1.0, 1.0, 0.0), relief.triangles)
+    assert len(cut_patches(flat, RECIPE, np.random.default_rng(1))) == 0
+
+
+def test_a_mesh_too_small_for_a_patch_gives_none(relief: TriangleMesh) -> None:
+    recipe = PatchRecipe(resolution=12, length=1000.0 * mean_edge_length(relief))
+    assert len(cut_patches(relief, recipe, np.random.default_rng(1))) == 0
+
+
+def test_same_generator_same_patches(relief: TriangleMesh) -> None:
+    one, two = (cut_patches(relief, RECIPE, np.random.default_rng(3)) for _ in range(2))
+    np.testing.assert_array_equal(one.detail, two.detail)
+    np.testing.assert_array_equal(one.known, two.known)
+
+
+def test_turning_moves_known_bins_with_their_detail_and_reaches_all_eight_turns() -> None:
+    grid = np.arange(9.0).reshape(3, 3)
+    patches = TrainingPatches(np.repeat(grid[None], 200, axis=0), np.repeat(grid[None] > 2.0, 200, axis=0))
+    turned = turn_at_random(patches, np.random.default_rng(0))
+    assert len(np.unique(turned.detail.reshape(200, 9), axis=0)) == 8
+    np.testing.assert_array_equal(turned.known, turned.detail > 2.0)
+    np.testing.assert_array_equal(np.sort(turned.detail.reshape(200, 9)), np.tile(np.arange(9.0), (200, 1)))
