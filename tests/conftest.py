@@ -1,5 +1,6 @@
 """What tests of several parts share: a fresh database and store, and one real Valkey per test process."""
 
+import functools
 import os
 import shutil
 import socket
@@ -98,12 +99,12 @@ class RunningService:
     process: subprocess.Popen[bytes]
 
 
-@pytest.fixture
-def serve(settings: Settings, tmp_path: Path) -> Callable[..., AbstractContextManager[RunningService]]:
-    """Make a context manager that runs the service with `settings`, some of them changed by keyword."""
+@pytest.fixture(scope="session")
+def run_service(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., AbstractContextManager[RunningService]]:
+    """Make a context manager that runs the service with given settings, some of them changed by keyword."""
 
     @contextmanager
-    def run(**changes: object) -> Iterator[RunningService]:
+    def run(settings: Settings, **changes: object) -> Iterator[RunningService]:
         with socket.socket() as free:
             free.bind(("127.0.0.1", 0))
             port = free.getsockname()[1]
@@ -117,7 +118,7 @@ def serve(settings: Settings, tmp_path: Path) -> Callable[..., AbstractContextMa
         } | changes
         named = {f"QUADPATCH_{name.upper()}": str(value) for name, value in values.items()}
         environment = {name: value for name, value in os.environ.items() if not name.startswith("QUADPATCH_")}
-        with (tmp_path / f"service-{port}.log").open("wb") as log:
+        with (tmp_path_factory.mktemp("service") / "log").open("wb") as log:
             process = subprocess.Popen(
                 [sys.executable, "-m", "service"], env=environment | named, stdout=log, stderr=subprocess.STDOUT
             )
@@ -129,6 +130,14 @@ def serve(settings: Settings, tmp_path: Path) -> Callable[..., AbstractContextMa
             process.wait(20)
 
     return run
+
+
+@pytest.fixture
+def serve(
+    settings: Settings, run_service: Callable[..., AbstractContextManager[RunningService]]
+) -> Callable[..., AbstractContextManager[RunningService]]:
+    """Run the service with the settings of this test."""
+    return functools.partial(run_service, settings)
 
 
 def _wait_until_it_answers(url: str, process: subprocess.Popen[bytes], log: Path) -> None:
