@@ -1,4 +1,6 @@
 import os
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
 from pathlib import Path
 
 import numpy as np
@@ -62,6 +64,17 @@ def test_quads_face_the_way_the_surface_does(inside_out: bool) -> None:
 
 def test_the_same_surface_gives_the_same_quads() -> None:
     one, other = quadrangulate(sphere(), 0.2), quadrangulate(sphere(), 0.2)
+    np.testing.assert_array_equal(one.vertices, other.vertices)
+    np.testing.assert_array_equal(one.quads, other.quads)
+
+
+def test_another_process_gives_the_same_quads() -> None:
+    # Rough, so that the mesher has close calls to make: with two threads it makes them differently from run to run.
+    rng = np.random.default_rng(3)
+    ball = sphere(80)
+    rough = TriangleMesh(ball.vertices * (1 + 0.03 * rng.normal(size=(len(ball.vertices), 1))), ball.triangles)
+    with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as pool:
+        one, other = (job.result() for job in [pool.submit(quadrangulate, rough, 0.15) for _ in range(2)])
     np.testing.assert_array_equal(one.vertices, other.vertices)
     np.testing.assert_array_equal(one.quads, other.quads)
 
