@@ -18,7 +18,7 @@ def seed_shipped(registry: Registry, folder: Path) -> list[ModelVersion]:
     """Register every `name@version.safetensors` and `name@version.onnx` of a folder.
 
     A network's card lies beside it as `name@version.json`. Where the aliases `default` and `default-network` point to
-    nothing yet, they are pointed to the first dictionary and the first network.
+    nothing yet, they are pointed to the latest version of the first dictionary and of the first network.
 
     Parameters
     ----------
@@ -60,4 +60,5 @@ def _point_default(registry: Registry, alias: str, versions: list[ModelVersion])
         registry.resolve(alias)
     except ModelNotFoundError:
         if versions:
-            registry.set_alias(alias, f"{versions[0].name}@{versions[0].version}")
+            latest = max(version.version for version in versions if version.name == versions[0].name)
+            registry.set_alias(alias, f"{versions[0].name}@{latest}")

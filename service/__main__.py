@@ -39,6 +39,8 @@ def main(arguments: list[str]) -> int:
         # What stands in front may be trusted with the scheme, but never with the client's address.
         proxy_headers=False,
         server_header=False,
+        # Requests that wait for a job's end must not hold up a restart.
+        timeout_graceful_shutdown=5,
     )
     return 0
 

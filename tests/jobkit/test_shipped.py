@@ -34,6 +34,13 @@ def test_shipped_models_are_registered_under_their_numbers(registry: Registry, f
     assert registry.resolve("default-network").card.description == "a small network"
 
 
+def test_the_default_is_the_latest_version(registry: Registry, folder: Path, dictionary_bytes: Make) -> None:
+    for version in (2, 10):
+        (folder / f"general-dictionary@{version}.safetensors").write_bytes(dictionary_bytes(version))
+    seed_shipped(registry, folder)
+    assert registry.resolve("default").version == 10
+
+
 def test_registering_again_changes_nothing(registry: Registry, folder: Path, dictionary_bytes: Make) -> None:
     seed_shipped(registry, folder)
     (folder.parent / "own").write_bytes(dictionary_bytes(2))
