@@ -82,7 +82,7 @@ def typed(folder: str) -> str:
     return f"python -m training dictionary {folder} --name small@3 {' '.join(SMALL)} --holdout noise --seed 5"
 
 
-def test_a_dictionary_of_procedural_reliefs_is_registered(
+def test_dictionaries_are_registered_as_versions_of_their_name(
     meshes: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("QUADPATCH_DATA_DIR", str(tmp_path / "data"))
