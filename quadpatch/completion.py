@@ -11,13 +11,13 @@ from quadpatch.judge import Evidence, gather, trusted
 from quadpatch.mesh.smoothing import laplacian_smooth
 from quadpatch.options import RepairOptions
 from quadpatch.patches.folding import is_height_map
-from quadpatch.patches.layout import Sampled, lay_out, patchify, pick, seeds_near, take
+from quadpatch.patches.layout import lay_out, patchify, pick, seeds_near, take
 from quadpatch.patches.scale import PatchScale, choose_scale
 from quadpatch.patches.seeds import Seeds
 from quadpatch.practice import Practice, believed_share, distance_to_truth, error_per_gap
 from quadpatch.reconstruction.displacement import displace, join_at_rim, rim_vertices
 from quadpatch.stages import Stages
-from quadpatch.types import BoolArray, FloatArray, Patches, TriangleMesh
+from quadpatch.types import BoolArray, FloatArray, Patches
 
 SMOOTHING_ITERATIONS = 30
 
@@ -119,10 +119,12 @@ def complete(
     with stages.stage("quadrangulate"):
         seeds = lay_out(outline, scale)
     with stages.stage("patchify"):
-        sampled = _around_holes(filled, outline, seeds, scale)
+        near = seeds_near(seeds, filled.mesh.vertices[filled.n_measured_vertices :], scale.length)
+        wanted = near if inpainter else near | _some(len(near), rng)
+        everywhere = patchify(filled, outline, take(seeds, wanted), scale)
+        sampled = pick(everywhere, near[wanted] & is_height_map(everywhere.patches))
     with stages.stage("learn"):
         if inpainter is None:
-            everywhere = patchify(filled, outline, _some(seeds, rng), scale)
             inpainter = learn_from_patches(everywhere.patches, everywhere.outline, rng, stages.progress)
         if inpainter is None:
             return None
@@ -137,18 +139,11 @@ def complete(
     return Completion(filled.with_vertices(moved), evidence, trust, believed, per_gap, scale, len(sampled.patches))
 
 
-def _around_holes(filled: FilledMesh, outline: TriangleMesh, seeds: Seeds, scale: PatchScale) -> Sampled:
-    """Patches that see a new vertex and are height maps."""
-    new = filled.mesh.vertices[filled.n_measured_vertices :]
-    sampled = patchify(filled, outline, take(seeds, seeds_near(seeds, new, scale.length)), scale)
-    return pick(sampled, is_height_map(sampled.patches))
-
-
-def _some(seeds: Seeds, rng: np.random.Generator) -> Seeds:
-    count = len(seeds.origins)
-    if count <= _MAX_SEEDS_TO_LEARN_FROM:
-        return seeds
-    return take(seeds, np.sort(rng.choice(count, _MAX_SEEDS_TO_LEARN_FROM, replace=False)))
+def _some(count: int, rng: np.random.Generator) -> BoolArray:
+    """Pick seeds (count,) to learn from."""
+    chosen = np.zeros(count, bool)
+    chosen[rng.permutation(count)[:_MAX_SEEDS_TO_LEARN_FROM]] = True
+    return chosen
 
 
 def _rehearse(problem: Problem, model: _Model) -> tuple[float, float | None]:
@@ -157,7 +152,10 @@ def _rehearse(problem: Problem, model: _Model) -> tuple[float, float | None]:
     if problem.practice is None or filled is None:
         return UNTRIED_SHARE, None
     outline = laplacian_smooth(filled.mesh, SMOOTHING_ITERATIONS)
-    sampled = _around_holes(filled, outline, model.seeds, model.scale)
+    new = filled.mesh.vertices[filled.n_measured_vertices :]
+    near = take(model.seeds, seeds_near(model.seeds, new, model.scale.length))
+    sampled = patchify(filled, outline, near, model.scale)
+    sampled = pick(sampled, is_height_map(sampled.patches))
     predicted = model.inpainter.predict(sampled.patches, sampled.outline)
     joined, evidence = _displacements(filled, sampled.patches, predicted)
     truth, normals = distance_to_truth(problem.practice, filled)

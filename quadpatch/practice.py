@@ -39,14 +39,14 @@ class Practice:
 
     Attributes
     ----------
-    mesh : TriangleMesh
-        The original, which is the truth.
+    truth : RayScene
+        Of the mesh without practice holes.
     closed : ClosedMesh
     diameter : float
         Of the practice holes, in mesh units.
     """
 
-    mesh: TriangleMesh
+    truth: RayScene
     closed: ClosedMesh
     diameter: float
 
@@ -80,7 +80,7 @@ def practise(mesh: TriangleMesh, diameter: float, edge_length: float, rng: np.ra
     if best is None:
         return None
     punched, loops, used = best
-    return Practice(mesh, close_holes(punched, loops), used)
+    return Practice(RayScene(mesh), close_holes(punched, loops), used)
 
 
 def choose_energy(practice: Practice, energies: Sequence[Energy]) -> Energy:
@@ -97,12 +97,11 @@ def distance_to_truth(practice: Practice, filled: FilledMesh) -> tuple[FloatArra
     first = filled.n_measured_vertices
     points = filled.mesh.vertices[first:]
     normals = vertex_normals(filled.mesh.vertices, filled.mesh.triangles)[first:]
-    scene = RayScene(practice.mesh)
     # Start a little behind, so that a surface at distance 0 is hit.
     behind = 1e-6 * practice.diameter
     distances = []
     for sign in (1.0, -1.0):
-        triangle, distance = scene.cast(points - sign * behind * normals, sign * normals)
+        triangle, distance = practice.truth.cast(points - sign * behind * normals, sign * normals)
         distances.append(np.where(triangle >= 0, distance - behind, np.inf))
     ahead, back = distances
     nearest = np.where(ahead <= back, ahead, -back)
