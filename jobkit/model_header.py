@@ -79,7 +79,7 @@ def to_wire_card(card: Card) -> ModelCard:
     """
     fields = ModelCard.model_fields.keys() - {"extra"}
     known = {name: value for name, value in card.items() if name in fields and value is not None}
-    extra = {name: value for name, value in card.items() if name not in fields and name not in ("kind", "name", "version")}
+    extra = {name: value for name, value in card.items() if name not in fields | {"kind", "name", "version"}}
     try:
         return ModelCard.model_validate({**known, "extra": extra})
     except ValidationError as error:
