@@ -4,6 +4,7 @@ RQ calls tasks by their dotted path with plain arguments, so the context has to 
 by `python -m worker` and by nobody else.
 """
 
+import secrets
 import socket
 import threading
 from collections.abc import Iterator
@@ -94,5 +95,9 @@ def use_context(context: Context) -> Iterator[None]:
 
 
 def worker_name(pid: int) -> str:
-    """Name a worker by machine and process."""
-    return f"{socket.gethostname()}-{pid}"
+    """Name a worker by machine and process.
+
+    The end is random: in a container every worker has the same process id, and RQ refuses the name of a worker that
+    was killed for as long as it takes it for alive.
+    """
+    return f"{socket.gethostname()}-{pid}-{secrets.token_hex(3)}"

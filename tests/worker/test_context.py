@@ -1,0 +1,26 @@
+import threading
+
+import pytest
+
+from jobkit.queue import TaskQueue
+from jobkit.settings import Settings
+from worker.context import worker_name
+from worker.executor import Executor
+
+
+@pytest.fixture
+def queue(settings: Settings) -> TaskQueue:
+    return TaskQueue(settings.redis_url.get_secret_value(), settings.queue_name, 60)
+
+
+def test_a_killed_worker_starts_again_under_its_process_id(queue: TaskQueue, settings: Settings) -> None:
+    for _ in range(2):
+        executor = Executor(queue, settings.queue_name, worker_name(1), threading.Event())
+        executor.register_birth()  # and no death: it was killed
+
+
+def test_rq_refuses_the_name_of_a_worker_that_was_killed(queue: TaskQueue, settings: Settings) -> None:
+    name = worker_name(1)
+    Executor(queue, settings.queue_name, name, threading.Event()).register_birth()
+    with pytest.raises(ValueError, match="active worker"):
+        Executor(queue, settings.queue_name, name, threading.Event()).register_birth()
