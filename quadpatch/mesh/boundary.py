@@ -31,7 +31,9 @@ class Boundary:
 def boundary_loops(triangles: Triangles) -> Boundary:
     """Find the simple boundary loops of a mesh.
 
-    A walk that comes back to a vertex (two holes that share a corner) is cut there, so every loop is simple.
+    A walk that comes back to a vertex (two holes that share a corner) is cut there, so every loop is simple. Where
+    several fans of faces meet in one vertex, a walk goes on along another fan than it came by: it follows the hole
+    between two fans, not the rim of a flap that hangs on its tips.
 
     Parameters
     ----------
@@ -44,7 +46,7 @@ def boundary_loops(triangles: Triangles) -> Boundary:
         Loops in the order of their lowest vertex index, each starting there. Empty for a closed mesh.
     """
     edges, bad_vertices = _boundary_edges(triangles)
-    walks, open_walks = _walk(edges)
+    walks, open_walks = _walk(edges, _exits(triangles, edges))
     loops = [(loop, True) for walk in walks for loop in _simple_loops(walk)]
     # A chain that can't be closed in the direction of its faces: the faces around it disagree.
     loops += [(chain, False) for chain in open_walks]
@@ -85,13 +87,42 @@ def _edge_counts(triangles: Triangles) -> IntArray:
 
 
 def _boundary_edges(triangles: Triangles) -> tuple[IntArray, IntArray]:
-    """Directed boundary edges (b, 2), and the vertices on edges of three or more faces."""
+    """Directed boundary edges (b, 2), and the vertices around which faces overlap or disagree."""
     edges = directed_edges(triangles)
     counts = _edge_counts(triangles)
-    return edges[counts == 1], np.unique(edges[counts > 2])
+    boundary, crowded = edges[counts == 1], edges[counts > 2]
+    n_vertices = int(triangles.max(initial=-1)) + 1
+    arrivals, departures = (np.bincount(boundary[:, k], minlength=n_vertices) for k in (1, 0))
+    return boundary, np.union1d(crowded, np.flatnonzero(arrivals != departures))
 
 
-def _walk(edges: IntArray) -> tuple[list[list[int]], list[IntArray]]:
+def _exits(triangles: Triangles, edges: IntArray) -> dict[tuple[int, int], int]:
+    """Where to go on at vertices with several fans: for each edge that arrives, the end of the edge to leave by."""
+    starts, counts = np.unique(edges[:, 0], return_counts=True)
+    pinched = starts[counts > 1]
+    touching = triangles[np.isin(triangles, pinched).any(axis=1)] if len(pinched) else triangles[:0]
+    third = {(t[k], t[k - 2]): t[k - 1] for t in touching.tolist() for k in range(3)}
+    fans: dict[int, list[tuple[int, int]]] = {}
+    for start, end in edges[np.isin(edges[:, 1], pinched)].tolist():
+        fans.setdefault(end, []).append((_end_of_fan(third, start, end), start))
+    exits = {}
+    for at, found in fans.items():
+        found.sort()
+        for (_, arrives), (leaves, _) in zip(found, [*found[1:], found[0]], strict=True):
+            exits[arrives, at] = leaves
+    return exits
+
+
+def _end_of_fan(third: dict[tuple[int, int], int], start: int, at: int) -> int:
+    """Turn around `at`, from the face of the edge (start, at) on, to the last vertex of that fan."""
+    turned = {start}
+    while (start, at) in third and third[start, at] not in turned:
+        start = third[start, at]
+        turned.add(start)
+    return start
+
+
+def _walk(edges: IntArray, exits: dict[tuple[int, int], int]) -> tuple[list[list[int]], list[IntArray]]:
     """Follow boundary edges head to tail; a Python loop over boundary vertices only."""
     following: dict[int, list[int]] = {}
     for start, end in edges[np.lexsort((-edges[:, 1], edges[:, 0]))].tolist():
@@ -104,15 +135,28 @@ def _walk(edges: IntArray) -> tuple[list[list[int]], list[IntArray]]:
     starts = np.repeat(np.arange(n_vertices), np.maximum(surplus, 0)).tolist()
     for start in [*starts, *sorted(following)]:
         while following.get(start):
-            walk, at = [start], start
-            while following.get(at):
-                at = following[at].pop()
-                walk.append(at)
-            if at == start:
+            walk = _walk_from(start, following, exits)
+            if walk[-1] == start:
                 closed.append(walk[:-1])
             else:
-                chains.append(np.unique(np.array(walk, np.int64)))
+                chains.append(np.array(list(dict.fromkeys(walk)), np.int64))
     return closed, chains
+
+
+def _walk_from(start: int, following: dict[int, list[int]], exits: dict[tuple[int, int], int]) -> list[int]:
+    """Use up edges from a vertex on, until the first one would come again or none is left."""
+    first = following[start][-1]
+    walk, before, at = [start], -1, start
+    while following.get(at):
+        leaving = following[at]
+        wanted = exits.get((before, at))
+        if at == start and wanted == first:
+            break
+        after = wanted if wanted in leaving else leaving[-1]
+        leaving.remove(after)
+        walk.append(after)
+        before, at = at, after
+    return walk
 
 
 def _simple_loops(walk: list[int]) -> list[IntArray]:

@@ -1,0 +1,115 @@
+"""Meshes that several tests build."""
+
+import numpy as np
+
+from quadpatch.types import FloatArray, IntArray, TriangleMesh
+
+
+def joined(*meshes: TriangleMesh) -> TriangleMesh:
+    """Put meshes beside each other in one."""
+    starts = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes)])
+    return TriangleMesh(
+        np.concatenate([mesh.vertices for mesh in meshes]),
+        np.concatenate([mesh.triangles + start for mesh, start in zip(meshes, starts[:-1], strict=True)]),
+    )
+
+
+def open_grid(n: int, width: float | None = None) -> TriangleMesh:
+    """Build a flat square of n x n vertices around the origin, z up; one mesh unit between them, or `width` in all."""
+    width = n - 1.0 if width is None else width
+    along = np.linspace(-width / 2, width / 2, n)
+    y, x = np.meshgrid(along, along, indexing="ij")
+    index = np.arange(n * n).reshape(n, n)
+    a, b, c, d = (part.ravel() for part in (index[:-1, :-1], index[:-1, 1:], index[1:, 1:], index[1:, :-1]))
+    triangles = np.concatenate([np.stack([a, b, c], 1), np.stack([a, c, d], 1)])
+    return TriangleMesh(np.stack([x.ravel(), y.ravel(), np.zeros(n * n)], axis=1), triangles)
+
+
+def bumpy_plate(n: int, width: float, seed: int = 0) -> TriangleMesh:
+    """Build a smooth landscape over a square of irregular vertices; nothing in it is symmetric or equal."""
+    flat = open_grid(n, width)
+    rng = np.random.default_rng(seed)
+    step = width / (n - 1)
+    x, y = (flat.vertices[:, :2] + rng.uniform(-0.2 * step, 0.2 * step, (n * n, 2))).T
+    z = 0.05 * width * (np.sin(5.1 * x / width + 0.3) * np.cos(4.3 * y / width) + (x / width) ** 2)
+    return TriangleMesh(np.stack([x, y, z], axis=1), flat.triangles)
+
+
+def sphere(n_subdivisions: int, radius: float = 1.0) -> TriangleMesh:
+    """Subdivide an icosahedron: 10 * 4**n + 2 vertices on a sphere around the origin."""
+    golden = (1 + np.sqrt(5)) / 2
+    seed = np.array([[-1, golden, 0], [1, golden, 0], [-1, -golden, 0], [1, -golden, 0]])
+    vertices = np.concatenate([seed, np.roll(seed, 1, axis=1), np.roll(seed, 2, axis=1)])
+    distance = np.linalg.norm(vertices[:, None] - vertices[None], axis=2)
+    near = distance < 2.1
+    triangles = np.array(
+        [(i, j, k) for i in range(12) for j in range(i) for k in range(j) if near[i, j] and near[j, k] and near[i, k]]
+    )
+    corners = vertices[triangles]
+    inward = np.einsum(
+        "ij,ij->i", np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), corners[:, 0]
+    )
+    triangles = np.where((inward < 0)[:, None], triangles[:, ::-1], triangles)
+    for _ in range(n_subdivisions):
+        vertices, triangles = _subdivided(vertices, triangles)
+    return TriangleMesh(radius * vertices / np.linalg.norm(vertices, axis=1, keepdims=True), triangles)
+
+
+def _subdivided(vertices: FloatArray, triangles: IntArray) -> tuple[FloatArray, IntArray]:
+    edges = np.sort(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+    unique, of_edge = np.unique(edges, axis=0, return_inverse=True)
+    middle = len(vertices) + of_edge.reshape(-1, 3)
+    (a, b, c), (ab, bc, ca) = triangles.T, middle.T
+    parts = [(a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca)]
+    return (
+        np.concatenate([vertices, vertices[unique].mean(axis=1)]),
+        np.concatenate([np.stack(part, axis=1) for part in parts]),
+    )
+
+
+def cylinder(n_around: int, n_along: int, radius: float = 1.0, length: float = 4.0) -> TriangleMesh:
+    """Build an open cylinder around the z axis, every second ring turned by half a step, normals outwards."""
+    ring, column = np.divmod(np.arange(n_around * n_along), n_around)
+    angle = 2 * np.pi * (column + 0.5 * (ring % 2)) / n_around
+    z = length * (ring / (n_along - 1) - 0.5)
+    triangles = []
+    for i in range(n_along - 1):
+        here, there = i * n_around + np.arange(n_around), (i + 1) * n_around + np.arange(n_around)
+        after, beyond = np.roll(here, -1), np.roll(there, -1)
+        if i % 2 == 0:
+            triangles += [np.stack([here, after, there], 1), np.stack([after, beyond, there], 1)]
+        else:
+            triangles += [np.stack([here, beyond, there], 1), np.stack([here, after, beyond], 1)]
+    return TriangleMesh(np.stack([radius * np.cos(angle), radius * np.sin(angle), z], 1), np.concatenate(triangles))
+
+
+def punched(mesh: TriangleMesh, *centres: tuple[float, float, float], radius: float) -> TriangleMesh:
+    """Remove every triangle with a corner in one of some balls; vertices stay, also those without triangles."""
+    gone = np.zeros(len(mesh.vertices), bool)
+    for centre in centres:
+        gone |= np.linalg.norm(mesh.vertices - np.array(centre), axis=1) < radius
+    return TriangleMesh(mesh.vertices, mesh.triangles[~gone[mesh.triangles].any(axis=1)])
+
+
+def random_rotation(rng: np.random.Generator) -> FloatArray:
+    """Draw a rotation matrix (3, 3)."""
+    q, _ = np.linalg.qr(rng.normal(size=(3, 3)))
+    return np.asarray(q * np.sign(np.linalg.det(q)))
+
+
+def faces_per_edge(triangles: IntArray) -> IntArray:
+    """Count the faces of every undirected edge, (n_edges,)."""
+    edges = np.sort(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+    return np.asarray(np.unique(edges, axis=0, return_counts=True)[1])
+
+
+def is_oriented_manifold(triangles: IntArray) -> bool:
+    """Whether no edge has more than two faces, and two faces pass their common edge in opposite directions."""
+    edges = triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
+    passed_once = len(np.unique(edges, axis=0)) == len(edges)
+    return bool(passed_once and (faces_per_edge(triangles) <= 2).all())
+
+
+def euler_characteristic(triangles: IntArray) -> int:
+    """Vertices minus edges plus faces, of what the triangles use."""
+    return len(np.unique(triangles)) - len(faces_per_edge(triangles)) + len(triangles)
