@@ -93,6 +93,7 @@ def _worker(ready_file: Path, environment: dict[str, str]) -> Program:
         {**environment, READY_FILE_VARIABLE: str(ready_file.resolve())},
         ready=ready_file.exists,
         stop_timeout_s=_WORKER_STOP_S,
+        is_alongside=True,
     )
 
 

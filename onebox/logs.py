@@ -3,9 +3,17 @@
 from pathlib import Path
 
 
-def log_tail(path: Path, n_lines: int = 12) -> str:
-    """Last lines of a log file under a heading with its path; a plain note if there is nothing in it."""
-    text = path.read_text(encoding="utf-8", errors="replace") if path.exists() else ""
+def log_tail(path: Path, start: int = 0, n_lines: int = 12) -> str:
+    """Last lines of a log file under a heading with its path; a plain note if there is nothing in it.
+
+    Parameters
+    ----------
+    path : Path
+    start : int
+        Bytes at the beginning that belong to an earlier run.
+    n_lines : int
+    """
+    text = path.read_bytes()[start:].decode(errors="replace") if path.exists() else ""
     lines = text.splitlines()[-n_lines:]
     if not lines:
         return f"its log, {path}, is empty"

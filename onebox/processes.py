@@ -44,6 +44,8 @@ class Program:
         Tells whether it does its work already; asked until True before the next program is started.
     stop_timeout_s : float
         Patience between SIGTERM and SIGKILL.
+    is_alongside : bool
+        Start and stop it side by side with the program before it.
     """
 
     name: str
@@ -51,6 +53,7 @@ class Program:
     environment: Mapping[str, str] = field(default_factory=dict)
     ready: Callable[[], bool] = always_ready
     stop_timeout_s: float = 10.0
+    is_alongside: bool = False
 
 
 @dataclass
@@ -60,6 +63,7 @@ class _Child:
     started_at: float = 0.0
     delay_s: float = _FIRST_DELAY_S
     restart_at: float | None = None
+    log_start: int = 0
 
 
 class Supervisor:
@@ -92,7 +96,7 @@ class Supervisor:
     def start(self, timeout_s: float = 60.0) -> None:
         """Start the programs, each once the one before it is ready; returns early when a stop is requested.
 
-        Neighbours with one command come up side by side.
+        Those that stand alongside each other come up together.
 
         Raises
         ------
@@ -101,7 +105,7 @@ class Supervisor:
             call `stop`.
         """
         self._log_folder.mkdir(parents=True, exist_ok=True)
-        for group in _alike(self._children):
+        for group in _groups(self._children):
             for child in group:
                 self._launch(child)
             for child in group:
@@ -117,7 +121,7 @@ class Supervisor:
     def stop(self) -> None:
         """End every program, the last started first: SIGTERM, patience, SIGKILL."""
         self._is_stopping = True
-        for group in reversed(_alike(self._children)):
+        for group in reversed(_groups(self._children)):
             for child in group:
                 if child.process is not None and child.process.poll() is None:
                     child.process.send_signal(signal.SIGTERM)
@@ -129,6 +133,7 @@ class Supervisor:
         if path.exists() and path.stat().st_size > _LOG_LIMIT_BYTES:
             path.replace(path.with_suffix(".log.1"))
         with path.open("ab") as log:
+            child.log_start = log.tell()
             try:
                 child.process = subprocess.Popen(
                     child.program.command,
@@ -149,14 +154,15 @@ class Supervisor:
         deadline = time.monotonic() + timeout_s
         while not self._is_stopping:
             if process is not None and process.poll() is not None:
-                raise StartError(
-                    f"{name} ended at once ({_ending(process.returncode)}); {log_tail(self.log_path(name))}"
-                )
+                raise StartError(f"{name} ended at once ({_ending(process.returncode)}); {self._last_words(child)}")
             if child.program.ready():
                 return
             if time.monotonic() > deadline:
-                raise StartError(f"{name} was not ready within {timeout_s:.0f} s; {log_tail(self.log_path(name))}")
+                raise StartError(f"{name} was not ready within {timeout_s:.0f} s; {self._last_words(child)}")
             time.sleep(_TICK_S / 2)
+
+    def _last_words(self, child: _Child) -> str:
+        return log_tail(self.log_path(child.program.name), child.log_start)
 
     def _look_after(self, child: _Child) -> None:
         if child.restart_at is not None:
@@ -183,11 +189,11 @@ class Supervisor:
             child.process.wait()
 
 
-def _alike(children: Sequence[_Child]) -> list[list[_Child]]:
-    """Group neighbours of one command: N workers start side by side, and stop side by side."""
+def _groups(children: Sequence[_Child]) -> list[list[_Child]]:
+    """Group what starts and stops together."""
     groups: list[list[_Child]] = []
     for child in children:
-        if groups and list(groups[-1][0].program.command) == list(child.program.command):
+        if groups and child.program.is_alongside:
             groups[-1].append(child)
         else:
             groups.append([child])

@@ -27,6 +27,12 @@ class RunningBox:
         """Living worker processes."""
         return self._processes("worker")
 
+    def valkey(self) -> psutil.Process:
+        """The server of the queue."""
+        folder = str(self.data / "valkey")
+        (server,) = [p for p in psutil.process_iter() if any(folder in word for word in _command(p))]
+        return server
+
     def engines(self) -> list[psutil.Process]:
         """Living engine children of all workers."""
         nurseries = [n for w in self.workers() for n in w.children() if "worker.nursery" in n.cmdline()]

@@ -83,6 +83,29 @@ def test_a_stopped_worker_hands_its_job_back(client: Client, box: Any) -> None:
     assert finished.attempt == 2
 
 
+def test_a_job_over_its_time_limit_fails_with_the_code_and_the_stage(
+    client: Client, box: Any, large_relief: Path
+) -> None:
+    mesh = client.upload(large_relief)
+    limited = {"mesh_id": mesh.id, **LONG, "limits": {"time_s": 1.0}}
+    job = client.create_job(JobSpec.model_validate(limited))
+    with pytest.raises(JobFailedError, match="longer than the limit of 1 s") as caught:
+        client.wait(job.id, timeout_s=60)
+    error = caught.value.job.error
+    assert error is not None
+    assert (error.code, error.retryable) == ("time_limit_exceeded", False)
+    assert error.stage is not None
+    assert box.engines() == []
+
+
+def test_a_killed_queue_comes_back_and_no_job_is_lost(client: Client, box: Any, large_relief: Path) -> None:
+    mesh = client.upload(large_relief)
+    smooth = {"mesh_id": mesh.id, "method": {"method": "smooth"}, "output": {"preview": False}}
+    box.valkey().kill()
+    jobs = [client.create_job(JobSpec.model_validate(smooth)) for _ in range(3)]
+    assert all(client.wait(job.id, timeout_s=60).state.has_result for job in jobs)
+
+
 def test_a_stopped_box_leaves_nothing_running(tmp_path: Path) -> None:
     with running_box(tmp_path) as url, Client(url) as client:
         (pid,) = [int(line) for line in (tmp_path / "box.lock").read_text().split()]

@@ -96,6 +96,7 @@ def test_serve_passes_on_why_the_service_refuses_to_start(tmp_path: Path) -> Non
     assert "QUADPATCH_API_KEYS is empty" in exposed.stderr
     mistyped = serve("--port", "0", "--data", tmp_path, QUADPATCH_LAESE_S="30")
     assert "QUADPATCH_LAESE_S is no setting" in mistyped.stderr
+    assert "QUADPATCH_API_KEYS" not in mistyped.stderr
 
 
 def test_serve_shows_the_words_of_a_valkey_that_can_not_start(tmp_path: Path) -> None:
