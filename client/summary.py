@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from jobkit.schema import HoleCounts, Job
+from jobkit.schema import HoleCounts, Job, JobResult
 
 _LONGEST_LIST = 6
 
@@ -52,8 +52,7 @@ def paragraph(name: str, job: Job, report: Mapping[str, Any]) -> str:
     counts = job.result.holes
     sentences = [
         f"{name} has {_counted(counts.found, 'hole')}: {verdicts(counts)}.",
-        f"{job.result.new_vertices:,} vertices and {job.result.new_triangles:,} triangles were added; "
-        "every measured vertex kept its bits.",
+        _added(job.result),
     ]
     left_open = open_holes(report)
     if left_open:
@@ -62,12 +61,20 @@ def paragraph(name: str, job: Job, report: Mapping[str, Any]) -> str:
     return " ".join([*sentences, *_warnings(job.result.warnings)])
 
 
+def _added(result: JobResult) -> str:
+    if not result.new_triangles:
+        return "Nothing was added."
+    added = f"{_counted(result.new_vertices, 'vertex')} and {_counted(result.new_triangles, 'triangle')}"
+    return f"{added} were added; every measured vertex kept its bits."
+
+
 def _warnings(warnings: Iterable[str]) -> list[str]:
     return [f"Warning: {warning}." for warning in warnings]
 
 
 def _counted(number: int, noun: str) -> str:
-    return f"{number:,} {noun}" if number == 1 else f"{number:,} {noun}s"
+    plural = {"vertex": "vertices"}.get(noun, noun + "s")
+    return f"{number:,} {noun if number == 1 else plural}"
 
 
 def _reason_in_words(code: str, examples: list[str]) -> str:

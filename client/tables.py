@@ -1,6 +1,7 @@
 """Tables for people, on stdout."""
 
 from collections.abc import Iterable
+from datetime import UTC
 
 from rich.console import Console
 from rich.table import Table
@@ -47,24 +48,25 @@ def print_models(console: Console, models: ModelList) -> None:
             ", ".join(version.aliases),
             version.card.description,
         )
-    console.print(table)
+    console.print(table if table.row_count else "no models")
 
 
 def print_jobs(console: Console, jobs: Iterable[Job]) -> None:
     """Print jobs, one a line."""
     table = _table(None)
-    for name in ("job", "state", "done", "stage", "created", "label"):
-        table.add_column(name, no_wrap=name == "job")
+    for name in ("job", "state", "done", "created (UTC)"):
+        table.add_column(name, no_wrap=True)
+    table.add_column("label", overflow="fold")
     for job in jobs:
+        detail = job.error.code if job.error else job.stage
         table.add_row(
             job.id,
-            job.state.value if job.error is None else f"{job.state.value}: {job.error.code}",
+            f"{job.state.value}: {detail}" if detail else job.state.value,
             f"{job.percent:.0f} %",
-            job.stage or "",
-            f"{job.created_at:%Y-%m-%d %H:%M:%S}",
+            f"{job.created_at.astimezone(UTC):%m-%d %H:%M:%S}",
             job.spec.label or "",
         )
-    console.print(table)
+    console.print(table if table.row_count else "no jobs")
 
 
 def _table(title: str | None) -> Table:
