@@ -152,7 +152,7 @@ def test_a_lost_worker_that_was_to_cancel_leaves_a_canceled_job(database: Databa
 STEPS = st.lists(st.sampled_from(["start", "progress", "publish", "fail", "requeue", "cancel", "expire"]), max_size=14)
 
 
-@settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(steps=STEPS)
 def test_no_order_of_calls_leaves_the_drawn_life_of_a_job(
     database: Database, new_job: NewJob, steps: list[str]

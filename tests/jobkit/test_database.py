@@ -11,7 +11,7 @@ from sqlalchemy.dialects import postgresql
 from sqlalchemy.exc import IntegrityError
 
 from jobkit.database import Database
-from jobkit.errors import SettingsError
+from jobkit.errors import DatabaseUnavailableError, SettingsError
 from jobkit.tables import Base, JobRow, MeshRow, ModelRow
 
 
@@ -122,3 +122,12 @@ def test_moments_keep_their_instant_and_come_back_in_utc(database: Database) -> 
 def test_a_database_that_processes_cannot_share_is_refused(url: str) -> None:
     with pytest.raises(SettingsError):
         Database(url)
+
+
+def test_a_database_that_cannot_be_opened_is_unavailable_and_keeps_its_place_secret(tmp_path: Path) -> None:
+    database = Database(f"sqlite:///{tmp_path / 'secret-place' / 'quadpatch.db'}")
+    (tmp_path / "secret-place").rmdir()
+    with pytest.raises(DatabaseUnavailableError) as caught:
+        database.ping()
+    assert "secret-place" not in str(caught.value)
+    database.close()
