@@ -116,8 +116,9 @@ def _mesh_table(meshes: list[dict[str, str]]) -> list[str]:
 
 def _metric_lines(metrics: dict[str, float]) -> list[str]:
     lines = [
-        "A disk in the middle of each held-out patch is hidden (its width in percent of the patch's side stands in the",
-        "name) and completed. `error`: root mean square error in the disk, in units of the patch's own spread;",
+        "Patches of these scans (`scan_`) and of procedural reliefs from another seed (`relief_`), none of them",
+        "learned from. A disk in the middle of each patch is hidden (its width in percent of the patch's side stands in",
+        "the name) and completed. `error`: root mean square error in the disk, in units of the patch's own spread;",
         "`to_plate`, `to_membrane`: divided by that of a thin plate or a membrane over the same hole; `to_unhidden`:",
         "divided by that of coding the whole patch. Below 1 the dictionary is the better one. One patch at a time,",
         "over the outline of the undamaged mesh: these figures rank dictionaries, they do not foretell the error of",

@@ -14,11 +14,13 @@ MARGIN = 40
 
 
 def text_curve(errors: FloatArray) -> str:
-    """Draw the errors (n,) as one line of bars, as high as the error; the first error fills the line."""
-    top = float(errors.max(initial=0.0))
-    if top <= 0.0:
-        return BARS[0] * len(errors)
-    return "".join(BARS[min(int(error / top * len(BARS)), len(BARS) - 1)] for error in errors.tolist())
+    """Draw the errors (n,) as one line of bars between the first and the last of them, with their values."""
+    if len(errors) == 0:
+        return ""
+    low, high = float(errors.min()), float(errors.max())
+    heights = (errors - low) / (high - low) if high > low else errors * 0.0
+    bars = "".join(BARS[round(height * (len(BARS) - 1))] for height in heights.tolist())
+    return f"{errors[0]:.4f} {bars} {errors[-1]:.4f}"
 
 
 def write_curve(path: Path, errors: FloatArray) -> None:

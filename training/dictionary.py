@@ -85,7 +85,7 @@ def learn_dictionary(
         Meshes to measure on; with `n_procedural`, one procedural relief of each pattern joins them.
     options : LearningOptions
     progress : callable
-        Stages `training patches` and `held-out patches`.
+        Stages `training patches`, `held-out scans` and `held-out reliefs`.
     on_iteration : callable, optional
         Told the error after each iteration of K-SVD.
 
@@ -105,10 +105,21 @@ def learn_dictionary(
     rng = np.random.default_rng([options.seed, 2])
     atoms, errors = masked_ksvd(signals, patches.known.reshape(signals.shape), ksvd, rng, on_iteration)
     dictionary = Dictionary(_in_file_precision(atoms), options.recipe.resolution, ksvd.n_nonzero)
-    made = (min(options.n_procedural, 1), options.seed + HOLDOUT_SEED_OFFSET)
-    unseen = _gather(holdout, options, made, _named(progress, "held-out patches"))
-    clean = unseen.detail[unseen.is_clean]
-    return Learned(dictionary, errors, len(patches), evaluate(dictionary, clean) if len(clean) else {})
+    return Learned(dictionary, errors, len(patches), _measure(dictionary, holdout, options, progress))
+
+
+def _measure(
+    dictionary: Dictionary, holdout: list[Source], options: LearningOptions, progress: Progress
+) -> dict[str, float]:
+    """Measure on scans and on procedural reliefs apart: they are not alike, and reliefs would outnumber the scans."""
+    seed = options.seed + HOLDOUT_SEED_OFFSET
+    metrics: dict[str, float] = {}
+    for kind, sources, n_procedural in (("scan", holdout, 0), ("relief", [], min(options.n_procedural, 1))):
+        patches = _gather(sources, options, (n_procedural, seed), _named(progress, f"held-out {kind}s"))
+        clean = patches.detail[patches.is_clean]
+        if len(clean):
+            metrics |= {f"{kind}_{key}": value for key, value in evaluate(dictionary, clean).items()}
+    return metrics
 
 
 def _gather(

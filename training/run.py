@@ -15,6 +15,8 @@ from training.dictionary import Learned, LearningOptions, learn_dictionary
 from training.publish import parse_reference, publish
 from training.sources import Source, find_sources, split_holdout
 
+STAGES = ("training patches", "held-out scans", "held-out reliefs")
+
 
 @dataclass(frozen=True)
 class Request:
@@ -82,7 +84,7 @@ def _learn(sources: list[Source], holdout: list[Source], options: LearningOption
     """Learn with a bar for every stage."""
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
     with Progress(*columns, TextColumn("{task.fields[note]}"), console=console) as bars:
-        tasks = {stage: bars.add_task(stage, total=100, note="") for stage in ("training patches", "held-out patches")}
+        tasks = {stage: bars.add_task(stage, total=100, note="") for stage in STAGES}
         ksvd = bars.add_task("K-SVD", total=options.ksvd.n_iterations, note="")
 
         def on_stage(stage: str, fraction: float) -> None:

@@ -10,8 +10,8 @@ from training.curve import text_curve, write_curve
 
 
 def test_the_text_curve_falls_with_the_error() -> None:
-    assert text_curve(np.array([1.0, 0.5, 0.01])) == "█▅▁"
-    assert text_curve(np.zeros(3)) == "▁▁▁"
+    assert text_curve(np.array([1.0, 0.75, 0.5])) == "1.0000 █▅▁ 0.5000"
+    assert text_curve(np.zeros(3)) == "0.0000 ▁▁▁ 0.0000"
     assert text_curve(np.zeros(0)) == ""
 
 

@@ -25,8 +25,8 @@ def test_reliefs_alone_teach_a_dictionary_that_codes_unseen_reliefs() -> None:
     assert iterations == [0, 1, 2]
     assert learned.errors[-1] < learned.errors[0] < 1.0
     # Unseen patches, whole: three atoms of twenty explain more than the mean does.
-    assert learned.metrics["hole_25_error"] / learned.metrics["hole_25_to_unhidden"] < 1.0
-    for stage in ("training patches", "held-out patches"):
+    assert learned.metrics["relief_hole_25_error"] / learned.metrics["relief_hole_25_to_unhidden"] < 1.0
+    for stage in ("training patches", "held-out reliefs"):
         fractions = [fraction for name, fraction in heard if name == stage]
         assert fractions == sorted(fractions)
         assert fractions[-1] == 1.0

@@ -67,7 +67,7 @@ def test_a_dictionary_is_learned_described_and_repeated_bit_for_bit(
     assert (card["name"], card["version"], card["n_nonzero"], card["seed"]) == ("small", 3, 3, 5)
     assert [mesh["name"] for mesh in card["training_corpus"]] == ["scales", "waves"]
     assert [mesh["name"] for mesh in card["held_out"]] == ["noise"]
-    assert card["metrics"]["n_patches"] > 10
+    assert card["metrics"]["scan_n_patches"] > 10
     assert card["command"] == typed(meshes.name)
     errors = json.loads((tmp_path / "c.json").read_text())["rms_error"]
     assert errors == sorted(errors, reverse=True)
