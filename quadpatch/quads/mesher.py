@@ -3,10 +3,12 @@
 The outline is smooth, so it is thinned to a few vertices per quad before it is meshed: Instant Meshes takes 1.5 s
 for 64,000 vertices and minutes for a million, the thinned outline 0.2 s and a few seconds, for quads as good.
 
-Instant Meshes writes to the C-level standard output, and its quads differ from run to run when it has more than one
-thread, whatever its `deterministic` says. For the time of the call the standard output points to the null device and
-the process is bound to one processor. Both hold for the whole process: call this from one thread, in a process that
-does nothing else meanwhile.
+It is also cut where it is not a manifold. There Instant Meshes colours its vertices wrongly, updates neighbours at the
+same time, and gives other quads on every run, whatever its `deterministic` says; vertices without a sound fan of
+triangles may also turn its whole field into NaN.
+
+Instant Meshes writes to the C-level standard output. For the time of the call that descriptor points to the null
+device, for the whole process: call this from one thread, in a process that writes nothing else meanwhile.
 """
 
 import os
@@ -97,7 +99,7 @@ def _area(mesh: TriangleMesh) -> float:
 
 
 def _instant_meshes(mesh: TriangleMesh, n_vertices: int) -> QuadMesh:
-    with _silent_stdout(), _one_processor():
+    with _silent_stdout():
         vertices, quads = pynanoinstantmeshes.remesh(
             mesh.vertices.astype(np.float32),
             mesh.triangles.astype(np.uint32),
@@ -127,27 +129,6 @@ def _silent_stdout() -> Iterator[None]:
         os.dup2(kept, 1)
         os.close(null)
         os.close(kept)
-
-
-@contextmanager
-def _one_processor() -> Iterator[None]:
-    """Bind the process to one processor, so that Instant Meshes starts one thread and gives the same quads every time.
-
-    Its thread pool is sized by the first call in a process and keeps that size.
-    """
-    if sys.platform != "linux":
-        yield
-        return
-    # The pool looks at the main thread, whose id is that of the process; its workers inherit from this thread.
-    before = {thread: os.sched_getaffinity(thread) for thread in (os.getpid(), 0)}
-    one = {min(before[0])}
-    try:
-        for thread in before:
-            os.sched_setaffinity(thread, one)
-        yield
-    finally:
-        for thread, processors in before.items():
-            os.sched_setaffinity(thread, processors)
 
 
 def _is_proper(quad_mesh: QuadMesh, side: float) -> BoolArray:
