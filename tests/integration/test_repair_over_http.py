@@ -1,3 +1,4 @@
+import hashlib
 import json
 from collections.abc import Callable
 from pathlib import Path
@@ -9,6 +10,7 @@ import pytest
 from client.sdk import Client
 from jobkit.schema import JobSpec, JobState, MeshState
 from quadpatch.formats.reading import read_scan
+from quadpatch.model_file import shipped_model
 from quadpatch.repair import inspect_file
 
 SMOOTH = {"method": "smooth"}
@@ -53,6 +55,15 @@ def test_a_job_leaves_a_report_and_a_picture_that_fit_its_facts(
     assert job.result.new_triangles == sum(hole["new_triangles"] for hole in report["holes"])
     assert [stage["name"] for stage in report["stages"]][-2:] == ["write", "preview"]
     assert (tmp_path / "preview.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_a_job_without_a_word_about_its_model_is_pinned_to_the_one_that_ships(
+    client: Client, relief_file: Callable[[str], Path]
+) -> None:
+    job = client.wait(client.create_job(spec(client.upload(relief_file("float.ply")).id)).id, timeout_s=120)
+    shipped = shipped_model("general-dictionary@1").read_bytes()
+    assert (job.model.requested, job.model.name, job.model.version) == ("default", "general-dictionary", 1)
+    assert job.model.sha256 == hashlib.sha256(shipped).hexdigest()
 
 
 def test_a_picture_is_drawn_on_request_only(client: Client, relief_file: Callable[[str], Path]) -> None:
