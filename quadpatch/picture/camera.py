@@ -13,7 +13,9 @@ from quadpatch.types import FloatArray, Vertices
 # Scans mostly stand along y; a view along y itself takes z.
 UP = np.array([0.0, 1.0, 0.0])
 _UP_SEEN_ALONG_IT = np.array([0.0, 0.0, 1.0])
-_ALONG = 0.98
+_ALONG = 0.95
+# A view turned farther than this (cosine) from another takes no notice of how that one is held.
+_OPPOSITE = -0.5
 # Part of the picture left free around what it shows.
 _MARGIN = 0.05
 
@@ -48,7 +50,7 @@ class Camera:
         return start + across[:, None] * self.right + upwards[:, None] * self.up
 
 
-def view_of(points: Vertices, towards: FloatArray, aspect: float) -> Camera:
+def view_of(points: Vertices, towards: FloatArray, aspect: float, like: Camera | None = None) -> Camera:
     """Look at all of some points.
 
     Parameters
@@ -59,8 +61,10 @@ def view_of(points: Vertices, towards: FloatArray, aspect: float) -> Camera:
         Unit vector to the viewer.
     aspect : float
         Width over height of the picture.
+    like : Camera, optional
+        Turned from this one the shortest way, so that a viewer who knows that view finds his way; else y is up.
     """
-    right, up = _picture_axes(towards)
+    right, up = _picture_axes(towards) if like is None else _axes_turned_from(like, towards)
     axes = np.stack([right, up, towards])
     local = points @ axes.T
     low, high = local.min(axis=0), local.max(axis=0)
@@ -69,6 +73,17 @@ def view_of(points: Vertices, towards: FloatArray, aspect: float) -> Camera:
     centre = (0.5 * (low + high)) @ axes
     # A point has no width, a picture must have one.
     return Camera(centre, right, up, towards, width or 1.0, float(extent[2]))
+
+
+def _axes_turned_from(other: Camera, towards: FloatArray) -> tuple[FloatArray, FloatArray]:
+    cosine = float(other.towards @ towards)
+    if cosine < _OPPOSITE:
+        return _picture_axes(towards)
+    # Rodrigues' formula for the rotation that takes one direction into the other without rolling.
+    axis = np.cross(other.towards, towards)
+    turned = other.up * cosine + np.cross(axis, other.up) + axis * (axis @ other.up) / (1 + cosine)
+    up = turned / np.linalg.norm(turned)
+    return np.cross(up, towards), up
 
 
 def _picture_axes(towards: FloatArray) -> tuple[FloatArray, FloatArray]:

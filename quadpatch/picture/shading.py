@@ -15,8 +15,8 @@ BACK = np.array([0.30, 0.34, 0.42])
 
 # Lights in the camera's axes (right, up, towards) with their strength: a key from the upper left, a weak fill from
 # the right that keeps the shadows open, and light from everywhere.
-_LIGHTS = (((-0.45, 0.60, 0.66), 0.82), ((0.75, 0.05, 0.66), 0.24))
-_AMBIENT = 0.20
+_LIGHTS = (((-0.45, 0.60, 0.66), 0.76), ((0.70, -0.35, 0.62), 0.30))
+_AMBIENT = 0.24
 # Corners whose normal is farther than about 28 degrees from their triangle's belong to a sharp edge.
 _SHARP = 0.88
 # Pixels that differ from a neighbour by more than this (of 1) get more rays.

@@ -93,12 +93,13 @@ def render_before_after(
     old = Clay(before, RayScene(before), np.tile(CLAY, (len(before.triangles), 1)))
     new = Clay(shown, scene, _colours(invented, confidence))
     holes = [part_of(shown, hole) for hole in filled_holes(shown, invented, _N_CANDIDATES)]
-    cameras = close_ups(scene, holes, _TILE[0] / _TILE[1], _N_CLOSE_UPS)
+    camera = _overview_camera(scene, shown, invented)
+    cameras = close_ups(scene, holes, camera, _N_CLOSE_UPS)
     sheet = _blank_sheet(has_title=bool(title), has_close_ups=bool(cameras))
     if title:
         sheet.write(title, _MARGIN, 24, _INK)
         sheet.top += _TITLE_HEIGHT
-    _draw_overview(sheet, old, new, _overview_camera(scene, shown, invented))
+    _draw_overview(sheet, old, new, camera)
     if cameras:
         _draw_close_ups(sheet, old, new, cameras)
     _draw_legend(sheet, has_confidence=confidence is not None)

@@ -33,15 +33,18 @@ def overview(scene: RayScene, whole: Part, invented: Part | None, aspect: float)
     return view_of(whole.corners, directions[np.argmax(score)], aspect)
 
 
-def close_ups(scene: RayScene, holes: list[Part], aspect: float, most: int) -> list[Camera]:
-    """Look at the first few filled holes, those that can hardly be seen from anywhere last."""
-    views = [_close_up(scene, hole, aspect) for hole in holes]
+def close_ups(scene: RayScene, holes: list[Part], like: Camera, most: int) -> list[Camera]:
+    """Look at the first few filled holes in square pictures, those that can hardly be seen from anywhere last.
+
+    Each is held like the overview, turned to the hole.
+    """
+    views = [_close_up(scene, hole, like) for hole in holes]
     # Sorting is stable: among the visible ones the order stays.
     views.sort(key=lambda view: view[1] < _WELL_SEEN)
     return [camera for camera, _ in views[:most]]
 
 
-def _close_up(scene: RayScene, hole: Part, aspect: float) -> tuple[Camera, float]:
+def _close_up(scene: RayScene, hole: Part, like: Camera) -> tuple[Camera, float]:
     """Look straight down on a filled hole, or from where most of it shows; with the share of its area that does."""
     clearance = _SURROUNDINGS * hole.diagonal
     mean = hole.area_vectors.sum(axis=0)
@@ -52,7 +55,7 @@ def _close_up(scene: RayScene, hole: Part, aspect: float) -> tuple[Camera, float
         directions = spread_directions(_N_DIRECTIONS)
         areas = visible_areas(scene, hole, directions, clearance)
         towards, shown = directions[np.argmax(areas)], float(areas.max())
-    tight = view_of(hole.corners, towards, aspect)
+    tight = view_of(hole.corners, towards, 1.0, like)
     camera = Camera(tight.centre, tight.right, tight.up, towards, tight.width * _SURROUNDINGS, clearance)
     return camera, shown / max(float(np.linalg.norm(hole.area_vectors, axis=1).sum()), _tiny())
 

@@ -39,6 +39,19 @@ def test_a_view_along_y_still_has_axes(towards: tuple[float, float, float]) -> N
     assert abs(camera.right @ camera.towards) < 1e-12
 
 
+@given(seed=st.integers(0, 2**32 - 1))
+def test_a_view_like_another_is_turned_the_shortest_way(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    one = view_of(np.eye(3), unit(rng.normal(size=3)), 1.0)
+    towards = unit(one.towards + 0.8 * unit(rng.normal(size=3)))
+    other = view_of(np.eye(3), towards, 1.0, like=one)
+    axes = np.stack([other.right, other.up, other.towards])
+    np.testing.assert_allclose(axes @ axes.T, np.eye(3), atol=1e-12)
+    # No turn is shorter than the angle between the two directions.
+    turn = (np.trace(axes @ np.stack([one.right, one.up, one.towards]).T) - 1) / 2
+    assert turn == pytest.approx(one.towards @ towards, abs=1e-9)
+
+
 def test_rays_of_the_pixel_grid_start_in_front_of_all_points() -> None:
     points = np.random.default_rng(0).normal(size=(20, 3))
     camera = view_of(points, unit(np.array([1.0, 2, 3])), 2.0)

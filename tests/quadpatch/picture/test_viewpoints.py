@@ -1,10 +1,13 @@
 import numpy as np
 import pytest
 
+from quadpatch.picture.camera import view_of
 from quadpatch.picture.parts import Part, part_of
 from quadpatch.picture.viewpoints import close_ups, is_inside_out, overview, spread_directions, visible_areas
 from quadpatch.raycast import RayScene
 from quadpatch.types import BoolArray, TriangleMesh
+
+FRONT = view_of(np.eye(3), np.array([0.0, 0, 1]), 1.0)
 
 
 def sphere(n: int = 40) -> TriangleMesh:
@@ -72,7 +75,7 @@ def test_an_overview_of_an_open_surface_shows_its_outside() -> None:
 def test_a_close_up_looks_straight_down_on_its_hole_with_room_around_it() -> None:
     mesh = sphere()
     hole = part_of(mesh, np.flatnonzero(near(mesh, (0.0, 0.0, 1.0), 0.95)))
-    (camera,) = close_ups(RayScene(mesh), [hole], 1.0, 3)
+    (camera,) = close_ups(RayScene(mesh), [hole], FRONT, 3)
     assert camera.towards[2] > 0.99
     width = np.ptp(hole.corners[:, 0])
     assert 2 * width < camera.width < 3.5 * width
@@ -82,7 +85,7 @@ def test_a_hole_that_hardly_shows_comes_last() -> None:
     mesh = sphere()
     band = part_of(mesh, np.flatnonzero(np.abs(mesh.vertices[mesh.triangles].mean(axis=1)[:, 1]) < 0.5))
     cap = part_of(mesh, np.flatnonzero(near(mesh, (0.0, 0.0, 1.0), 0.95)))
-    (camera,) = close_ups(RayScene(mesh), [band, cap], 1.0, 1)
+    (camera,) = close_ups(RayScene(mesh), [band, cap], FRONT, 1)
     assert camera.towards[2] > 0.99
 
 
