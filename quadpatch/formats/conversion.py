@@ -13,6 +13,7 @@ from quadpatch.formats.obj_source import GROUP, face_lines
 from quadpatch.formats.stl import encode_stl
 from quadpatch.formats.text import to_lines
 from quadpatch.formats.whole import Whole
+from quadpatch.mesh.weld import first_of_equal
 from quadpatch.types import FloatArray, IntArray
 
 
@@ -87,9 +88,10 @@ def encode_as_obj(whole: Whole) -> bytes:
     texture = np.zeros(whole.triangles.shape, dtype=np.int64)
     if looks.texture is not None:
         textured = np.isfinite(looks.texture).all(axis=(1, 2))
-        points, index = np.unique(looks.texture[textured].reshape(-1, 2), axis=0, return_inverse=True)
+        points = looks.texture[textured].reshape(-1, 2)
+        corner, index = np.unique(first_of_equal(np.pad(points, ((0, 0), (0, 1)))), return_inverse=True)
         texture[textured] = 1 + index.reshape(-1, 3)
-        text.append(to_lines("vt", points, "\n"))
+        text.append(to_lines("vt", points[corner], "\n"))
     normal = np.zeros_like(texture)
     if looks.normals is not None:
         normal = whole.triangles + 1

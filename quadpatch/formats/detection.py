@@ -35,7 +35,7 @@ def detect_format(data: bytes, suffix: str) -> str:
     FormatError
         If it is in no known format.
     """
-    if not data.strip(b"\0 \t\r\n"):
+    if re.search(rb"[^\0\s]", data) is None:
         raise ReadError("the file is empty")
     found = _by_magic(data) or _by_text(decode_text(data[:_LOOK_AT])[0] if data[:1] != b"\0" else b"")
     if found is None and suffix in KNOWN:

@@ -12,27 +12,28 @@ import numpy as np
 
 from quadpatch.errors import EmptyMeshError, IndexRangeError, ReadError
 from quadpatch.formats.limits import ReadLimits, check_indices, check_triangles, check_vertices
+from quadpatch.formats.lines import Lines, split_lines
 from quadpatch.formats.obj_source import ObjSource
 from quadpatch.formats.polygons import triangulate_polygons
 from quadpatch.formats.scan import Scan
-from quadpatch.formats.text import decode_text, parse_integers, parse_numbers
+from quadpatch.formats.text import decode_text, parse_integers, word_starts
 from quadpatch.types import FloatArray, IntArray, Triangles, Vertices
 
-_KEYWORDS = {b"v": 1, b"vt": 2, b"vn": 3, b"f": 4, b"fo": 4, b"usemtl": 5}
 _VERTEX, _TEXTURE, _NORMAL, _FACE, _MATERIAL = 1, 2, 3, 4, 5
+_KEYWORDS = {_VERTEX: b"v", _TEXTURE: b"vt", _NORMAL: b"vn", _FACE: b"f", _MATERIAL: b"usemtl"}
+_SLASH = 47
 
 
 @dataclass(frozen=True)
-class _Lines:
-    """Lines of an OBJ file: what stands behind each keyword, and which keyword it is (0 for all others)."""
+class _Statements:
+    """Lines of an OBJ file, and which keyword each has (0 for all others)."""
 
-    bodies: list[bytes]
+    lines: Lines
     kinds: IntArray
 
-    def of(self, kind: int) -> list[bytes]:
-        """Bodies of the lines of one kind, without comments."""
-        found = [self.bodies[i] for i in np.flatnonzero(self.kinds == kind)]
-        return [body.split(b"#", 1)[0] if b"#" in body else body for body in found]
+    def of(self, kind: int) -> Lines:
+        """Return what stands behind the keyword in the lines of one kind."""
+        return self.lines.select(self.kinds == kind).behind(len(_KEYWORDS[kind]))
 
     def count_before(self, kind: int) -> IntArray:
         """How many lines of one kind stand before each face, (n_faces,)."""
@@ -64,15 +65,16 @@ def read_obj(data: bytes, limits: ReadLimits) -> Scan:
         ReadError, EmptyMeshError, NotFiniteError, IndexRangeError or TooLargeError.
     """
     text, codec = decode_text(data)
-    lines = _split(text)
-    limits.check_vertices(int((lines.kinds == _VERTEX).sum()))
-    vertices, colours = _parse_vertices(lines.of(_VERTEX))
+    statements = _split(text)
+    limits.check_vertices(int((statements.kinds == _VERTEX).sum()))
+    vertices, colours = _parse_vertices(statements.of(_VERTEX))
     check_vertices(vertices)
-    texture = _parse_table(lines.of(_TEXTURE), "vt", 1, 2)
-    normals = _parse_table(lines.of(_NORMAL), "vn", 3, 3)
-    corners = _parse_faces(lines, (len(vertices), len(texture), len(normals)))
+    texture = _parse_table(statements.of(_TEXTURE), "vt", 1, 2)
+    normals = _parse_table(statements.of(_NORMAL), "vn", 3, 3)
+    corners = _parse_faces(statements, (len(vertices), len(texture), len(normals)))
     triangles, places, face = _cut(vertices, corners)
     check_triangles(triangles, limits)
+    materials = statements.of(_MATERIAL)
     source = ObjSource(
         data=data,
         codec=codec,
@@ -81,38 +83,36 @@ def read_obj(data: bytes, limits: ReadLimits) -> Scan:
         normals=normals,
         corner_texture=corners.texture[places],
         corner_normal=corners.normal[places],
-        materials=[body.strip() for body in _raw(lines, _MATERIAL)],
-        triangle_material=(lines.count_before(_MATERIAL) - 1)[face],
+        materials=[materials.text(line).strip() for line in range(len(materials.starts))],
+        triangle_material=(statements.count_before(_MATERIAL) - 1)[face],
     )
     return Scan(vertices, triangles, "obj", source=source)
 
 
-def _split(text: bytes) -> _Lines:
+def _split(text: bytes) -> _Statements:
     if b"\\" in text:
         text = re.sub(rb"\\[ \t]*(\r\n|\n|\r)", b" ", text)
-    parts = [line.split(None, 1) for line in text.splitlines()]
-    kinds = [_KEYWORDS.get(part[0], 0) if part else 0 for part in parts]
-    return _Lines([part[1] if len(part) > 1 else b"" for part in parts], np.array(kinds, dtype=np.int64))
+    lines = split_lines(text, keep_comments_of=(b"usemtl",))
+    kinds = np.zeros(len(lines.starts), dtype=np.int64)
+    for kind, keyword in _KEYWORDS.items():
+        kinds[lines.begin_with(keyword)] = kind
+    return _Statements(lines, kinds)
 
 
-def _raw(lines: _Lines, kind: int) -> list[bytes]:
-    return [lines.bodies[i] for i in np.flatnonzero(lines.kinds == kind)]
-
-
-def _parse_vertices(bodies: list[bytes]) -> tuple[Vertices, FloatArray | None]:
+def _parse_vertices(lines: Lines) -> tuple[Vertices, FloatArray | None]:
     """Coordinates, and colours of those vertices that have six numbers or more; a fourth number is a weight."""
-    table = _parse_table(bodies, "v", 3, 6)
+    table = _parse_table(lines, "v", 3, 6)
     colours = table[:, 3:]
     return np.ascontiguousarray(table[:, :3]), None if np.isnan(colours).any(axis=1).all() else colours
 
 
-def _parse_table(bodies: list[bytes], keyword: str, least: int, width: int) -> FloatArray:
+def _parse_table(lines: Lines, keyword: str, least: int, width: int) -> FloatArray:
     """First numbers of each line, (n, width) float64, NaN where a line has fewer."""
-    words = np.array([len(body.split()) for body in bodies], dtype=np.int64)
+    words = lines.word_counts()
     if (words < least).any():
         line = int(np.argmax(words < least))
         raise ReadError(f"OBJ line `{keyword}` number {line + 1} has {words[line]} numbers instead of {least}")
-    numbers = parse_numbers(b"\n".join(bodies))
+    numbers = lines.numbers()
     if len(words) and (words == words[0]).all() and words[0] >= width:
         return numbers.reshape(len(words), -1)[:, :width]
     starts = np.cumsum(words) - words
@@ -123,19 +123,19 @@ def _parse_table(bodies: list[bytes], keyword: str, least: int, width: int) -> F
     return table
 
 
-def _parse_faces(lines: _Lines, counts: tuple[int, int, int]) -> _Corners:
-    bodies = lines.of(_FACE)
-    if not bodies:
+def _parse_faces(statements: _Statements, counts: tuple[int, int, int]) -> _Corners:
+    lines = statements.of(_FACE)
+    sizes = lines.word_counts()
+    if sizes.sum() == 0:
         raise EmptyMeshError("the OBJ file has no face: points and lines are no surface")
-    sizes = np.array([len(body.split()) for body in bodies], dtype=np.int64)
-    joined = b" ".join(bodies)
-    if b"/" in joined:
+    text = lines.joined()
+    if b"/" in text:
         # An index that is left out is written as 0, which OBJ uses for nothing else.
-        joined = re.sub(rb"/(?=[\s/]|$)", b"/0", joined)
-    slashes = np.array([word.count(b"/") for word in joined.split()], dtype=np.int64)
+        text = re.sub(rb"/(?=[\s/]|$)", b"/0", text)
+    slashes = _slashes_of_words(text)
     if (slashes > 2).any():
         raise ReadError("an OBJ face has a corner of more than three indices")
-    numbers = parse_integers(joined.replace(b"/", b" "), "OBJ faces")
+    numbers = parse_integers(text.replace(b"/", b" "), "OBJ faces")
     starts = np.cumsum(slashes + 1) - slashes - 1
     if len(numbers) != len(slashes) + slashes.sum():
         raise ReadError("an OBJ face has a corner without a vertex")
@@ -144,7 +144,7 @@ def _parse_faces(lines: _Lines, counts: tuple[int, int, int]) -> _Corners:
         has = slashes >= column
         raw = np.zeros(len(starts), dtype=np.int64)
         raw[has] = numbers[starts[has] + column]
-        before = np.repeat(lines.count_before(kind), sizes)
+        before = np.repeat(statements.count_before(kind), sizes)
         columns.append(np.where(raw > 0, raw - 1, np.where(raw < 0, before + raw, -1)))
     vertex, texture, normal = columns
     if (numbers[starts] == 0).any():
@@ -152,6 +152,14 @@ def _parse_faces(lines: _Lines, counts: tuple[int, int, int]) -> _Corners:
     check_indices(vertex, counts[0])
     # Wrong texture and normal indices do not touch the geometry: such corners count as bare.
     return _Corners(vertex, _in_range(texture, counts[1]), _in_range(normal, counts[2]), sizes)
+
+
+def _slashes_of_words(text: bytes) -> IntArray:
+    raw = np.frombuffer(text, np.uint8)
+    slashes = np.flatnonzero(raw == _SLASH)
+    # Slashes stand inside words, so those in front of the next word are those of this one.
+    before = np.searchsorted(slashes, word_starts(raw))
+    return np.diff(before, append=len(slashes))
 
 
 def _in_range(indices: IntArray, count: int) -> IntArray:

@@ -136,7 +136,9 @@ class ObjSource:
 
 
 def face_lines(vertex: IntArray, texture: IntArray, normal: IntArray, line_end: str) -> list[str]:
-    """Lines `f` of one-based indices; 0 leaves an index out."""
+    """Write lines `f` of one-based indices; 0 leaves an index out."""
+    if not texture.any() and not normal.any():
+        return to_lines("f", vertex, line_end).splitlines(keepends=True)
     lines = []
     for corners in zip(vertex.tolist(), texture.tolist(), normal.tolist(), strict=True):
         words = [_corner(*corner) for corner in zip(*corners, strict=True)]

@@ -148,3 +148,9 @@ def triangulate_strips(counts: IntArray, corners: IntArray) -> Triangles:
     a, b, c = triangles.T
     keep = (triangles >= 0).all(axis=1) & (a != b) & (b != c) & (c != a)
     return np.asarray(triangles[keep], dtype=np.int64)
+
+
+def list_range(starts: IntArray, counts: IntArray) -> IntArray:
+    """Return the place of every item of lists that begin at `starts` and hold `counts` items, list by list."""
+    first_of_each = np.repeat(starts - (np.cumsum(counts) - counts), counts)
+    return first_of_each + np.arange(len(first_of_each), dtype=np.int64)

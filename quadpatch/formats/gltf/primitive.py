@@ -10,6 +10,7 @@ from quadpatch.formats.attributes import normals_at
 from quadpatch.formats.gltf.container import GltfFile
 from quadpatch.formats.parts import PartFill
 from quadpatch.formats.scan import Fill, Scan
+from quadpatch.mesh.weld import first_of_equal
 from quadpatch.types import BoolArray, FloatArray, IntArray, Triangles, Vertices
 
 _COMPONENTS = {"f4": 5126, "u4": 5125}
@@ -141,10 +142,13 @@ def _is_turned(piece: PartFill, rows: BoolArray, fill: Fill) -> bool:
 
 def split_vertices(triangles: Triangles, texture: FloatArray | None) -> tuple[IntArray, FloatArray, Triangles]:
     """Vertices that are one in position and texture: position of each, its texture, triangles into them."""
-    wedges = np.zeros((triangles.size, 2)) if texture is None else texture.reshape(-1, 2)
-    keys = np.column_stack([triangles.ravel().astype(np.float64), wedges])
-    unique, indices = np.unique(keys, axis=0, return_inverse=True)
-    return unique[:, 0].astype(np.int64), unique[:, 1:], indices.reshape(-1, 3).astype(np.int64)
+    if texture is None:
+        vertex, indices = np.unique(triangles, return_inverse=True)
+        return vertex, np.zeros((len(vertex), 2)), indices.reshape(-1, 3)
+    wedges = texture.reshape(-1, 2)
+    first = first_of_equal(np.column_stack([triangles.ravel(), wedges]))
+    corner, indices = np.unique(first, return_inverse=True)
+    return triangles.ravel()[corner], wedges[corner], indices.reshape(-1, 3)
 
 
 def _normals(

@@ -8,7 +8,8 @@ import numpy as np
 
 from quadpatch.errors import ReadError
 from quadpatch.formats.ply.header import Element, Header, value_range
-from quadpatch.formats.ply.rows import ListColumn, Rows, Values, check_room, list_range
+from quadpatch.formats.ply.rows import ListColumn, Rows, Values, check_room
+from quadpatch.formats.polygons import list_range
 from quadpatch.formats.text import parse_numbers
 from quadpatch.types import FloatArray, IntArray
 

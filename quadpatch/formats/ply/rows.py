@@ -78,9 +78,3 @@ def check_room(element: Element, smallest_row: int, room: int, unit: str) -> Non
             f"PLY element {element.name[:40]!r} declares {element.count:,} rows of at least {smallest_row} {unit}; "
             f"{room:,} {unit} are left in the file"
         )
-
-
-def list_range(starts: IntArray, counts: IntArray) -> IntArray:
-    """Return the place of every item of lists that begin at `starts` and hold `counts` items, list by list."""
-    first_of_each = np.repeat(starts - (np.cumsum(counts) - counts), counts)
-    return first_of_each + np.arange(len(first_of_each), dtype=np.int64)
