@@ -14,6 +14,11 @@ INTENDED_USE = (
     "what a damaged object looked like."
 )
 
+_REPEATING = (
+    "Paths are shortened to their last part; the meshes are those listed below. The same meshes and the same command",
+    "give the same bytes, with the same numpy on the same kind of processor: elsewhere sums may round differently.",
+)
+
 
 def dictionary_card(
     name: tuple[str, int | None],
@@ -87,7 +92,7 @@ def _page(card: Card, sha256: str) -> str:
     lines += ["| | |", "| --- | --- |"]
     lines += [f"| {key} | {value} |" for key, value in _facts(card, sha256).items()]
     lines += ["", "## Intended use", "", str(card["intended_use"])]
-    lines += ["", "## How it was made", "", "```", str(card["command"]), "```", ""]
+    lines += ["", "## How it was made", "", "```", str(card["command"]), "```", "", *_REPEATING, ""]
     lines += [f"- {key.replace('_', ' ')}: {value}" for key, value in card["recipe"].items()]
     lines += ["", "## Learned from", "", *_mesh_table(card["training_corpus"])]
     if card["procedural"]:
@@ -117,8 +122,8 @@ def _mesh_table(meshes: list[dict[str, str]]) -> list[str]:
 def _metric_lines(metrics: dict[str, float]) -> list[str]:
     lines = [
         "Patches of these scans (`scan_`) and of procedural reliefs from another seed (`relief_`), none of them",
-        "learned from. A disk in the middle of each patch is hidden (its width in percent of the patch's side stands in",
-        "the name) and completed. `error`: root mean square error in the disk, in units of the patch's own spread;",
+        "learned from. A disk in the middle of each patch is hidden (its width in percent of the patch's side stands",
+        "in the name) and completed. `error`: root mean square error in the disk, in units of the patch's own spread;",
         "`to_plate`, `to_membrane`: divided by that of a thin plate or a membrane over the same hole; `to_unhidden`:",
         "divided by that of coding the whole patch. Below 1 the dictionary is the better one. One patch at a time,",
         "over the outline of the undamaged mesh: these figures rank dictionaries, they do not foretell the error of",

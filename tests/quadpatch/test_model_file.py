@@ -1,3 +1,4 @@
+import hashlib
 import json
 import struct
 from pathlib import Path
@@ -11,7 +12,7 @@ from safetensors.numpy import save
 
 from quadpatch import model_file
 from quadpatch.errors import ModelError
-from quadpatch.model_file import load_model, model_card, save_dictionary, shipped_model
+from quadpatch.model_file import SHIPPED_MODELS, load_model, model_card, save_dictionary, shipped_model
 from quadpatch.sparse.dictionary import Dictionary
 from quadpatch.types import FloatArray
 
@@ -152,3 +153,24 @@ def test_shipped_models_are_found_by_name_and_version(tmp_path: Path, monkeypatc
     for unknown in ("scales", "waves@3", "../waves", "", "wave"):
         with pytest.raises(ModelError, match="waves@1, waves@10, waves@2"):
             shipped_model(unknown)
+
+
+@pytest.mark.parametrize("path", sorted(SHIPPED_MODELS.glob("*.safetensors")), ids=lambda path: path.stem)
+def test_a_shipped_model_loads_and_its_page_tells_whose_work_is_in_it(path: Path) -> None:
+    model = load_model(shipped_model(path.stem))
+    assert model.path == path
+    assert path.stat().st_size < 5_000_000
+    assert path.stem == f"{model.card['name']}@{model.card['version']}"
+    page = path.with_suffix(".md").read_text("utf-8")
+    assert hashlib.sha256(path.read_bytes()).hexdigest() in page
+    assert model.card["command"] in page
+    assert model.card["training_corpus"]
+    for mesh in model.card["training_corpus"] + model.card["held_out"]:
+        assert mesh["licence"]
+        assert mesh["licence"] in page
+    learned_from = {mesh["sha256"] for mesh in model.card["training_corpus"]}
+    assert learned_from.isdisjoint(mesh["sha256"] for mesh in model.card["held_out"])
+
+
+def test_the_general_dictionary_ships() -> None:
+    assert shipped_model("general-dictionary@1").is_file()
