@@ -8,7 +8,7 @@ from pathlib import Path
 from quadpatch.errors import QuadpatchError
 from worker.engine_reports import Reporter
 from worker.failures import Failure, from_os_error, over_memory
-from worker.request import EngineRequest
+from worker.request import MESH_FOLDER, EngineRequest
 
 
 def run_framed(folder: Path, descriptor: int, task: Callable[[EngineRequest, Reporter], None]) -> None:
@@ -42,4 +42,6 @@ def run_framed(folder: Path, descriptor: int, task: Callable[[EngineRequest, Rep
 
 def _without_paths(message: str, folder: Path) -> str:
     """Take the worker's own folder out of a message that goes to a client."""
-    return message.replace(f"{folder}{os.sep}", "").replace(str(folder), "")
+    for prefix in (folder / MESH_FOLDER, folder):
+        message = message.replace(f"{prefix}{os.sep}", "").replace(str(prefix), "")
+    return message

@@ -11,6 +11,7 @@ from jobkit.meshes import MeshSource
 from worker.context import Context
 from worker.failures import EngineFailedError, EngineStoppedError, Failure, StopReason
 from worker.folders import request_folder
+from worker.request import MESH_FOLDER
 from worker.spec import source_name
 
 T = TypeVar("T")
@@ -51,6 +52,7 @@ def folder_with_mesh(context: Context, source: MeshSource) -> Iterator[Path]:
     with request_folder(context.work_folder) as folder:
         try:
             with context.store.local_file(source.key) as path:
+                (folder / MESH_FOLDER).mkdir()
                 (folder / source_name(source)).symlink_to(path)
                 yield folder
         except NotFoundError as error:

@@ -3,7 +3,7 @@
 ::
 
     request.json     this request
-    source.ply       the mesh, under a name that states its format
+    mesh/source.ply  the mesh, under a name that states its format, and nothing beside it
     repaired.ply     the repaired mesh
     report.json      what was done to every hole
     preview.png      the before/after picture
@@ -19,6 +19,7 @@ from typing import Any, Literal, Self
 from worker.limits import EngineLimits
 
 REQUEST_NAME = "request.json"
+MESH_FOLDER = "mesh"
 REPORT_NAME = "report.json"
 FACTS_NAME = "facts.json"
 PREVIEW_NAME = "preview.png"
@@ -33,7 +34,7 @@ class EngineRequest:
     ----------
     task : "repair" or "inspect"
     source : str
-        Name of the mesh file in the request's folder.
+        Path of the mesh file in the request's folder.
     limits : EngineLimits
     output : str
         Name of the repaired file.

@@ -6,7 +6,7 @@ from typing import Any, get_args
 from jobkit.meshes import MeshSource
 from jobkit.schema import Format, JobSpec, OutputFormat, SmoothMethod
 from worker.limits import EngineLimits
-from worker.request import EngineRequest
+from worker.request import MESH_FOLDER, EngineRequest
 
 # Formats that are read, but handed back as another one: a glTF with its side files is no single file.
 _WRITTEN_AS: dict[str, OutputFormat] = {"gltf": "glb"}
@@ -14,9 +14,12 @@ _DEFAULT_OUTPUT: OutputFormat = "ply"
 
 
 def source_name(source: MeshSource) -> str:
-    """Name the mesh file so that its suffix states the format, which the reader goes by."""
+    """Name the mesh file so that its suffix states the format, which the reader goes by.
+
+    It lies in a folder of its own: a glTF may name files beside it, and there must be none.
+    """
     suffix = source.format or _suffix(source.filename)
-    return f"source.{suffix}" if suffix else "source"
+    return f"{MESH_FOLDER}/source.{suffix}" if suffix else f"{MESH_FOLDER}/source"
 
 
 def output_format(spec: JobSpec, source: MeshSource) -> OutputFormat:

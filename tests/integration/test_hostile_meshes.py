@@ -17,7 +17,17 @@ NO_MESHES = {".bin", ".mtl", ".png", ".json"}
 
 HEADER = "ply\nformat ascii 1.0\nelement vertex {v}\nproperty float x\nproperty float y\nproperty float z\n"
 FACES = "element face {f}\nproperty list uchar int vertex_indices\nend_header\n"
+REACHING = (
+    '{{"asset":{{"version":"2.0"}},"scenes":[{{"nodes":[0]}}],"nodes":[{{"mesh":0}}],'
+    '"meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}}}}]}}],'
+    '"accessors":[{{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}}],'
+    '"bufferViews":[{{"buffer":0,"byteLength":36}}],"buffers":[{{"uri":"{uri}","byteLength":36}}]}}'
+)
 HOSTILE = {
+    "reaching_up.gltf": (REACHING.format(uri="../request.json").encode(), "unreadable_mesh"),
+    "reaching_out.gltf": (REACHING.format(uri="/etc/passwd").encode(), "unreadable_mesh"),
+    "reaching_beside.gltf": (REACHING.format(uri="source.gltf").encode(), "unreadable_mesh"),
+    "calling_home.gltf": (REACHING.format(uri="http://127.0.0.1:1/x").encode(), "unreadable_mesh"),
     "garbage.ply": (bytes(range(256)) * 40, "unreadable_mesh"),
     "garbage.stl": (b"solid nothing\n" + bytes(range(256)) * 4, "empty_mesh"),
     "truncated.ply": ((HEADER + FACES).format(v=3, f=1).encode() + b"0 0 0\n1 0 0\n", "unreadable_mesh"),

@@ -57,13 +57,13 @@ def test_a_station_gets_back_the_format_that_it_sent(
     mesh_format: Any, filename: str | None, asked: str | None, name: str, output: str
 ) -> None:
     mesh = source(mesh_format, filename)
-    assert source_name(mesh) == name
+    assert source_name(mesh) == f"mesh/{name}"
     assert output_format(spec(output={"format": asked}), mesh) == output
 
 
 def test_a_filename_never_leads_out_of_the_folder() -> None:
-    assert source_name(source(None, "../../etc/passwd.ply")) == "source.ply"
-    assert source_name(source(None, "x.ply/../../y")) == "source"
+    assert source_name(source(None, "../../etc/passwd.ply")) == "mesh/source.ply"
+    assert source_name(source(None, "x.ply/../../y")) == "mesh/source"
 
 
 def test_a_job_can_lower_the_limits_and_never_raise_them() -> None:
