@@ -12,7 +12,9 @@ OVERLAP_RANGE = (0, 8)
 
 @dataclass(frozen=True)
 class HoleOptions:
-    """Which holes to fill; all None: every one but those wider than a quarter of the bounding box's diagonal.
+    """Which holes to fill.
+
+    By default every one but outer borders of pieces, and those wider than a quarter of the bounding box's diagonal.
 
     Attributes
     ----------

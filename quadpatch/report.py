@@ -38,6 +38,7 @@ def describe_hole(hole: Hole) -> dict[str, Any]:
         "area": hole.area,
         "planarity": hole.planarity,
         "is_manifold": hole.is_manifold,
+        "is_border": hole.is_border,
     }
 
 

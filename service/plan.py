@@ -53,14 +53,12 @@ def reason_to_skip(hole: Hole, selection: HoleSelection, diagonal: float) -> str
     """
     is_automatic = selection == HoleSelection()
     max_diameter = AUTO_DIAMETER_SHARE * diagonal if is_automatic else selection.max_diameter
-    if not hole.is_manifold:
-        return "non_manifold_rim"
-    if selection.ids is not None and hole.id not in selection.ids:
-        return "not_chosen"
-    if selection.all_but_largest and hole.id == 0:
-        return "largest"
-    if max_diameter is not None and hole.diameter > max_diameter:
-        return "too_wide"
-    if selection.max_perimeter is not None and hole.perimeter > selection.max_perimeter:
-        return "too_long"
-    return None
+    reasons = (
+        (not hole.is_manifold, "non_manifold_rim"),
+        (selection.ids is not None and hole.id not in selection.ids, "not_chosen"),
+        (selection.all_but_largest and hole.id == 0, "largest"),
+        (is_automatic and hole.is_border, "border"),
+        (max_diameter is not None and hole.diameter > max_diameter, "too_wide"),
+        (selection.max_perimeter is not None and hole.perimeter > selection.max_perimeter, "too_long"),
+    )
+    return next((code for applies, code in reasons if applies), None)

@@ -21,6 +21,9 @@ class Hole(Response):
     planarity: float = Field(ge=0, description="Distance of the rim from its plane by its diameter; 0 is flat.")
     edges: int = Field(ge=0, description="Edges of the rim.", examples=[36])
     is_manifold: bool = Field(default=True, description="False where the rim can't be filled.")
+    is_border: bool = Field(
+        default=False, description="True for what looks like the outer border of a piece of the scan, not a hole in it."
+    )
 
 
 class BoundingBox(Response):

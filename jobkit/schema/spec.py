@@ -74,7 +74,7 @@ Method = Annotated[DictionaryMethod | CnnMethod | SmoothMethod, Field(discrimina
 
 
 class HoleSelection(Request):
-    """Which holes to fill. With none of these, loops wider than a quarter of the scan's diagonal stay open."""
+    """Which holes to fill. By default outer borders and loops wider than a quarter of the scan's diagonal stay open."""
 
     max_diameter: float | None = Field(
         default=None, gt=0, le=1e12, description="Leave wider holes open, in mesh units.", examples=[25.0]

@@ -100,7 +100,7 @@ def _laplacian(vertices: Vertices, triangles: Triangles, *, uniform: bool) -> tu
     laplacian = sparse.csr_array(sparse.diags_array(adjacency.sum(axis=1)) - adjacency)
     if uniform:
         return laplacian, np.ones(n)
-    area: FloatArray = np.bincount(triangles.ravel(), np.repeat(double_area / 6, 3), minlength=n)
+    area = np.asarray(np.bincount(triangles.ravel(), np.repeat(double_area / 6, 3), minlength=n), np.float64)
     return laplacian, np.maximum(area, 1e-6 * area[area > 0].mean())
 
 

@@ -3,17 +3,23 @@
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 from scipy.spatial import ConvexHull, QhullError
 from scipy.spatial.distance import pdist
 
 from quadpatch.errors import OptionError
 from quadpatch.mesh.boundary import boundary_loops
 from quadpatch.options import HoleOptions
-from quadpatch.types import IntArray, TriangleMesh, Vertices
+from quadpatch.types import FloatArray, IntArray, TriangleMesh, Vertices
 
 # An open scan has an outer border that nobody wants closed: without a rule from the user, loops wider than this
 # share of the bounding box's diagonal stay open.
 AUTO_DIAMETER_SHARE = 0.25
+
+# A scan often has loose pieces, each with an outer border: the longest loop of a piece, if wider than this share of
+# the piece's own diagonal.
+BORDER_SHARE = 0.5
 
 # Up to here, all pairwise distances of a loop are cheaper than its convex hull.
 _SMALL_LOOP = 400
@@ -37,6 +43,8 @@ class Hole:
         Root mean square distance of the loop from its best plane, divided by the diameter: 0 is flat.
     is_manifold : bool
         False where the rim touches an edge of three or more faces or faces that disagree about their direction.
+    is_border : bool
+        True for the outer border of a connected piece of the scan, as far as its size tells.
     """
 
     id: int
@@ -46,6 +54,7 @@ class Hole:
     area: float
     planarity: float
     is_manifold: bool
+    is_border: bool = False
 
     @property
     def n_edges(self) -> int:
@@ -77,16 +86,33 @@ def find_holes(mesh: TriangleMesh) -> list[Hole]:
         Longest perimeter first; equal ones in the order of their first vertex. Ids count up from 0.
     """
     boundary = boundary_loops(mesh.triangles)
+    piece, piece_diagonals = _pieces(mesh)
     measured = []
     for loop, is_manifold in zip(boundary.loops, boundary.is_manifold, strict=True):
         points = mesh.vertices[loop]
         perimeter = float(np.linalg.norm(np.roll(points, -1, axis=0) - points, axis=1).sum())
         measured.append((perimeter, loop, points, is_manifold))
     measured.sort(key=lambda item: -item[0])
-    return [
-        Hole(i, loop, perimeter, _diameter(points), *_area_and_planarity(points), is_manifold)
-        for i, (perimeter, loop, points, is_manifold) in enumerate(measured)
-    ]
+    holes, seen = [], set()
+    for i, (perimeter, loop, points, is_manifold) in enumerate(measured):
+        diameter, its_piece = _diameter(points), int(piece[loop[0]])
+        is_border = its_piece not in seen and diameter > BORDER_SHARE * piece_diagonals[its_piece]
+        seen.add(its_piece)
+        holes.append(Hole(i, loop, perimeter, diameter, *_area_and_planarity(points), is_manifold, bool(is_border)))
+    return holes
+
+
+def _pieces(mesh: TriangleMesh) -> tuple[IntArray, FloatArray]:
+    """Find connected pieces: the number of the piece of every vertex (n,), and each piece's diagonal."""
+    n, triangles = len(mesh.vertices), mesh.triangles
+    start, end = triangles[:, :2].ravel(), triangles[:, 1:].ravel()
+    count, piece = connected_components(
+        coo_array((np.ones(len(start), bool), (start, end)), shape=(n, n)), directed=False
+    )
+    low, high = np.full((count, 3), np.inf), np.full((count, 3), -np.inf)
+    np.minimum.at(low, piece, mesh.vertices)
+    np.maximum.at(high, piece, mesh.vertices)
+    return piece.astype(np.int64), np.linalg.norm(high - low, axis=1)
 
 
 def select_holes(holes: list[Hole], options: HoleOptions, diagonal: float) -> Selection:
@@ -122,18 +148,18 @@ def select_holes(holes: list[Hole], options: HoleOptions, diagonal: float) -> Se
 
 
 def _reason_to_skip(hole: Hole, options: HoleOptions, max_diameter: float | None) -> tuple[str, str] | None:
-    if not hole.is_manifold:
-        return "non_manifold_rim", "the rim touches an edge of three or more faces, or faces of opposite direction"
-    if options.ids is not None and hole.id not in options.ids:
-        return "not_chosen", "not among the chosen ids"
-    if options.all_but_largest and hole.id == 0:
-        return "largest", "the largest loop is taken for the border of the scan"
-    if max_diameter is not None and hole.diameter > max_diameter:
-        rule = "a quarter of the scan's diagonal" if options.is_automatic else "the given maximum"
-        return "too_wide", f"diameter {hole.diameter:.6g} is over {max_diameter:.6g}, {rule}"
-    if options.max_perimeter is not None and hole.perimeter > options.max_perimeter:
-        return "too_long", f"perimeter {hole.perimeter:.6g} is over the given maximum {options.max_perimeter:.6g}"
-    return None
+    """Apply the rules in order; the first that holds is the reason."""
+    widest, longest = max_diameter or np.inf, options.max_perimeter or np.inf
+    rule = "a quarter of the scan's diagonal" if options.is_automatic else "the given maximum"
+    reasons = (
+        (not hole.is_manifold, "non_manifold_rim", "its rim touches faces of opposite direction, or three at one edge"),
+        (options.ids is not None and hole.id not in options.ids, "not_chosen", "not among the chosen ids"),
+        (options.all_but_largest and hole.id == 0, "largest", "the largest loop is taken for the border of the scan"),
+        (options.is_automatic and hole.is_border, "border", "outer border of a piece of the scan"),
+        (hole.diameter > widest, "too_wide", f"diameter {hole.diameter:.6g} is over {widest:.6g}, {rule}"),
+        (hole.perimeter > longest, "too_long", f"perimeter {hole.perimeter:.6g} is over {longest:.6g}, {rule}"),
+    )
+    return next(((code, text) for applies, code, text in reasons if applies), None)
 
 
 def _diameter(points: Vertices) -> float:
