@@ -11,30 +11,31 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from click.testing import Result
+from typer.testing import CliRunner
 
+from client.cli import app
 from client.exits import ExitCode
 from jobkit.schema import JobState
 
 
 @pytest.fixture
-def run(box: Any) -> Callable[..., subprocess.CompletedProcess[str]]:
-    """Runs `python -m client` and returns how it ended."""
+def run(box: Any) -> Callable[..., Result]:
+    """Runs a command of the client and returns how it ended."""
 
-    def run_client(*arguments: str | Path, **environment: str) -> subprocess.CompletedProcess[str]:
-        command = [sys.executable, "-m", "client", *map(str, arguments)]
-        variables = {**os.environ, "QUADPATCH_CLIENT_URL": box.url, "COLUMNS": "200", **environment}
-        return subprocess.run(command, env=variables, capture_output=True, text=True, check=False, timeout=120)
+    def run_client(*arguments: str | Path) -> Result:
+        return CliRunner().invoke(app, [*map(str, arguments)], env={"QUADPATCH_CLIENT_URL": box.url, "COLUMNS": "200"})
 
     return run_client
 
 
 def test_repair_writes_what_was_asked_for_and_tells_so(
-    run: Callable[..., subprocess.CompletedProcess[str]], relief_file: Callable[[str], Path], tmp_path: Path
+    run: Callable[..., Result], relief_file: Callable[[str], Path], tmp_path: Path
 ) -> None:
     output, report, preview = tmp_path / "out.ply", tmp_path / "r.json", tmp_path / "p.png"
     arguments = ["-o", output, "--method", "smooth", "--report", report, "--preview", preview]
     done = run("repair", relief_file("float.ply"), *arguments)
-    assert done.returncode == ExitCode.OK, done.stderr
+    assert done.exit_code == ExitCode.OK, done.stderr
     assert done.stdout == ""
     assert "float.ply has 5 holes: 4 filled smoothly, 1 left open by rule" in done.stderr
     assert all(f"wrote {path}" in done.stderr for path in (output, report, preview))
@@ -42,7 +43,7 @@ def test_repair_writes_what_was_asked_for_and_tells_so(
 
 
 def test_json_on_stdout_is_the_job(
-    run: Callable[..., subprocess.CompletedProcess[str]], relief_file: Callable[[str], Path], tmp_path: Path
+    run: Callable[..., Result], relief_file: Callable[[str], Path], tmp_path: Path
 ) -> None:
     done = run(
         "repair", relief_file("float.ply"), "-o", tmp_path / "out.ply", "--method", "smooth", "--json", "--quiet"
@@ -52,24 +53,24 @@ def test_json_on_stdout_is_the_job(
 
 
 def test_holes_lists_every_hole_and_what_would_be_filled(
-    run: Callable[..., subprocess.CompletedProcess[str]], relief_file: Callable[[str], Path]
+    run: Callable[..., Result], relief_file: Callable[[str], Path]
 ) -> None:
     done = run("holes", relief_file("float.ply"), "--max-diameter", "0.05")
-    assert done.returncode == ExitCode.OK, done.stderr
+    assert done.exit_code == ExitCode.OK, done.stderr
     assert "5 holes; lengths in mesh units" in done.stdout
     assert done.stdout.count("no: too wide") == 5
     plan = json.loads(run("holes", relief_file("float.ply"), "--json").stdout)
     assert [hole["selected"] for hole in plan["holes"]] == [False, True, True, True, True]
 
 
-def test_jobs_and_models_are_listed(run: Callable[..., subprocess.CompletedProcess[str]]) -> None:
+def test_jobs_and_models_are_listed(run: Callable[..., Result]) -> None:
     assert isinstance(json.loads(run("jobs", "--limit", "2", "--json").stdout), list)
     assert set(json.loads(run("models", "--json").stdout)) == {"models", "aliases"}
-    assert run("jobs").returncode == run("models").returncode == ExitCode.OK
+    assert run("jobs").exit_code == run("models").exit_code == ExitCode.OK
 
 
 def test_exit_codes_tell_what_went_wrong(
-    run: Callable[..., subprocess.CompletedProcess[str]], relief_file: Callable[[str], Path], tmp_path: Path
+    run: Callable[..., Result], relief_file: Callable[[str], Path], tmp_path: Path
 ) -> None:
     mesh, garbage, output = relief_file("float.ply"), tmp_path / "garbage.ply", tmp_path / "out.ply"
     garbage.write_bytes(b"ply\n" + os.urandom(500))
@@ -85,15 +86,13 @@ def test_exit_codes_tell_what_went_wrong(
         ("cancel", "job_00000000000000000000000000"): ExitCode.REJECTED,
         ("models", "--url", "http://127.0.0.1:9"): ExitCode.UNREACHABLE,
     }
-    assert {arguments: run(*arguments).returncode for arguments in wrong} == wrong
+    assert {arguments: run(*arguments).exit_code for arguments in wrong} == wrong
     assert not output.exists()
 
 
-def test_a_timeout_cancels_the_job(
-    run: Callable[..., subprocess.CompletedProcess[str]], large_relief: Path, tmp_path: Path
-) -> None:
+def test_a_timeout_cancels_the_job(run: Callable[..., Result], large_relief: Path, tmp_path: Path) -> None:
     done = run("repair", large_relief, "-o", tmp_path / "out.ply", "--model", "self", "--timeout", "0.5")
-    assert done.returncode == ExitCode.CANCELED
+    assert done.exit_code == ExitCode.CANCELED
     assert "did not end within 0.5 s" in done.stderr
     assert not (tmp_path / "out.ply").exists()
 
