@@ -1,0 +1,71 @@
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from jobkit.attempts import Attempt
+from jobkit.errors import ObjectNotFoundError
+from jobkit.store import ObjectStore, result_key
+from worker.limits import EngineLimits
+from worker.request import EngineRequest
+from worker.results import drop_result, store_result
+
+ATTEMPT = Attempt("job_01jd7z3v5qk8m2x4c6b8n0a9de", 2)
+REQUEST = EngineRequest("repair", "mesh/source.stl", EngineLimits(60.0, 1024), output="repaired.stl")
+
+
+def finished_folder(folder: Path, **report: Any) -> Path:
+    """What an engine leaves that has filled one hole of two."""
+    whole = {
+        "counts": {"found": 2, "filled": 1, "filled_smooth": 0, "skipped": 1, "refused": 0},
+        "holes": [{"new_vertices": 3, "new_triangles": 8}, {"new_vertices": 0, "new_triangles": 0}],
+        "warnings": [],
+        **report,
+    }
+    (folder / "report.json").write_text(json.dumps(whole))
+    (folder / "repaired.stl").write_bytes(b"stl")
+    return folder
+
+
+def test_files_lie_where_only_this_attempt_writes(tmp_path: Path, store: ObjectStore) -> None:
+    (tmp_path / "preview.png").write_bytes(b"png")
+    result = store_result(finished_folder(tmp_path), REQUEST, ATTEMPT, store, 1.5)
+    assert [(file.role, file.name, file.media_type) for file in result.files] == [
+        ("result", "repaired.stl", "model/stl"),
+        ("report", "report.json", "application/json"),
+        ("preview", "preview.png", "image/png"),
+    ]
+    for file in result.files:
+        assert store.size(result_key(ATTEMPT.job_id, 2, file.name)) == file.size_bytes
+    assert (result.format, result.new_vertices, result.new_triangles, result.seconds) == ("stl", 3, 8, 1.5)
+    assert result.warnings == []
+
+
+def test_a_result_without_a_picture_has_two_files(tmp_path: Path, store: ObjectStore) -> None:
+    result = store_result(finished_folder(tmp_path), REQUEST, ATTEMPT, store, 1.5)
+    assert [file.role for file in result.files] == ["result", "report"]
+
+
+@pytest.mark.parametrize(
+    ("report", "warnings"),
+    [
+        ({"warnings": ["the scan is coarse"]}, ["the scan is coarse"]),
+        ({"counts": {"found": 1, "refused": 1}}, ["1 hole was refused and left open; the report says why"]),
+        ({"counts": {"found": 3, "refused": 3}}, ["3 holes were refused and left open; the report says why"]),
+        ({"counts": {"found": 1, "refused": 1}, "warnings": ["hole 0 is refused"]}, ["hole 0 is refused"]),
+    ],
+)
+def test_refused_holes_are_a_warning(
+    tmp_path: Path, store: ObjectStore, report: dict[str, Any], warnings: list[str]
+) -> None:
+    assert store_result(finished_folder(tmp_path, **report), REQUEST, ATTEMPT, store, 1.0).warnings == warnings
+
+
+def test_a_dropped_result_leaves_that_of_another_attempt_alone(tmp_path: Path, store: ObjectStore) -> None:
+    for number in (2, 3):
+        store_result(finished_folder(tmp_path), REQUEST, Attempt(ATTEMPT.job_id, number), store, 1.0)
+    drop_result(ATTEMPT, store)
+    with pytest.raises(ObjectNotFoundError):
+        store.size(result_key(ATTEMPT.job_id, 2, "repaired.stl"))
+    assert store.size(result_key(ATTEMPT.job_id, 3, "repaired.stl")) == 3
