@@ -1,7 +1,7 @@
 """The command line of the method: `fill` repairs a file, `holes` lists what could be filled.
 
-Data goes to standard output, progress and errors to standard error. Exit codes: 0 done, 1 the file, the model or an option
-is at fault (`code: message` on standard error), 2 wrong usage.
+Data goes to standard output, progress and errors to standard error. Exit codes: 0 done, 1 the file, the model or an
+option is at fault (`code: message` on standard error), 2 wrong usage.
 """
 
 import json
@@ -27,7 +27,7 @@ Source = Annotated[Path, typer.Argument(metavar="IN", help="Mesh: PLY, STL, OBJ,
 
 
 @app.command()
-def fill(  # noqa: PLR0913  one argument per flag
+def fill(  # noqa: PLR0913, PLR0917  one argument per flag
     source: Source,
     output: Annotated[Path, typer.Option("--output", "-o", metavar="OUT", help="Its suffix says the format.")],
     model: Annotated[

@@ -1,7 +1,7 @@
 """Judging every hole: how much of it was learned, how sure that is, and what to call it.
 
-Confidence is ``exp(-10 e / d)`` with e the expected mean error of the fill and d the hole's diameter: a fill off by a hundredth
-of the hole's width has 0.9, one off by a tenth has 0.37.
+Confidence is ``exp(-10 e / d)`` with e the expected mean error of the fill and d the hole's diameter: a fill off by a
+hundredth of the hole's width has 0.9, one off by a tenth has 0.37.
 """
 
 from dataclasses import dataclass, field

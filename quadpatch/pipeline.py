@@ -24,7 +24,7 @@ from quadpatch.types import TriangleMesh
 # From rough to smooth: a noisy or sharp-edged surface is continued best by the first, a smooth one by the last.
 ENERGIES = (THIN_PLATE, Energy(plate=1.0, variation=2.0), Energy(plate=1.0, variation=20.0))
 
-# Where the surface has no room for practice: the energy in the middle, and the mean error of a fill in units of its gap.
+# Where the surface has no room for practice: the energy in the middle, and a mean error as large as the gap.
 UNTRIED_ENERGY = ENERGIES[1]
 ERROR_PER_GAP = 1.0
 

@@ -101,7 +101,9 @@ def distance_to_truth(practice: Practice, filled: FilledMesh) -> tuple[FloatArra
     behind = 1e-6 * practice.diameter
     distances = []
     for sign in (1.0, -1.0):
-        triangle, distance = practice.truth.cast(points - sign * behind * normals, sign * normals)
+        triangle, distance = practice.truth.cast(
+            points - sign * behind * normals, sign * normals, practice.diameter + behind
+        )
         distances.append(np.where(triangle >= 0, distance - behind, np.inf))
     ahead, back = distances
     nearest = np.where(ahead <= back, ahead, -back)

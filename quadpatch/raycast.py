@@ -53,7 +53,7 @@ class RayScene:
         # Not of unit length: only its direction enters the distance.
         self._normal = np.cross(second - self._corner, third - self._corner)
 
-    def cast(self, origins: FloatArray, directions: FloatArray) -> tuple[IntArray, FloatArray]:
+    def cast(self, origins: FloatArray, directions: FloatArray, reach: float = np.inf) -> tuple[IntArray, FloatArray]:
         """Find the first triangle along each ray.
 
         Parameters
@@ -62,6 +62,8 @@ class RayScene:
             In mesh units.
         directions : (n, 3) float64
             Of any length but zero.
+        reach : float
+            Surfaces farther away, in mesh units, may count as missed: embree is much faster for rays that end.
 
         Returns
         -------
@@ -80,7 +82,8 @@ class RayScene:
         # A far origin would cost float32 digits: slide it along the ray to just before the ball.
         slide = np.maximum(-np.einsum("ij,ij->i", start, unit_directions) - _RUN_UP, 0.0)
         start += slide[:, None] * unit_directions
-        triangle[:] = self._first_hit(start, unit_directions)
+        ends = (slide + reach / self._radius + _RESOLUTION) if np.isfinite(reach) else None
+        triangle[:] = self._first_hit(start, unit_directions, ends)
         hit = np.flatnonzero(triangle >= 0)
         normal = self._normal[triangle[hit]]
         along = np.einsum("ij,ij->i", self._corner[triangle[hit]] - start[hit], normal)
@@ -92,17 +95,19 @@ class RayScene:
         distance[hit] = (along / steepness + slide[hit]) * self._radius
         return triangle, distance
 
-    def _first_hit(self, origins: FloatArray, directions: FloatArray) -> IntArray:
-        triangle = self._run(origins, directions)
+    def _first_hit(self, origins: FloatArray, directions: FloatArray, ends: FloatArray | None) -> IntArray:
+        triangle = self._run(origins, directions, ends)
         missed = np.flatnonzero(triangle < 0)
         if len(missed):
             sideways = _perpendicular(directions[missed])
-            triangle[missed] = self._run(origins[missed] + _JITTER * sideways, directions[missed])
+            ends = None if ends is None else ends[missed]
+            triangle[missed] = self._run(origins[missed] + _JITTER * sideways, directions[missed], ends)
         return triangle
 
-    def _run(self, origins: FloatArray, directions: FloatArray) -> IntArray:
+    def _run(self, origins: FloatArray, directions: FloatArray, ends: FloatArray | None) -> IntArray:
+        dists = None if ends is None else np.ascontiguousarray(ends, dtype=np.float32)
         hit = self._scene.run(
-            np.ascontiguousarray(origins, dtype=np.float32), np.ascontiguousarray(directions, dtype=np.float32)
+            np.ascontiguousarray(origins, dtype=np.float32), np.ascontiguousarray(directions, dtype=np.float32), dists
         )
         return np.asarray(hit, dtype=np.int64)
 

@@ -1,7 +1,7 @@
 """Refinement of a hole's triangulation to the density of the surface around it.
 
-P. Liepa, "Filling Holes in Meshes", 2003, section 4: a triangle whose centroid lies far from its corners, compared with the
-edge lengths at the rim, is split there; after every round, interior edges are flipped until they are locally
+P. Liepa, "Filling Holes in Meshes", 2003, section 4: a triangle whose centroid lies far from its corners, compared with
+the edge lengths at the rim, is split there; after every round, interior edges are flipped until they are locally
 Delaunay. All holes are refined at once, so every step is one pass over arrays.
 """
 
@@ -108,9 +108,10 @@ def flip_to_delaunay(patch: Refined, taken: EdgeSet) -> Refined:
     """Flip interior edges until all are locally Delaunay; each pass flips edges that share no triangle."""
     triangles = patch.triangles.copy()
     active = np.arange(len(triangles))
+    shared = _in_several_holes(patch)
     for _ in range(_MAX_FLIP_PASSES):
         part = triangles[active]
-        flipped = _flip_once(part, patch.vertices, taken)
+        flipped = _flip_once(part, patch.vertices, taken, shared)
         if not len(flipped):
             break
         triangles[active] = part
@@ -121,7 +122,16 @@ def flip_to_delaunay(patch: Refined, taken: EdgeSet) -> Refined:
     return replace(patch, triangles=triangles)
 
 
-def _flip_once(triangles: Triangles, vertices: Vertices, taken: EdgeSet) -> IntArray:
+def _in_several_holes(patch: Refined) -> BoolArray:
+    """Vertices (n,) on the rims of more than one hole: another one may have the edge between two of them already."""
+    last = np.zeros(len(patch.vertices), np.int64)
+    last[patch.triangles] = patch.hole[:, None]
+    shared = np.zeros(len(patch.vertices), bool)
+    shared[patch.triangles[last[patch.triangles] != patch.hole[:, None]]] = True
+    return shared
+
+
+def _flip_once(triangles: Triangles, vertices: Vertices, taken: EdgeSet, shared: BoolArray) -> IntArray:
     """Flip, in place, edges that are not Delaunay, no two in one triangle; return the triangles that changed."""
     n_vertices = len(vertices)
     edges = triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
@@ -137,7 +147,7 @@ def _flip_once(triangles: Triangles, vertices: Vertices, taken: EdgeSet) -> IntA
     bad = bad[np.argsort(excess[bad], kind="stable")]
     a, b, c, d, left, right = (row[bad] for row in (a, b, c, d, left, right))
     allowed = _is_unfolded(*(vertices[row] for row in (a, b, c, d))) & (c != d)
-    allowed &= ~taken.contains(np.stack([c, d], axis=1))
+    allowed &= ~taken.contains(np.stack([c, d], axis=1)) & ~(shared[c] & shared[d])
     crossing = _edge_keys(c, d, n_vertices)
     allowed &= ranked[np.searchsorted(ranked, crossing).clip(max=max(len(ranked) - 1, 0))] != crossing
     allowed[allowed] = _is_first_everywhere(left[allowed] // 3, right[allowed] // 3, len(triangles))

@@ -3,8 +3,8 @@
 The one place that imports onnxruntime. A network file carries its facts in its ONNX metadata under `card`, a JSON
 object with `kind` = `autoencoder`, `patch_resolution` N and `recipe`:
 
-- `paper`: one channel of heights, scaled so that `height_low`..`height_high` (in patch lengths) becomes 0..`scaled_high`,
-  unknown bins 1; the output is the clean patch in the same scale. The mean of the known bins is taken out first.
+- `paper`: one channel of heights less the mean of the known bins, scaled so that `height_low`..`height_high` (in patch
+  lengths) becomes 0..`scaled_high`, unknown bins 1; the output is the clean patch in the same scale.
 - `residual`: two channels, the signal (detail over the smoothed surface, as dictionaries code it) and 1 for known bins;
   the output is what to add to the signal.
 

@@ -10,6 +10,7 @@ from scipy.spatial.distance import pdist
 
 from quadpatch.errors import OptionError
 from quadpatch.mesh.boundary import boundary_loops
+from quadpatch.mesh.normals import vertex_normals
 from quadpatch.options import HoleOptions
 from quadpatch.types import FloatArray, IntArray, TriangleMesh, Vertices
 
@@ -20,6 +21,10 @@ AUTO_DIAMETER_SHARE = 0.25
 # A scan often has loose pieces, each with an outer border: the longest loop of a piece, if wider than this share of
 # the piece's own diagonal.
 BORDER_SHARE = 0.5
+
+# A loop with the surface on its left runs clockwise around a hole and counter-clockwise around an outer border, seen
+# along the normals at its rim; beyond this cosine it is a border for sure.
+OUTWARD = 0.5
 
 # Up to here, all pairwise distances of a loop are cheaper than its convex hull.
 _SMALL_LOOP = 400
@@ -87,6 +92,7 @@ def find_holes(mesh: TriangleMesh) -> list[Hole]:
     """
     boundary = boundary_loops(mesh.triangles)
     piece, piece_diagonals = _pieces(mesh)
+    normals = vertex_normals(mesh.vertices, mesh.triangles)
     measured = []
     for loop, is_manifold in zip(boundary.loops, boundary.is_manifold, strict=True):
         points = mesh.vertices[loop]
@@ -97,6 +103,7 @@ def find_holes(mesh: TriangleMesh) -> list[Hole]:
     for i, (perimeter, loop, points, is_manifold) in enumerate(measured):
         diameter, its_piece = _diameter(points), int(piece[loop[0]])
         is_border = its_piece not in seen and diameter > BORDER_SHARE * piece_diagonals[its_piece]
+        is_border |= _outwardness(points, normals[loop].mean(axis=0)) > OUTWARD
         seen.add(its_piece)
         holes.append(Hole(i, loop, perimeter, diameter, *_area_and_planarity(points), is_manifold, bool(is_border)))
     return holes
@@ -176,10 +183,22 @@ def _diameter(points: Vertices) -> float:
     return float(pdist(points).max())
 
 
+def _outwardness(points: Vertices, normal: FloatArray) -> float:
+    """Cosine between the vector area of a loop and the mean normal at its rim: 1 is an outer border, -1 a hole."""
+    vector_area = _vector_area(points - points.mean(axis=0))
+    size = float(np.linalg.norm(vector_area) * np.linalg.norm(normal))
+    return float(vector_area @ normal) / size if size > 0 else 0.0
+
+
+def _vector_area(centred: Vertices) -> FloatArray:
+    """Half the sum of cross products along a loop: the same for every surface that the loop spans."""
+    return np.asarray(np.cross(centred, np.roll(centred, -1, axis=0)).sum(axis=0) / 2)
+
+
 def _area_and_planarity(points: Vertices) -> tuple[float, float]:
     centred = points - points.mean(axis=0)
-    # The vector area is the same for every surface spanned by the loop; its length is the largest projected area.
-    area = float(np.linalg.norm(np.cross(centred, np.roll(centred, -1, axis=0)).sum(axis=0)) / 2)
+    # The length of the vector area is the largest area that the loop projects to.
+    area = float(np.linalg.norm(_vector_area(centred)))
     distance = np.linalg.svd(centred, compute_uv=False)[-1] / np.sqrt(len(points))
     diameter = float(np.linalg.norm(centred, axis=1).max()) * 2
     return area, float(distance / diameter) if diameter > 0 else 0.0

@@ -38,7 +38,7 @@ def nearest_facing(
     run_up = 2 * scene.resolution
     sides = []
     for sign in (1.0, -1.0):
-        triangle, distance = scene.cast(origins - sign * run_up * directions, sign * directions)
+        triangle, distance = scene.cast(origins - sign * run_up * directions, sign * directions, reach + run_up)
         facing = np.einsum("ij,ij->i", normals[triangle], directions) if len(normals) else np.zeros(len(origins))
         is_seen = (triangle >= 0) & (facing > LEAST_FACING) & (distance - run_up <= reach)
         sides.append((np.where(is_seen, triangle, -1), np.where(is_seen, sign * (distance - run_up), np.inf)))

@@ -54,7 +54,9 @@ def displace(filled: FilledMesh, vertices: IntArray, patches: Patches, predicted
     normals = vertex_normals(filled.mesh.vertices, filled.mesh.triangles)[vertices]
     seen = vertices_in_patches(filled.mesh.vertices[vertices], normals, patches)
     along_z = bilinear(predicted - patches.heights, seen)
-    weight = _window(patches, seen.row, seen.column)
+    # A patch that sees the surface at a slant moves it far for a small error in height.
+    facing = np.einsum("ij,ij->i", normals[seen.vertex], patches.frames[seen.patch, 2])
+    weight = _window(patches, seen.row, seen.column) * np.maximum(facing, 0.0) ** 2
     vectors = along_z[:, None] * patches.frames[seen.patch, 2]
     total = np.bincount(seen.vertex, weight, minlength=len(vertices))
     safe = np.maximum(total, 1e-300)
