@@ -1,3 +1,5 @@
+import itertools
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -146,7 +148,7 @@ def test_duplicate_faces_flag_the_rim_that_they_touch() -> None:
 def test_a_chain_that_can_not_close_keeps_its_order() -> None:
     # A fan around vertex 0 with one face turned over: chains along its rim, not sorted heaps of vertices.
     order = [9, 3, 8, 2, 7, 1, 6]
-    rows = [(0, a, b) for a, b in zip(order[:-1], order[1:], strict=True)]
+    rows = [(0, a, b) for a, b in itertools.pairwise(order)]
     rows[2] = rows[2][::-1]
     faces = triangles(*rows)
     single = boundary_edges(faces)
