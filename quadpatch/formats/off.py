@@ -84,10 +84,14 @@ class OffSource:
         if self.n_normal:
             extras[:, : self.n_normal] = vertex_normals(scan, fill)
         # Colours were written as whole numbers in some files, and as fractions in others.
-        whole = (self.extras == np.trunc(self.extras)).all(axis=0) & (self.extras > 1).any(axis=0)
+        stop = extras.shape[1] - self.n_texture
+        old = self.extras[:, self.n_normal : stop]
+        is_whole = bool((old == np.trunc(old)).all() and (old > 1).any())
         columns = [to_words(fill.vertices[:, axis]) for axis in range(3)]
-        for column, is_whole in zip(extras.T, whole, strict=True):
-            columns.append(to_words(np.rint(column).astype(np.int64) if is_whole else column.astype(np.float32)))
+        for number, column in enumerate(extras.T):
+            is_colour = self.n_normal <= number < stop
+            values = np.rint(column).astype(np.int64) if is_colour and is_whole else column.astype(np.float32)
+            columns.append(to_words(values))
         return "".join(" ".join(row) + line_end for row in zip(*columns, strict=True))
 
     def _face_lines(self, scan: Scan, fill: Fill, line_end: str) -> str:

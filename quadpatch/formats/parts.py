@@ -12,6 +12,9 @@ from quadpatch.formats.attributes import joined_vertices
 from quadpatch.formats.scan import Fill, Scan
 from quadpatch.types import BoolArray, FloatArray, IntArray, Triangles, Vertices
 
+# Condition number beyond which a transform counts as flat.
+_FLATTEST = 1e12
+
 
 @dataclass(frozen=True)
 class Part:
@@ -34,7 +37,8 @@ class Part:
     @property
     def is_mirrored(self) -> bool:
         """Whether the transform turns triangles inside out."""
-        return bool(np.linalg.det(self.matrix[:3, :3]) < 0)
+        with np.errstate(all="ignore"):  # the sign of a determinant whose value may overflow
+            return bool(np.linalg.slogdet(self.matrix[:3, :3]).sign < 0)
 
 
 @dataclass(frozen=True)
@@ -93,7 +97,7 @@ def split_by_part(scan: Scan, fill: Fill, parts: list[Part]) -> list[PartFill]:
     votes = np.zeros((len(holes), len(parts)), dtype=np.int64)
     owner = np.searchsorted(firsts, rim[is_measured], side="right") - 1
     np.add.at(votes, (number.reshape(-1)[is_measured], owner), 1)
-    usable = np.array([_is_invertible(part.matrix) for part in parts])
+    usable = np.array([is_invertible(part.matrix) for part in parts])
     # A part that a transform flattens has no way back: its fills go to another one.
     part_of_hole = np.argmax(np.where(usable, votes, -1), axis=1)
     part_of_row = part_of_hole[number.reshape(-1, 3)[:, 0]]
@@ -101,8 +105,10 @@ def split_by_part(scan: Scan, fill: Fill, parts: list[Part]) -> list[PartFill]:
     return [_fill_of(i, parts[i], fill, joined, part_of_row == i) for i in np.unique(part_of_row).tolist()]
 
 
-def _is_invertible(matrix: FloatArray) -> bool:
-    return bool(np.linalg.cond(matrix[:3, :3]) < 1e12)
+def is_invertible(matrix: FloatArray) -> bool:
+    """Whether a transform keeps all three dimensions, to float64's accuracy."""
+    with np.errstate(all="ignore"):
+        return bool(np.linalg.cond(matrix[:3, :3]) < _FLATTEST)
 
 
 def _fill_of(number: int, part: Part, fill: Fill, joined: Vertices, chosen: BoolArray) -> PartFill:
@@ -111,7 +117,7 @@ def _fill_of(number: int, part: Part, fill: Fill, joined: Vertices, chosen: Bool
     if part.is_mirrored:
         triangles = triangles[:, [0, 2, 1]]
     inverse: FloatArray = np.eye(4)
-    if _is_invertible(part.matrix):
+    if is_invertible(part.matrix):
         inverse = np.linalg.inv(part.matrix).astype(np.float64)
     positions = place(joined[vertex], inverse).copy()
     own = (vertex >= part.first) & (vertex < part.first + len(part.vertices))

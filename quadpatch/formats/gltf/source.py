@@ -14,7 +14,7 @@ import numpy as np
 from quadpatch.formats.attributes import nearest_rim_triangle, spread_over_vertices
 from quadpatch.formats.gltf.container import GltfFile, dump_gltf
 from quadpatch.formats.gltf.primitive import Corners, Store, build_primitive
-from quadpatch.formats.parts import Part, split_by_part
+from quadpatch.formats.parts import Part, is_invertible, split_by_part
 from quadpatch.formats.scan import Appearance, Fill, Scan
 from quadpatch.formats.texture import spread_over_corners
 from quadpatch.mesh.weld import weld
@@ -153,7 +153,7 @@ class GltfSource:
 
 def _turn(normals: FloatArray, matrix: FloatArray) -> FloatArray:
     """Take normals along with a transform of the surface they stand on."""
-    if abs(np.linalg.det(matrix[:3, :3])) < np.finfo(np.float64).tiny:
+    if not is_invertible(matrix):
         return normals
     turned = normals @ np.linalg.inv(matrix[:3, :3])
     lengths = np.linalg.norm(turned, axis=1, keepdims=True)

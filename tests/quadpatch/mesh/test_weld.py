@@ -5,8 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from quadpatch.mesh import weld as weld_module
-from quadpatch.mesh.weld import weld
+from quadpatch.mesh.weld import first_of_equal, weld
 from quadpatch.types import FloatArray, Triangles, Vertices
 
 
@@ -84,7 +83,7 @@ def test_triangles_without_three_vertices_are_dropped() -> None:
 @given(points=st.lists(st.tuples(*[st.sampled_from([0.0, -0.0, 1.0, 2.5])] * 3), min_size=3, max_size=60))
 def test_equal_positions_become_one_vertex_even_if_every_hash_collides(points: list[tuple[float, ...]]) -> None:
     vertices = np.array(points)
-    plain = weld_module._first_of_equal(vertices)
+    plain = first_of_equal(vertices)
     assert (vertices[plain] == vertices).all()
     for i, first in enumerate(plain):
         assert first == int(np.flatnonzero((vertices == vertices[i]).all(axis=1))[0])
@@ -97,7 +96,7 @@ def test_points_that_share_a_hash_are_told_apart() -> None:
     twin_y = float((first ^ other ^ y).view(np.float64)[0])
     points = np.array([[1.0, 2.0, 0.5], [3.0, twin_y, 0.5], [1.0, 2.0, 0.5]])
     assert np.isfinite(twin_y)
-    assert weld_module._first_of_equal(points).tolist() == [0, 1, 0]
+    assert first_of_equal(points).tolist() == [0, 1, 0]
 
 
 def _mix(x: FloatArray) -> NDArray[np.uint64]:
