@@ -184,9 +184,10 @@ def _diameter(points: Vertices) -> float:
 
 
 def _outwardness(points: Vertices, normal: FloatArray) -> float:
-    """Cosine between the vector area of a loop and the mean normal at its rim: 1 is an outer border, -1 a hole."""
+    """Mean cosine between the vector area of a loop and the normals at its rim: 1 is an outer border, -1 a hole."""
     vector_area = _vector_area(points - points.mean(axis=0))
-    size = float(np.linalg.norm(vector_area) * np.linalg.norm(normal))
+    # Not divided by the length of the mean normal: at the end of a tube the normals cancel out, and that says nothing.
+    size = float(np.linalg.norm(vector_area))
     return float(vector_area @ normal) / size if size > 0 else 0.0
 
 
