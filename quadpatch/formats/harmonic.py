@@ -32,7 +32,7 @@ def extend_harmonically(edges: IntArray, known: BoolArray, values: FloatArray) -
     n_nodes = len(known)
     result = np.where(known[:, np.newaxis], values, np.nan)
     adjacency = _adjacency(edges, n_nodes)
-    _, component = connected_components(adjacency, directed=False)
+    n_components, component = connected_components(adjacency, directed=False)
     reached = np.zeros(n_nodes, dtype=bool)
     reached[component[known]] = True
     solved = ~known & reached[component]
@@ -42,8 +42,12 @@ def extend_harmonically(edges: IntArray, known: BoolArray, values: FloatArray) -
     laplacian = csr_array((degree - adjacency)[solved])
     factors = splu(laplacian[:, solved].tocsc(), permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
     spread = factors.solve(np.ascontiguousarray(-(laplacian[:, known] @ values[known])))
-    # Rounding may step over the range by a few units in the last place.
-    result[solved] = np.clip(spread, values[known].min(axis=0), values[known].max(axis=0))
+    # Rounding may step over the range of a component by a few units in the last place.
+    low = np.full((n_components, values.shape[1]), np.inf)
+    high = -low
+    np.minimum.at(low, component[known], values[known])
+    np.maximum.at(high, component[known], values[known])
+    result[solved] = np.clip(spread, low[component[solved]], high[component[solved]])
     return result
 
 
