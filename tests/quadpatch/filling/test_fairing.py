@@ -1,0 +1,154 @@
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from quadpatch.filling.fairing import MEMBRANE, THIN_PLATE, Energy, fair, triangles_around
+from quadpatch.types import BoolArray, FloatArray, TriangleMesh
+from tests.quadpatch.shapes import bumpy_plate, cylinder, open_grid, random_rotation, sphere
+
+VARIATION = Energy(variation=1.0)
+BLEND = Energy(plate=1.0, variation=20.0)
+ENERGIES = {"membrane": MEMBRANE, "plate": THIN_PLATE, "variation": VARIATION, "blend": BLEND}
+
+
+def within(mesh: TriangleMesh, centre: tuple[float, float, float], radius: float) -> BoolArray:
+    return np.asarray(np.linalg.norm(mesh.vertices - np.array(centre), axis=1) < radius)
+
+
+def dented(mesh: TriangleMesh, free: BoolArray, size: float, seed: int = 0) -> FloatArray:
+    """Vertices, the free ones moved about."""
+    vertices = mesh.vertices.copy()
+    vertices[free] += np.random.default_rng(seed).normal(0, size, (int(free.sum()), 3))
+    return vertices
+
+
+def settled(mesh: TriangleMesh, start: FloatArray, free: BoolArray, energy: Energy) -> FloatArray:
+    """Fair again and again: the weights depend on the shape."""
+    for _ in range(8):
+        start = fair(start, mesh.triangles, free, energy)
+    return start
+
+
+@pytest.mark.parametrize("name", ENERGIES)
+def test_a_plane_stays_a_plane(name: str) -> None:
+    mesh = bumpy_plate(30, 2.0)
+    flat = TriangleMesh(mesh.vertices * [1, 1, 0], mesh.triangles)
+    tilted = flat.vertices @ random_rotation(np.random.default_rng(1)).T + [3.0, 2.0, 1.0]
+    free = within(flat, (0, 0, 0), 0.5)
+    faired = fair(tilted, mesh.triangles, free, ENERGIES[name])
+    normal = np.cross(tilted[1] - tilted[0], tilted[900 - 1] - tilted[0])
+    normal /= np.linalg.norm(normal)
+    assert np.abs((faired - tilted[0]) @ normal).max() < 1e-9
+
+
+@pytest.mark.parametrize("name", ENERGIES)
+def test_fixed_vertices_keep_their_bits_and_inputs_are_left_alone(name: str) -> None:
+    mesh = bumpy_plate(30, 2.0)
+    free = within(mesh, (0, 0, 0), 0.4)
+    start = dented(mesh, free, 0.01)
+    before = start.copy()
+    faired = fair(start, mesh.triangles, free, ENERGIES[name])
+    assert start.tobytes() == before.tobytes()
+    assert faired[~free].tobytes() == mesh.vertices[~free].tobytes()
+    assert (faired[free] != start[free]).any(axis=1).all()
+
+
+def test_without_free_vertices_nothing_moves() -> None:
+    mesh = bumpy_plate(8, 1.0)
+    faired = fair(mesh.vertices, mesh.triangles, np.zeros(64, bool), THIN_PLATE)
+    assert faired.tobytes() == mesh.vertices.tobytes()
+
+
+def test_the_same_input_gives_the_same_bytes() -> None:
+    mesh = sphere(4)
+    free = within(mesh, (0, 0, 1), 0.5)
+    start = dented(mesh, free, 0.01)
+    assert fair(start, mesh.triangles, free, BLEND).tobytes() == fair(start, mesh.triangles, free, BLEND).tobytes()
+
+
+def test_minimum_variation_finds_the_sphere_again_and_the_thin_plate_flattens_it() -> None:
+    mesh = sphere(4)
+    free = within(mesh, (0, 0, 1), 0.5)
+    start = dented(mesh, free, 0.005)
+    errors = {
+        name: np.abs(np.linalg.norm(settled(mesh, start, free, energy)[free], axis=1) - 1).mean()
+        for name, energy in ENERGIES.items()
+    }
+    assert errors["variation"] < 0.1 * errors["plate"] < 0.1 * errors["membrane"]
+    assert errors["plate"] > errors["blend"]
+    assert errors["variation"] < 2e-4
+
+
+def test_minimum_variation_finds_the_cylinder_again() -> None:
+    mesh = cylinder(60, 40)
+    free = within(mesh, (1, 0, 0), 0.4)
+    start = dented(mesh, free, 0.005)
+    errors = {
+        name: np.abs(np.linalg.norm(settled(mesh, start, free, energy)[free, :2], axis=1) - 1).mean()
+        for name, energy in ENERGIES.items()
+    }
+    assert errors["variation"] < 0.2 * errors["plate"] < 0.2 * errors["membrane"]
+
+
+def test_the_membrane_on_equal_triangles_is_the_graph_laplacian() -> None:
+    # On a right-angled grid, all but flat, the cotangent of the diagonal is zero and all others are equal.
+    mesh = open_grid(12)
+    free = within(mesh, (0, 0, 0), 3.1)
+    start = mesh.vertices.copy()
+    start[~free, 2] = 1e-7 * np.sin(mesh.vertices[~free, 0])
+    faired = fair(start, mesh.triangles, free, MEMBRANE).reshape(12, 12, 3)
+    cross = (faired[:-2, 1:-1] + faired[2:, 1:-1] + faired[1:-1, :-2] + faired[1:-1, 2:]) / 4
+    inner = free.reshape(12, 12)[1:-1, 1:-1]
+    np.testing.assert_allclose(faired[1:-1, 1:-1][inner][:, 2], cross[inner][:, 2], atol=1e-18)
+
+
+@given(seed=st.integers(0, 2**32 - 1), name=st.sampled_from(sorted(ENERGIES)), scale=st.sampled_from([1e-3, 1.0, 1e3]))
+@settings(max_examples=20, deadline=None)
+def test_fairing_moves_turns_and_grows_with_the_mesh(seed: int, name: str, scale: float) -> None:
+    rng = np.random.default_rng(seed)
+    mesh = bumpy_plate(20, 2.0, seed=seed)
+    free = within(mesh, (0, 0, 0), 0.5)
+    start = dented(mesh, free, 0.01, seed)
+    rotation, shift = random_rotation(rng), rng.normal(0, 3 * scale, 3)
+    moved = fair(scale * start @ rotation.T + shift, mesh.triangles, free, ENERGIES[name])
+    expected = scale * fair(start, mesh.triangles, free, ENERGIES[name]) @ rotation.T + shift
+    assert np.abs(moved - expected).max() < 1e-9 * scale
+
+
+def test_slivers_and_triangles_without_area_leave_the_result_finite() -> None:
+    mesh = bumpy_plate(20, 2.0)
+    start = mesh.vertices.copy()
+    start[210] = start[211]
+    start[190] = (start[189] + start[191]) / 2
+    free = within(mesh, (0, 0, 0), 0.5)
+    for energy in ENERGIES.values():
+        assert np.isfinite(fair(start, mesh.triangles, free, energy)).all()
+
+
+def test_a_uniform_start_untangles_what_has_no_shape_yet() -> None:
+    mesh = bumpy_plate(20, 2.0)
+    free = within(mesh, (0, 0, 0), 0.6)
+    heap = mesh.vertices.copy()
+    heap[free] = 0.0
+    faired = fair(heap, mesh.triangles, free, THIN_PLATE, uniform=True)
+    step = 2.0 / 19
+    assert np.linalg.norm(faired[free] - mesh.vertices[free], axis=1).max() < step
+
+
+@pytest.mark.parametrize("n_rings", [1, 2, 3])
+def test_rings_are_counted_by_triangles(n_rings: int) -> None:
+    mesh = open_grid(15)
+    centre = 7 * 15 + 7
+    found = triangles_around(mesh.triangles, np.array([centre]), 225, n_rings)
+    assert (np.diff(found) > 0).all()
+    reached = {centre}
+    expected: set[int] = set()
+    for _ in range(n_rings):
+        expected = {i for i, t in enumerate(mesh.triangles.tolist()) if reached & set(t)}
+        reached |= {vertex for i in expected for vertex in mesh.triangles[i].tolist()}
+    assert found.tolist() == sorted(expected)
+
+
+def test_no_ring_is_no_triangle() -> None:
+    assert len(triangles_around(open_grid(4).triangles, np.zeros(0, np.int64), 16, 4)) == 0
