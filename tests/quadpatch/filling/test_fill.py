@@ -246,7 +246,7 @@ def test_a_fill_that_runs_away_from_a_ragged_rim_is_held_by_the_thin_plate() -> 
     centre = mesh.vertices[loops[0]].mean(axis=0)
     rough = mesh.vertices.copy()
     near = np.linalg.norm(rough - centre, axis=1) < 0.45
-    rough[near] += np.random.default_rng(0).normal(0, 0.1, (int(near.sum()), 3))
+    rough[near] += np.random.default_rng(0).normal(0, 0.03, (int(near.sum()), 3))
     ragged = TriangleMesh(rough, mesh.triangles)
     closed = close_holes(ragged, loops)
     result = fair_holes(closed, Energy(variation=1.0))
