@@ -11,8 +11,9 @@ import numpy as np
 
 from quadpatch.errors import FormatError, IndexRangeError, ReadError
 from quadpatch.formats.limits import ReadLimits
-from quadpatch.formats.text import parse_integers, parse_numbers
-from quadpatch.types import FloatArray, IntArray, Triangles, Vertices
+from quadpatch.formats.text import parse_numbers, to_integers
+from quadpatch.formats.threemf.bulk import Block, Look, find_blocks
+from quadpatch.types import FloatArray, Triangles, Vertices
 
 _CORE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02 "
 _MATERIAL = "http://schemas.microsoft.com/3dmanufacturing/material/2015/02 "
@@ -30,13 +31,14 @@ class Placed:
 
 @dataclass
 class ModelObject:
-    """An object while it is read: words of its mesh, its components, and where its lists end in the text."""
+    """An object while it is read: its mesh as words or in bulk, components, and where its lists end in the text."""
 
     default_pid: str | None
     default_index: str | None
     coordinates: list[str] = field(default_factory=list)
     corners: list[str] = field(default_factory=list)
-    properties: list[tuple[str | None, str | None, str | None, str | None]] = field(default_factory=list)
+    properties: list[Look] = field(default_factory=list)
+    bulk: dict[str, FloatArray] = field(default_factory=dict)
     components: list[Placed] = field(default_factory=list)
     vertices_end: int = -1
     triangles_end: int = -1
@@ -80,7 +82,11 @@ def parse_model(text: bytes, limits: ReadLimits) -> Model:
     parser.StartDoctypeDeclHandler = _refuse_doctype
     handler.parser = parser
     try:
-        parser.Parse(text, True)
+        at = 0
+        for block in find_blocks(text):
+            parser.Parse(text[at : block.start], False)
+            at = block.stop if handler.take(block) else block.start
+        parser.Parse(text[at:], True)
     except (expat.ExpatError, LookupError, ValueError) as error:
         raise ReadError(f"the 3MF model is no XML: {error}") from error
     for number, entry in handler.model.objects.items():
@@ -99,6 +105,8 @@ class _Handler:
         self.model = model
         self.parser: expat.XMLParserType | None = None
         self._limits = limits
+        self._open = ""
+        self._skipped = 0
         self._object: ModelObject | None = None
         self._group: list[str] | None = None
         self._starts = {
@@ -116,13 +124,27 @@ class _Handler:
 
     def start(self, name: str, attributes: dict[str, str]) -> None:
         """Handle the beginning of an element."""
+        self._open = name
         found = self._starts.get(name)
         if found is not None:
             found(attributes)
 
+    def take(self, block: Block) -> bool:
+        """Take a list in bulk if its element was opened right here; otherwise the parser has to read it."""
+        entry = self._object
+        if entry is None or self._open != _CORE + block.name or block.name in entry.bulk:
+            return False
+        if entry.coordinates if block.name == "vertices" else entry.corners:
+            return False
+        entry.bulk[block.name] = block.table
+        entry.properties += block.looks
+        self._skipped += block.stop - block.start
+        return True
+
     def end(self, name: str) -> None:
         """Handle the end of an element: remember where lists end."""
-        at = self.parser.CurrentByteIndex if self.parser is not None else -1
+        self._open = ""
+        at = self.parser.CurrentByteIndex + self._skipped if self.parser is not None else -1
         if self._object is not None and name == _CORE + "vertices":
             self._object.vertices_end = at
         elif self._object is not None and name == _CORE + "triangles":
@@ -188,9 +210,14 @@ def _placed(attributes: dict[str, str]) -> Placed:
 
 def _finish(number: str, entry: ModelObject, limits: ReadLimits) -> None:
     coordinates = parse_numbers(" ".join(entry.coordinates).encode())
-    corners: IntArray = parse_integers(" ".join(entry.corners).encode(), "3MF triangles")
-    if len(coordinates) != len(entry.coordinates) or len(corners) != len(entry.corners):
+    numbers = parse_numbers(" ".join(entry.corners).encode())
+    if len(coordinates) != len(entry.coordinates) or len(numbers) != len(entry.corners):
         raise ReadError(f"3MF object {number[:40]!r} has an empty number")
+    nothing = np.zeros((0, 3))
+    coordinates = np.append(entry.bulk.get("vertices", nothing).ravel(), coordinates)
+    corners = to_integers(np.append(entry.bulk.get("triangles", nothing).ravel(), numbers), "3MF triangles")
+    limits.check_vertices(len(coordinates) // 3)
+    limits.check_triangles(len(corners) // 3)
     entry.vertices = coordinates.reshape(-1, 3)
     entry.triangles = corners.reshape(-1, 3)
     if corners.size and (corners.min() < 0 or corners.max() >= len(entry.vertices)):
@@ -198,6 +225,6 @@ def _finish(number: str, entry: ModelObject, limits: ReadLimits) -> None:
         raise IndexRangeError(
             f"a triangle of 3MF object {number[:40]!r} names vertex {wrong}; it has {len(entry.vertices):,} vertices"
         )
-    limits.check_vertices(len(entry.vertices))
     entry.coordinates.clear()
     entry.corners.clear()
+    entry.bulk.clear()
