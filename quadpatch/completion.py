@@ -10,7 +10,7 @@ from quadpatch.inpainters.inpainter import Inpainter
 from quadpatch.judge import Evidence, gather, trusted
 from quadpatch.mesh.smoothing import laplacian_smooth
 from quadpatch.options import RepairOptions
-from quadpatch.patches.folding import is_height_map
+from quadpatch.patches.folding import is_unfolded
 from quadpatch.patches.layout import lay_out, patchify, pick, seeds_near, take
 from quadpatch.patches.scale import PatchScale, choose_scale
 from quadpatch.patches.seeds import Seeds
@@ -122,7 +122,7 @@ def complete(
         near = seeds_near(seeds, filled.mesh.vertices[filled.n_measured_vertices :], scale.length)
         wanted = near if inpainter else near | _some(len(near), rng)
         everywhere = patchify(filled, outline, take(seeds, wanted), scale)
-        sampled = pick(everywhere, near[wanted] & is_height_map(everywhere.patches))
+        sampled = pick(everywhere, near[wanted] & is_unfolded(everywhere.patches))
     with stages.stage("learn"):
         if inpainter is None:
             inpainter = learn_from_patches(everywhere.patches, everywhere.outline, rng, stages.progress)
@@ -155,7 +155,7 @@ def _rehearse(problem: Problem, model: _Model) -> tuple[float, float | None]:
     new = filled.mesh.vertices[filled.n_measured_vertices :]
     near = take(model.seeds, seeds_near(model.seeds, new, model.scale.length))
     sampled = patchify(filled, outline, near, model.scale)
-    sampled = pick(sampled, is_height_map(sampled.patches))
+    sampled = pick(sampled, is_unfolded(sampled.patches))
     predicted = model.inpainter.predict(sampled.patches, sampled.outline)
     joined, evidence = _displacements(filled, sampled.patches, predicted)
     truth, normals = distance_to_truth(problem.practice, filled)

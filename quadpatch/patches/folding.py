@@ -12,6 +12,8 @@ from quadpatch.types import BoolArray, FloatArray, Patches
 STEEPEST = 3.0
 # A patch with a larger share of bad bins is no height map.
 MOST_FOLDED = 0.2
+# A patch that shows less than this share of its square has nothing to go by.
+LEAST_SEEN = 0.4
 
 
 def fold_fraction(patches: Patches) -> FloatArray:
@@ -33,6 +35,18 @@ def fold_fraction(patches: Patches) -> FloatArray:
 def is_height_map(patches: Patches, most_folded: float = MOST_FOLDED) -> BoolArray:
     """Say which patches (n_patches,) show one connected surface over all but a few of their bins."""
     return fold_fraction(patches) <= most_folded
+
+
+def is_unfolded(patches: Patches) -> BoolArray:
+    """Say which patches (n_patches,) show one connected surface, as far as they show any.
+
+    Unlike `is_height_map`, what lies beyond the border of an open scan counts as unknown, not as folded: completion
+    can do with part of a patch, learning can't.
+    """
+    n_seen = patches.seen.sum(axis=(1, 2))
+    n_steps = (_at_step(patches) & patches.seen).sum(axis=(1, 2))
+    unfolded: BoolArray = (n_steps <= MOST_FOLDED * n_seen) & (n_seen >= LEAST_SEEN * patches.resolution**2)
+    return unfolded
 
 
 def _at_step(patches: Patches) -> BoolArray:

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from quadpatch.patches.folding import fold_fraction, is_height_map
+from quadpatch.patches.folding import fold_fraction, is_height_map, is_unfolded
 from quadpatch.types import FloatArray, Patches
 
 
@@ -34,6 +34,14 @@ def test_bins_that_see_nothing_count_and_are_no_step() -> None:
     heights[0, :3] = np.nan
     assert fold_fraction(patches(heights))[0] == pytest.approx(0.3)
     assert not is_height_map(patches(heights))[0]
+
+
+def test_a_patch_over_the_border_of_a_scan_is_not_folded() -> None:
+    heights = np.zeros((3, 10, 10))
+    heights[0, :5] = np.nan
+    heights[1, :7] = np.nan
+    heights[2] = np.indices((10, 10)).sum(axis=0) % 2
+    np.testing.assert_array_equal(is_unfolded(patches(heights)), [True, False, False])
 
 
 def test_a_checkerboard_of_two_layers_is_no_height_map() -> None:
