@@ -44,7 +44,7 @@ def weld(scan_vertices: Vertices, scan_triangles: Triangles) -> Weld:
     proper = _without_degenerate(scan_triangles)
     first = np.arange(len(scan_vertices), dtype=np.int64)
     candidates = np.flatnonzero(_on_boundary(proper, len(scan_vertices)))
-    first[candidates] = candidates[_first_of_equal(scan_vertices[candidates])]
+    first[candidates] = candidates[first_of_equal(scan_vertices[candidates])]
     is_first = first == np.arange(len(first))
     from_file = (np.cumsum(is_first) - 1)[first]
     to_file = np.flatnonzero(is_first)
@@ -74,8 +74,19 @@ def _on_boundary(triangles: Triangles, n_vertices: int) -> BoolArray:
     return result
 
 
-def _first_of_equal(points: FloatArray) -> IntArray:
-    """Position of the first point that equals each point, (n,) int64."""
+def first_of_equal(points: FloatArray) -> IntArray:
+    """Find the first point that equals each point.
+
+    Parameters
+    ----------
+    points : (n, 3) float64
+        Or any other rows of three finite numbers.
+
+    Returns
+    -------
+    (n,) int64
+        Positions in `points`.
+    """
     order = _grouping_order(points)
     begins = np.ones(len(points), dtype=bool)
     begins[1:] = _neighbours_differ(points, order)
