@@ -3,23 +3,27 @@ PYTHON ?= python3
 VENV   ?= .venv
 BIN    := $(VENV)/bin
 READY  := $(VENV)/.ready
+# Twice quiet: errors only.
+PIP    := $(BIN)/python -m pip --quiet --quiet --disable-pip-version-check
 
 .PHONY: demo test check serve openapi bench clean
 
 $(READY): pyproject.toml constraints.txt
-	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --upgrade pip
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[service,dev]'
-	touch $@
+	@echo "setting up $(VENV); this takes a few minutes the first time ..." >&2
+	@$(PYTHON) -c "import sys; sys.exit(sys.version_info < (3, 11) and 'Python 3.11 or newer is needed; set PYTHON=...')"
+	@$(PYTHON) -m venv $(VENV)
+	@$(PIP) install --upgrade pip
+	@$(PIP) install --constraint constraints.txt --editable '.[service,dev]'
+	@touch $@
 
 demo: $(READY)            ## repair a real scan over HTTP; results land in demo/
-	$(BIN)/python -m onebox demo
+	@$(BIN)/python -m onebox demo
 
 serve: $(READY)           ## one box on http://127.0.0.1:8000 until Ctrl-C
-	$(BIN)/python -m onebox serve
+	@$(BIN)/python -m onebox serve
 
 test: $(READY)            ## every test, with the real Valkey
-	$(BIN)/python -m pytest -n 2 --dist loadfile
+	@$(BIN)/python -m pytest -n 2 --dist loadfile
 
 check: $(READY)           ## ruff, import rules, types
 	$(BIN)/ruff check .
@@ -28,10 +32,10 @@ check: $(READY)           ## ruff, import rules, types
 	$(BIN)/mypy
 
 openapi: $(READY)         ## write openapi.yaml from the app
-	$(BIN)/python -m service openapi > openapi.yaml
+	@$(BIN)/python -m service openapi > openapi.yaml
 
 bench: $(READY)           ## speed of the method's stages
-	$(BIN)/python -m benchmarks.stages
+	@$(BIN)/python -m benchmarks.stages
 
 clean:
 	rm -rf $(VENV) demo var build dist *.egg-info

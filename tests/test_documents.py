@@ -1,0 +1,157 @@
+"""The documents, held to the code they speak of."""
+
+import ast
+import importlib
+import re
+from collections.abc import Iterator
+from http import HTTPStatus
+from pathlib import Path
+from typing import TypeVar
+
+import pytest
+import yaml
+from PIL import Image
+
+import jobkit.errors
+import quadpatch.errors
+from client.exits import MEANINGS
+from jobkit.schema import JobState
+from jobkit.schema.jobs import STAGES
+from jobkit.settings import settings_table
+from quadpatch.report import VERDICTS
+from service.problems import to_problem_error
+
+E = TypeVar("E", bound=Exception)
+ROOT = Path(__file__).resolve().parent.parent
+DOCUMENTS = [ROOT / "README.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").glob("*.md"))]
+PACKAGES = ("quadpatch", "jobkit", "service", "worker", "training", "client", "onebox", "benchmarks", "tests")
+# Only bases of others; nothing raises them.
+BASES = {"quadpatch_error", "invalid_mesh", "jobkit_error", "not_found", "conflict"}
+# They stop a process or an attempt, and reach no client.
+INNER = {"invalid_settings", "stale_attempt"}
+
+
+def read(path: str) -> str:
+    return (ROOT / path).read_text("utf-8")
+
+
+def rows(document: str) -> dict[str, list[str]]:
+    """Rows of all tables by their first cell, without its backticks."""
+    lines = [line.strip("| ").split(" | ") for line in document.splitlines() if line.startswith("| ")]
+    return {cells[0].strip("` "): [cell.strip() for cell in cells[1:]] for cells in lines}
+
+
+def all_classes(base: type[E]) -> Iterator[type[E]]:
+    yield base
+    for child in base.__subclasses__():
+        yield from all_classes(child)
+
+
+def codes_in_calls(folder: str, *functions: str) -> set[str]:
+    """Codes written out in calls of these functions: a snake-case string among the arguments."""
+    found = set()
+    for path in (ROOT / folder).rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+            if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in functions:
+                values = [*node.args, *(keyword.value for keyword in node.keywords if keyword.arg == "code")]
+                found |= {v.value for v in values if isinstance(v, ast.Constant) and isinstance(v.value, str)}
+    return {code for code in found if re.fullmatch(r"[a-z]+(_[a-z]+)+|unauthorized", code)}
+
+
+def test_every_code_of_the_contract_stands_in_the_table_with_its_status() -> None:
+    table = rows(read("docs/api.md"))
+    for kind in all_classes(jobkit.errors.JobkitError):
+        code = vars(kind)["code"]
+        if code in BASES | INNER:
+            continue
+        status = to_problem_error(kind("")).status
+        assert status != HTTPStatus.INTERNAL_SERVER_ERROR, code
+        if code != "unusable_model":  # stands in both tables; the later row wins in `rows`
+            assert table[code][0] == str(status.value), code
+
+
+def test_every_code_of_the_method_stands_in_the_table() -> None:
+    codes = {vars(kind)["code"] for kind in all_classes(quadpatch.errors.QuadpatchError)} - BASES
+    assert codes <= set(rows(read("docs/api.md")))
+
+
+def test_every_code_that_service_and_worker_write_out_stands_in_the_table() -> None:
+    codes = codes_in_calls("service", "ProblemError")
+    codes |= codes_in_calls("worker", "Failure", "JobError")
+    codes |= codes_in_calls("jobkit", "JobError", "MeshProblem")
+    assert {"unauthorized", "internal_error", "engine_crashed", "worker_lost", "analysis_failed"} <= codes
+    assert codes <= set(rows(read("docs/api.md")))
+
+
+def test_every_state_verdict_and_stage_is_explained() -> None:
+    assert {state.value for state in JobState} <= set(rows(read("docs/api.md")))
+    assert set(VERDICTS) <= set(rows(read("docs/method.md")))
+    assert set(VERDICTS) <= set(rows(read("README.md")))
+    assert set(STAGES) <= set(rows(read("docs/architecture.md")))
+
+
+def test_every_reason_of_a_hole_is_explained() -> None:
+    method = read("docs/method.md")
+    source = read("quadpatch/judge.py")
+    reasons = re.findall(r'"(?:filled_smooth|refused)", "(\w+)"', source)
+    reasons += re.findall(r', "([a-z_]+)", f?"', read("quadpatch/mesh/holes.py"))
+    assert {"too_wide", "border", "no_gain", "no_triangulation"} <= set(reasons)
+    assert not [reason for reason in reasons if f"`{reason}`" not in method]
+
+
+def test_the_exit_codes_are_those_of_the_client() -> None:
+    table = rows(read("docs/api.md"))
+    assert {str(code.value): table.get(str(code.value)) for code in MEANINGS} == {
+        str(code.value): [meaning] for code, meaning in MEANINGS.items()
+    }
+
+
+def test_every_endpoint_is_listed() -> None:
+    document = yaml.safe_load(read("openapi.yaml"))
+    served = {f"{m.upper()} {path}" for path, item in document["paths"].items() for m in item if m != "parameters"}
+    listed = {row for row in rows(read("docs/api.md")) if re.match(r"(GET|POST|PUT|DELETE) /", row)}
+    assert listed == served
+
+
+def test_the_settings_table_is_that_of_the_code() -> None:
+    assert settings_table() in read("docs/operations.md")
+
+
+def test_make_targets_that_are_named_exist() -> None:
+    targets = set(re.findall(r"^(\w+):", read("Makefile"), re.MULTILINE))
+    for path in DOCUMENTS:
+        named = set(re.findall(r"(?:^|`)make (\w+)", path.read_text("utf-8"), re.MULTILINE))
+        assert named <= targets, path.name
+
+
+def test_commands_that_are_named_exist() -> None:
+    for path in DOCUMENTS:
+        for module, command in re.findall(r"python -m (\w+)(?: ([a-z]+)\b)?", path.read_text("utf-8")):
+            assert (ROOT / module / "__main__.py").is_file() or module == "venv", f"{path.name}: {module}"
+            apps = {"quadpatch": "quadpatch.cli", "client": "client.cli", "training": "training.__main__"}
+            apps["onebox"] = "onebox.__main__"
+            if command and module in apps:
+                app = importlib.import_module(apps[module]).app
+                known = {c.name or c.callback.__name__ for c in app.registered_commands}
+                assert command in known | {"and"}, f"{path.name}: {module} {command}"
+
+
+@pytest.mark.parametrize("path", DOCUMENTS, ids=lambda path: path.name)
+def test_files_and_headings_that_are_named_exist(path: Path) -> None:
+    text = path.read_text("utf-8")
+    for link in re.findall(r"\]\(([^)#]*)(?:#([^)]+))?\)", text):
+        target = path.parent / link[0] if link[0] else path
+        assert target.exists(), link
+        if link[1]:
+            headings = re.findall(r"^#+ (.+)$", target.read_text("utf-8"), re.MULTILINE)
+            assert link[1] in {re.sub(r"[^\w -]", "", h).strip().lower().replace(" ", "-") for h in headings}, link
+    for name in re.findall(r"`([\w./@-]+)`", text):
+        if name.split("/")[0] in PACKAGES and "/" in name:
+            assert (ROOT / name).exists(), name
+
+
+def test_the_picture_is_small_enough_for_a_page() -> None:
+    path = ROOT / "docs/images/before_after.png"
+    assert path.stat().st_size < 300_000
+    with Image.open(path) as picture:
+        assert min(picture.size) >= 500
