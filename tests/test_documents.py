@@ -18,6 +18,11 @@ from client.exits import MEANINGS
 from jobkit.schema import JobState
 from jobkit.schema.jobs import STAGES
 from jobkit.settings import settings_table
+from quadpatch import completion, judge, pipeline, practice
+from quadpatch.filling import triangulation
+from quadpatch.inpainters import dictionary
+from quadpatch.mesh import holes
+from quadpatch.patches import scale, sighting
 from quadpatch.report import VERDICTS
 from service.problems import to_problem_error
 
@@ -92,11 +97,36 @@ def test_every_state_verdict_and_stage_is_explained() -> None:
 
 def test_every_reason_of_a_hole_is_explained() -> None:
     method = read("docs/method.md")
-    source = read("quadpatch/judge.py")
-    reasons = re.findall(r'"(?:filled_smooth|refused)", "(\w+)"', source)
-    reasons += re.findall(r', "([a-z_]+)", f?"', read("quadpatch/mesh/holes.py"))
+    source = read("quadpatch/mesh/holes.py") + read("quadpatch/judge.py")
+    # A code is followed by a sentence, or stands behind its verdict.
+    reasons = re.findall(r'"([a-z_]+)",\s*f?"[^"]* [^"]*"', source)
+    reasons += re.findall(r'"(?:filled_smooth|refused)", "(\w+)"', source)
     assert {"too_wide", "border", "no_gain", "no_triangulation"} <= set(reasons)
     assert not [reason for reason in reasons if f"`{reason}`" not in method]
+
+
+def test_the_numbers_of_the_method_are_those_of_the_code() -> None:
+    method = read("docs/method.md")
+    claims = [
+        f"max({scale.HOLES_PER_LENGTH} d, {scale.EDGES_PER_BIN} e · N) with N that of the model, or "
+        f"{scale.RESOLUTION_RANGE[0]} ",
+        "r / ({} e), between {} and {} ".format(scale.EDGES_PER_BIN, *scale.RESOLUTION_RANGE),
+        f"| overlap k | {scale.OVERLAP}: nine patches",
+        f"{dictionary.SELF_ATOMS} atoms with {dictionary.SELF_NONZERO} non-zeros "
+        f"in {dictionary.SELF_ITERATIONS} rounds",
+        f"fewer than {dictionary.MIN_TRAINING_PATCHES} usable patches",
+        "b/a = " + ", ".join(f"{energy.variation / energy.plate:g}" for energy in pipeline.ENERGIES[:-1]),
+        f"fewer than {practice.MIN_HOLES} practice holes",
+        f"{practice.MAX_HOLES} holes of the median diameter",
+        f"{100 * judge.LEAST_COVERAGE:g} % of its new vertices",
+        f"differ by no more than {judge.MOST_DISAGREEMENT} times",
+        f"over {triangulation.MAX_TABLE_SIZE} vertices",
+        f"{completion.SMOOTHING_ITERATIONS} uniform Laplacian iterations",
+        f"normal · z > {sighting.LEAST_FACING}",
+        f"at the rim over {holes.OUTWARD}",
+    ]
+    prose = " ".join(method.split())
+    assert not [claim for claim in claims if claim.strip() not in prose]
 
 
 def test_the_exit_codes_are_those_of_the_client() -> None:
