@@ -9,12 +9,13 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, NoReturn
 
 import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn
 from rich.table import Table
+from rich.text import Text
 
 from quadpatch import types
 from quadpatch.errors import QuadpatchError
@@ -60,7 +61,7 @@ def fill(  # noqa: PLR0913, PLR0917  one argument per flag
         if picture:
             _draw(source, output, picture)
     if not quiet:
-        _errors.print(summary(result))
+        _errors.print(Text(summary(result)))
 
 
 @app.command()
@@ -74,7 +75,7 @@ def holes(source: Source, as_json: Annotated[bool, typer.Option("--json", help="
         print(json.dumps(facts, indent=2))  # noqa: T201  data for standard output
         return
     unit = facts["length_unit"]
-    table = Table(title=f"{source.name}: {len(facts['holes'])} holes, lengths in {unit}")
+    table = Table(title=Text(f"{source.name}: {len(facts['holes'])} holes, lengths in {unit}"))
     for name in ("id", "edges", "perimeter", "diameter", "area", "planarity"):
         table.add_column(name, justify="right")
     table.add_column("by default")
@@ -112,8 +113,16 @@ def _clear_errors() -> Iterator[None]:
     try:
         yield
     except QuadpatchError as error:
-        _errors.print(f"[red]{error.code}[/red]: {error}")
-        sys.exit(1)
+        _fail(error.code, str(error))
+    except OSError as error:
+        # Reading has errors of its own: this is the output, the report or the picture.
+        _fail("not_writable", f"{error.filename} can't be written: {error.strerror}")
+
+
+def _fail(code: str, message: str) -> NoReturn:
+    """Print one line, unwrapped and as it is: scripts read it, and names of files may look like markup."""
+    _errors.print(Text(f"{code}: {message}"), soft_wrap=True)
+    sys.exit(1)
 
 
 @contextmanager

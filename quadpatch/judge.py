@@ -115,7 +115,7 @@ def judge(
             results.append(HoleResult(hole, "refused", "no_triangulation", why))
             continue
         expected = float(per_gap * filled.gap[i])
-        verdict, code, reason = _verdict(i, completion)
+        verdict, code, reason = _verdict(i, int(n_vertices[i]), completion)
         results.append(
             HoleResult(
                 hole,
@@ -132,17 +132,24 @@ def judge(
     return results
 
 
-def _verdict(i: int, completion: "Completion | None") -> tuple[str, str, str]:
+def _verdict(i: int, n_new_vertices: int, completion: "Completion | None") -> tuple[str, str, str]:
     if completion is None:
         return "filled_smooth", "geometry", "filled by geometry: no learned model took part"
     if completion.trust[i]:
         return "filled", "", ""
-    if completion.believed == 0:
-        return "filled_smooth", "no_gain", "practice on this mesh showed no gain over the geometric fill"
-    if completion.evidence.coverage[i] < LEAST_COVERAGE:
-        seen = f"{100 * completion.evidence.coverage[i]:.0f} %"
-        return "filled_smooth", "no_height_map", f"patches see only {seen} of the hole: the surface is folded there"
-    return "filled_smooth", "patches_disagree", "overlapping patches contradict each other"
+    coverage = completion.evidence.coverage[i]
+    reasons = (
+        (not n_new_vertices, "no_new_vertex", "so small that its rim alone spans it: there is nothing to displace"),
+        (completion.error_per_gap is None, "no_practice", "too little undamaged surface to try the model on"),
+        (completion.believed == 0, "no_gain", "practice on this mesh showed no gain over the geometric fill"),
+        (
+            coverage < LEAST_COVERAGE,
+            "no_height_map",
+            f"patches see only {100 * coverage:.0f} % of the hole: the surface is folded there",
+        ),
+        (True, "patches_disagree", "overlapping patches contradict each other"),
+    )
+    return next(("filled_smooth", code, reason) for applies, code, reason in reasons if applies)
 
 
 def _measures(i: int, filled: FilledMesh, completion: "Completion | None") -> dict[str, float]:

@@ -1,5 +1,6 @@
 """Options of every stage. Frozen; each default stands here and nowhere else. None means: the automatic rule."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -32,10 +33,8 @@ class HoleOptions:
     ids: tuple[int, ...] | None = None
 
     def __post_init__(self) -> None:
-        for name in ("max_diameter", "max_perimeter"):
-            value = getattr(self, name)
-            if value is not None and not value > 0:
-                raise OptionError(f"holes.{name} must be greater than 0; it is {value}")
+        _check_length("holes.max_diameter", self.max_diameter)
+        _check_length("holes.max_perimeter", self.max_perimeter)
 
     @property
     def is_automatic(self) -> bool:
@@ -62,8 +61,7 @@ class PatchOptions:
     overlap: int | None = None
 
     def __post_init__(self) -> None:
-        if self.length is not None and not self.length > 0:
-            raise OptionError(f"patches.length must be greater than 0; it is {self.length}")
+        _check_length("patches.length", self.length)
         _check_range("patches.resolution", self.resolution, RESOLUTION_RANGE)
         _check_range("patches.overlap", self.overlap, OVERLAP_RANGE)
 
@@ -75,6 +73,10 @@ class RepairOptions:
     holes: HoleOptions = field(default_factory=HoleOptions)
     patches: PatchOptions = field(default_factory=PatchOptions)
     seed: int = 0
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.seed, int) or self.seed < 0:
+            raise OptionError(f"seed must be a whole number of 0 or more; it is {self.seed}")
 
     @classmethod
     def from_dict(cls, values: Mapping[str, Any]) -> "RepairOptions":
@@ -90,6 +92,11 @@ class RepairOptions:
             raise OptionError(f"options don't fit: {error}") from error
 
 
+def _check_length(name: str, value: float | None) -> None:
+    if value is not None and not (value > 0 and math.isfinite(value)):
+        raise OptionError(f"{name} must be finite and greater than 0; it is {value}")
+
+
 def _check_range(name: str, value: int | None, limits: tuple[int, int]) -> None:
-    if value is not None and not limits[0] <= value <= limits[1]:
-        raise OptionError(f"{name} must lie between {limits[0]} and {limits[1]}; it is {value}")
+    if value is not None and not (isinstance(value, int) and limits[0] <= value <= limits[1]):
+        raise OptionError(f"{name} must be a whole number between {limits[0]} and {limits[1]}; it is {value}")

@@ -6,9 +6,10 @@ from typing import Any
 
 import numpy as np
 
+from quadpatch.errors import EmptyMeshError
 from quadpatch.formats.reading import read_scan
 from quadpatch.formats.scan import Fill, Scan
-from quadpatch.formats.writing import write_scan
+from quadpatch.formats.writing import check_suffix, write_scan
 from quadpatch.inpainters.dictionary import DictionaryInpainter
 from quadpatch.inpainters.inpainter import Inpainter
 from quadpatch.mesh.holes import find_holes, select_holes
@@ -23,6 +24,9 @@ from quadpatch.types import Progress, TriangleMesh, no_progress
 
 SMOOTH = "smooth"
 SELF = "self"
+
+# Areas and their squares vanish in float64 for a mesh smaller than this, in mesh units.
+LEAST_DIAGONAL = 1e-60
 
 
 def repair_file(
@@ -55,11 +59,11 @@ def repair_file(
         Its `code` says what is wrong with file, model or options.
     """
     options = options or RepairOptions()
+    check_suffix(output)
     stages = Stages(progress)
     inpainter, card = _resolve(model)
     with stages.stage("read"):
-        scan = read_scan(source)
-        welded = weld(scan.vertices, scan.triangles)
+        scan, welded = _read(source)
     repair = inpaint(welded.mesh, inpainter, options, stages, learn=model == SELF)
     with stages.stage("write"):
         write_scan(output, scan, _fill(scan, welded, repair))
@@ -68,8 +72,8 @@ def repair_file(
 
 def inspect_file(source: Path) -> dict[str, Any]:
     """Facts and holes of a file, JSON-ready; `chosen` says what the automatic rule would fill."""
-    scan = read_scan(source)
-    mesh = weld(scan.vertices, scan.triangles).mesh
+    scan, welded = _read(source)
+    mesh = welded.mesh
     holes = find_holes(mesh)
     selection = select_holes(holes, RepairOptions().holes, diagonal(mesh))
     return {
@@ -84,6 +88,16 @@ def inspect_file(source: Path) -> dict[str, Any]:
             for hole in holes
         ],
     }
+
+
+def _read(source: Path) -> tuple[Scan, Weld]:
+    scan = read_scan(source)
+    welded = weld(scan.vertices, scan.triangles)
+    if not len(welded.mesh.triangles):
+        raise EmptyMeshError(f"none of the {len(scan.triangles)} faces has three different corners")
+    if not diagonal(welded.mesh) > LEAST_DIAGONAL:
+        raise EmptyMeshError(f"the mesh is only {diagonal(welded.mesh):.3g} wide; that is no surface in float64")
+    return scan, welded
 
 
 def _resolve(model: str | Path) -> tuple[Inpainter | None, dict[str, Any]]:

@@ -14,6 +14,7 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse.linalg import splu
 
+from quadpatch.errors import StageError
 from quadpatch.types import BoolArray, FloatArray, IntArray, Triangles, Vertices
 
 
@@ -56,6 +57,11 @@ def fair(
     -------
     (n, 3) float64
         A copy; fixed vertices keep their bits.
+
+    Raises
+    ------
+    StageError
+        If all triangles around a free vertex are too small to have an area.
     """
     result = vertices.copy()
     if not free.any():
@@ -72,11 +78,16 @@ def fair(
         equations = equations + energy.variation * (rows @ step)
     columns = sparse.csc_array(equations)
     inner, right = columns[:, free], -(columns[:, ~free] @ vertices[~free])
-    factors = splu(
-        sparse.csc_array(inner), permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True}, diag_pivot_thresh=0.0
-    )
-    result[free] = factors.solve(right)
+    result[free] = _solve(sparse.csc_array(inner), right)
     return result
+
+
+def _solve(equations: "sparse.csc_array[np.float64]", right: FloatArray) -> FloatArray:
+    try:
+        factors = splu(equations, permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True}, diag_pivot_thresh=0.0)
+    except RuntimeError as error:
+        raise StageError("the surface around a hole is so small that its areas vanish in float64") from error
+    return np.asarray(factors.solve(right))
 
 
 def _laplacian(vertices: Vertices, triangles: Triangles, *, uniform: bool) -> tuple[sparse.csr_array, FloatArray]:

@@ -20,6 +20,12 @@ _ENCODERS = {
 }
 
 
+def check_suffix(path: Path) -> None:
+    """Raise FormatError where the suffix of a file is that of no format that is written."""
+    if path.suffix.lower().lstrip(".") not in _ENCODERS:
+        raise FormatError(f"files with the suffix {path.suffix!r} are not written, only {', '.join(_ENCODERS)}")
+
+
 def write_scan(path: Path, scan: Scan, fill: Fill) -> None:
     """Write a scan with a fill appended.
 
@@ -36,11 +42,10 @@ def write_scan(path: Path, scan: Scan, fill: Fill) -> None:
     FormatError
         If the suffix is that of no format that is written, or the format can't hold the mesh.
     """
+    check_suffix(path)
     suffix = path.suffix.lower().lstrip(".")
     if suffix == scan.format and scan.source is not None:
         data = scan.source.append(scan, fill)
-    elif suffix in _ENCODERS:
-        data = _ENCODERS[suffix](assemble(scan, fill))
     else:
-        raise FormatError(f"files with the suffix {path.suffix!r} are not written, only {', '.join(_ENCODERS)}")
+        data = _ENCODERS[suffix](assemble(scan, fill))
     path.write_bytes(data)

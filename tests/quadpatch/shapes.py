@@ -1,5 +1,7 @@
 """Meshes that several tests build."""
 
+from pathlib import Path
+
 import numpy as np
 
 from quadpatch.types import FloatArray, IntArray, TriangleMesh
@@ -83,6 +85,16 @@ def cylinder(n_around: int, n_along: int, radius: float = 1.0, length: float = 4
     return TriangleMesh(np.stack([radius * np.cos(angle), radius * np.sin(angle), z], 1), np.concatenate(triangles))
 
 
+def relief(n: int, width: float = 2.0, depth: float = 0.05, waves: int = 6) -> TriangleMesh:
+    """Build a plate that carries a gyroid's section: strong, repeating texture, on irregular vertices."""
+    flat = open_grid(n, width)
+    step = width / (n - 1)
+    x, y = (flat.vertices[:, :2] + np.random.default_rng(0).uniform(-0.2 * step, 0.2 * step, (n * n, 2))).T
+    u, v = 2 * np.pi * waves * x / width, 2 * np.pi * waves * y / width
+    z = depth * (np.sin(u) * np.cos(v) + np.sin(v) * np.cos(0.3) + np.sin(0.3) * np.cos(u))
+    return TriangleMesh(np.stack([x, y, z], axis=1), flat.triangles)
+
+
 def punched(mesh: TriangleMesh, *centres: tuple[float, float, float], radius: float) -> TriangleMesh:
     """Remove every triangle with a corner in one of some balls; vertices stay, also those without triangles."""
     gone = np.zeros(len(mesh.vertices), bool)
@@ -113,3 +125,15 @@ def is_oriented_manifold(triangles: IntArray) -> bool:
 def euler_characteristic(triangles: IntArray) -> int:
     """Vertices minus edges plus faces, of what the triangles use."""
     return len(np.unique(triangles)) - len(faces_per_edge(triangles)) + len(triangles)
+
+
+def write_ply(path: Path, mesh: TriangleMesh, number: str = "f8") -> Path:
+    """Write a binary PLY with coordinates of type `f4` or `f8`."""
+    name = {"f4": "float", "f8": "double"}[number]
+    lines = ["ply", "format binary_little_endian 1.0", f"element vertex {len(mesh.vertices)}"]
+    lines += [f"property {name} {axis}" for axis in "xyz"]
+    lines += [f"element face {len(mesh.triangles)}", "property list uchar int vertex_indices", "end_header", ""]
+    faces = np.zeros(len(mesh.triangles), [("n", "u1"), ("corners", "<i4", 3)])
+    faces["n"], faces["corners"] = 3, mesh.triangles
+    path.write_bytes("\n".join(lines).encode() + mesh.vertices.astype(f"<{number}").tobytes() + faces.tobytes())
+    return path

@@ -1,0 +1,161 @@
+import json
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner, Result
+
+from quadpatch.cli import app, summary
+from quadpatch.formats.reading import read_scan
+from tests.quadpatch.shapes import bumpy_plate, punched, sphere, write_ply
+
+
+@pytest.fixture(scope="module")
+def scan_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A sheet with one border and three holes, the first of them the widest."""
+    mesh = punched(bumpy_plate(50, 2.0), (-0.5, -0.5, 0), radius=0.27)
+    mesh = punched(mesh, (0.5, 0.4, 0), radius=0.2)
+    return write_ply(tmp_path_factory.mktemp("scan") / "sheet.ply", punched(mesh, (0.5, -0.6, 0), radius=0.1))
+
+
+def run(*arguments: str | Path) -> Result:
+    return CliRunner().invoke(app, [str(argument) for argument in arguments])
+
+
+def verdicts(report: Path) -> list[str]:
+    return [hole["verdict"] for hole in json.loads(report.read_text())["holes"]]
+
+
+def test_fill_writes_the_mesh_the_report_and_the_picture(scan_file: Path, tmp_path: Path) -> None:
+    output, report, picture = tmp_path / "out.ply", tmp_path / "out.json", tmp_path / "out.png"
+    files = [scan_file, "-o", output, "--report", report, "--picture", picture]
+    result = run("fill", *map(str, files), "--model", "smooth")
+    assert result.exit_code == 0, result.output
+    assert verdicts(report) == ["skipped", "filled_smooth", "filled_smooth", "filled_smooth"]
+    assert len(read_scan(output).triangles) > len(read_scan(scan_file).triangles)
+    assert picture.read_bytes().startswith(b"\x89PNG")
+    assert result.stdout == ""
+    assert "4 holes: 0 filled by the model, 3 by geometry, 1 left open (1 × outer border" in result.stderr
+
+
+def test_quiet_says_nothing(scan_file: Path, tmp_path: Path) -> None:
+    result = run("fill", scan_file, "-o", tmp_path / "out.ply", "--model", "smooth", "--quiet")
+    assert (result.exit_code, result.output) == (0, "")
+
+
+@pytest.mark.parametrize(
+    ("flags", "filled"),
+    [
+        (["--hole", "2"], {2}),
+        (["--hole", "3", "--hole", "1"], {1, 3}),
+        (["--max-diameter", "0.5"], {2, 3}),
+        (["--max-perimeter", "1.0"], {3}),
+        (["--all-but-largest"], {1, 2, 3}),
+        (["--all-but-largest", "--max-diameter", "0.5", "--hole", "2", "--hole", "1"], {2}),
+    ],
+)
+def test_every_flag_about_holes_chooses_them(
+    scan_file: Path, tmp_path: Path, flags: list[str], filled: set[int]
+) -> None:
+    report = tmp_path / "out.json"
+    result = run("fill", scan_file, "-o", tmp_path / "out.ply", "--model", "smooth", "--report", report, *flags)
+    assert result.exit_code == 0, result.output
+    assert {i for i, verdict in enumerate(verdicts(report)) if verdict != "skipped"} == filled
+
+
+def test_flags_about_patches_reach_them(scan_file: Path, tmp_path: Path) -> None:
+    report = tmp_path / "out.json"
+    flags = ["--patch-length", "0.5", "--resolution", "18", "--overlap", "1", "--seed", "3"]
+    result = run("fill", scan_file, "-o", tmp_path / "out.ply", "--report", report, *flags)
+    assert result.exit_code == 0, result.output
+    content = json.loads(report.read_text())
+    assert content["options"] == {
+        "holes": {"max_diameter": None, "max_perimeter": None, "all_but_largest": False, "ids": None},
+        "patches": {"length": 0.5, "resolution": 18, "overlap": 1},
+        "seed": 3,
+    }
+    assert content["patches"]["resolution"] == 18
+    assert content["model"] == {"name": "self"}
+
+
+def test_holes_are_listed_as_json(scan_file: Path) -> None:
+    result = run("holes", scan_file, "--json")
+    assert result.exit_code == 0
+    facts = json.loads(result.stdout)
+    assert [hole["id"] for hole in facts["holes"]] == [0, 1, 2, 3]
+    assert [hole["chosen"] for hole in facts["holes"]] == [False, True, True, True]
+
+
+def test_holes_are_listed_for_people(scan_file: Path) -> None:
+    result = run("holes", scan_file)
+    assert result.exit_code == 0
+    assert "sheet.ply: 4 holes, lengths in mesh units" in result.stdout
+    assert result.stdout.count("fill") == 3
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code"),
+    [
+        (["holes", "missing.ply"], "unreadable_mesh"),
+        (["fill", "missing.ply", "-o", "out.ply"], "unreadable_mesh"),
+        (["fill", "SCAN", "-o", "out.docx"], "unsupported_format"),
+        (["fill", "SCAN", "-o", "out.ply", "--hole", "12"], "invalid_option"),
+        (["fill", "SCAN", "-o", "out.ply", "--max-diameter", "-1"], "invalid_option"),
+        (["fill", "SCAN", "-o", "out.ply", "--patch-length", "inf"], "invalid_option"),
+        (["fill", "SCAN", "-o", "out.ply", "--resolution", "4"], "invalid_option"),
+        (["fill", "SCAN", "-o", "out.ply", "--seed", "-1"], "invalid_option"),
+        (["fill", "SCAN", "-o", "out.ply", "--model", "no-such-model"], "unusable_model"),
+        (["fill", "SCAN", "-o", "no/such/folder/out.ply", "--model", "smooth"], "not_writable"),
+        (["fill", "SCAN", "-o", "out.ply", "--model", "smooth", "--report", "no/such/out.json"], "not_writable"),
+        (["fill", "SCAN", "-o", "out.ply", "--model", "smooth", "--picture", "no/such/out.png"], "not_writable"),
+    ],
+)
+def test_errors_are_one_line_of_code_and_message(
+    scan_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, arguments: list[str], code: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    result = run(*[str(scan_file) if argument == "SCAN" else argument for argument in arguments])
+    assert result.exit_code == 1, result.output
+    assert result.stdout == ""
+    (line,) = result.stderr.splitlines()
+    assert re.fullmatch(rf"{code}: .+", line)
+
+
+@pytest.mark.parametrize("name", ["[red]a.ply", "[bold]a.ply", "a very long name " * 8 + ".ply"])
+def test_names_of_files_are_never_taken_for_markup_or_wrapped(tmp_path: Path, name: str) -> None:
+    result = run("holes", tmp_path / name)
+    assert result.exit_code == 1
+    assert result.stderr.startswith("unreadable_mesh: ")
+    assert name in result.stderr
+    closed = write_ply(tmp_path / name, sphere(1))
+    listed = run("holes", closed)
+    assert listed.exit_code == 0
+    assert name.split(maxsplit=1)[0][:8] in listed.stdout
+
+
+@pytest.mark.parametrize(
+    "arguments", [["fill"], ["fill", "in.ply"], ["fill", "in.ply", "-o", "a.ply", "--hole", "first"], ["mend"]]
+)
+def test_wrong_usage_has_its_own_exit_code(arguments: list[str]) -> None:
+    assert run(*arguments).exit_code == 2
+
+
+def test_the_summary_counts_reasons() -> None:
+    row = {"verdict": "skipped", "reason": "too wide"}
+    report = {
+        "counts": {"found": 4, "filled": 1, "filled_smooth": 0, "skipped": 2, "refused": 1},
+        "holes": [row, row, {"verdict": "refused", "reason": "no way"}, {"verdict": "filled", "reason": None}],
+        "stages": [{"name": "read", "seconds": 1.25}, {"name": "fill", "seconds": 0.5}],
+    }
+    expected = "4 holes: 1 filled by the model, 0 by geometry, 3 left open (2 × too wide; 1 × no way). 1.8 s."
+    assert summary(report) == expected
+
+
+def test_the_module_runs_as_a_process(scan_file: Path, tmp_path: Path) -> None:
+    command = [sys.executable, "-m", "quadpatch", "fill", str(scan_file), "-o", str(tmp_path / "out.stl")]
+    done = subprocess.run([*command, "--model", "smooth"], capture_output=True, text=True, check=False, timeout=60)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout == ""
+    assert read_scan(tmp_path / "out.stl").format == "stl"

@@ -1,0 +1,75 @@
+from typing import Any
+
+import pytest
+
+from quadpatch.errors import OptionError
+from quadpatch.options import HoleOptions, PatchOptions, RepairOptions
+
+
+def test_nothing_given_means_every_automatic_rule() -> None:
+    assert RepairOptions.from_dict({}) == RepairOptions()
+    assert RepairOptions.from_dict({"holes": None, "patches": {}}) == RepairOptions()
+    assert RepairOptions().holes.is_automatic
+
+
+@pytest.mark.parametrize(
+    "holes", [{"max_diameter": 1.0}, {"max_perimeter": 1.0}, {"all_but_largest": True}, {"ids": []}, {"ids": [0]}]
+)
+def test_any_rule_about_holes_ends_the_automatic_one(holes: dict[str, Any]) -> None:
+    assert not RepairOptions.from_dict({"holes": holes}).holes.is_automatic
+
+
+def test_plain_values_become_options() -> None:
+    options = RepairOptions.from_dict(
+        {
+            "holes": {"max_diameter": 2, "ids": [3, 1]},
+            "patches": {"length": 0.5, "resolution": 24, "overlap": 0},
+            "seed": 7,
+        }
+    )
+    assert options == RepairOptions(HoleOptions(max_diameter=2, ids=(3, 1)), PatchOptions(0.5, 24, 0), 7)
+
+
+@pytest.mark.parametrize(
+    "values",
+    [
+        {"holes": {"max_diameter": 0}},
+        {"holes": {"max_diameter": -1.0}},
+        {"holes": {"max_diameter": float("nan")}},
+        {"holes": {"max_perimeter": float("inf")}},
+        {"holes": {"max_diameter": "wide"}},
+        {"holes": {"ids": ["first"]}},
+        {"holes": {"ids": 3}},
+        {"holes": {"depth": 1}},
+        {"holes": [1]},
+        {"patches": {"length": 0.0}},
+        {"patches": {"length": float("inf")}},
+        {"patches": {"resolution": 7}},
+        {"patches": {"resolution": 129}},
+        {"patches": {"resolution": 16.5}},
+        {"patches": {"overlap": -1}},
+        {"patches": {"overlap": 9}},
+        {"seed": -1},
+        {"seed": 0.5},
+        {"seed": "today"},
+        {"colour": "red"},
+    ],
+)
+def test_what_can_not_be_meant_is_refused_with_a_code(values: dict[str, Any]) -> None:
+    with pytest.raises(OptionError) as caught:
+        RepairOptions.from_dict(values)
+    assert caught.value.code == "invalid_option"
+
+
+@pytest.mark.parametrize(
+    ("values", "message"),
+    [
+        ({"holes": {"max_diameter": -1.0}}, r"holes\.max_diameter must be finite and greater than 0; it is -1"),
+        ({"patches": {"resolution": 7}}, r"patches\.resolution must be a whole number between 8 and 128; it is 7"),
+        ({"seed": -1}, "seed must be a whole number of 0 or more; it is -1"),
+        ({"colour": "red"}, "colour"),
+    ],
+)
+def test_the_message_names_the_option_its_value_and_the_limit(values: dict[str, Any], message: str) -> None:
+    with pytest.raises(OptionError, match=message):
+        RepairOptions.from_dict(values)

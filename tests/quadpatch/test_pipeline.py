@@ -1,0 +1,229 @@
+import numpy as np
+import pytest
+
+from quadpatch.errors import OptionError
+from quadpatch.mesh.boundary import boundary_loops
+from quadpatch.options import HoleOptions, RepairOptions
+from quadpatch.pipeline import Repair, inpaint
+from quadpatch.raycast import RayScene
+from quadpatch.stages import Stages
+from quadpatch.types import FloatArray, TriangleMesh
+from tests.quadpatch.shapes import (
+    bumpy_plate,
+    joined,
+    open_grid,
+    punched,
+    random_rotation,
+    relief,
+    sphere,
+)
+
+PLACES = [(x, y, 0.0) for x in (-0.5, 0.1, 0.55) for y in (-0.45, 0.05, 0.5)]
+WHOLE_RELIEF = relief(120, 2.0, 0.03, 10)
+RELIEF = punched(WHOLE_RELIEF, *PLACES, radius=0.13)
+
+
+@pytest.fixture(scope="module")
+def smooth_relief() -> Repair:
+    return inpaint(RELIEF, None, RepairOptions())
+
+
+@pytest.fixture(scope="module")
+def learned_relief() -> Repair:
+    return inpaint(RELIEF, None, RepairOptions(), learn=True)
+
+
+def new_vertices(repair: Repair) -> FloatArray:
+    return repair.filled.mesh.vertices[repair.filled.n_measured_vertices :]
+
+
+def height_errors(repair: Repair) -> FloatArray:
+    """Vertical distance of every new vertex to the whole relief."""
+    above = new_vertices(repair) * [1, 1, 0] + [0, 0, 1]
+    _, distance = RayScene(WHOLE_RELIEF).cast(above, np.tile([0.0, 0, -1], (len(above), 1)))
+    return np.asarray(np.abs(new_vertices(repair)[:, 2] - (1 - distance)))
+
+
+def moved(mesh: TriangleMesh, seed: int) -> tuple[TriangleMesh, FloatArray, FloatArray]:
+    rng = np.random.default_rng(seed)
+    rotation, shift = random_rotation(rng), rng.normal(0, 3, 3)
+    return TriangleMesh(mesh.vertices @ rotation.T + shift, mesh.triangles), rotation, shift
+
+
+def test_what_was_learned_from_a_relief_beats_the_smooth_fill(smooth_relief: Repair, learned_relief: Repair) -> None:
+    assert height_errors(learned_relief).mean() < 0.75 * height_errors(smooth_relief).mean()
+    completion = learned_relief.completion
+    assert completion is not None
+    assert completion.believed > 0
+    filled = {i for i, result in enumerate(learned_relief.results[1:]) if result.verdict == "filled"}
+    assert filled == set(np.flatnonzero(completion.trust).tolist())
+    assert len(filled) >= 4
+
+
+def test_holes_that_the_model_does_not_complete_stay_as_geometry_filled_them(
+    smooth_relief: Repair, learned_relief: Repair
+) -> None:
+    completion = learned_relief.completion
+    assert completion is not None
+    left = ~completion.trust[learned_relief.filled.vertex_hole]
+    assert left.any()
+    same = (new_vertices(learned_relief) == new_vertices(smooth_relief)).all(axis=1)
+    assert same[left].all()
+    assert not same[~left].all()
+
+
+def test_every_stage_is_gone_through_in_order() -> None:
+    stages = Stages()
+    inpaint(RELIEF, None, RepairOptions(), stages, learn=True)
+    names = ["holes", "fill", "smooth", "quadrangulate", "patchify", "learn", "inpaint", "reconstruct", "judge"]
+    assert list(stages.seconds) == names
+    geometry = Stages()
+    inpaint(RELIEF, None, RepairOptions(), geometry)
+    assert list(geometry.seconds) == ["holes", "fill", "judge"]
+
+
+@pytest.mark.parametrize("learn", [False, True])
+def test_measured_vertices_and_triangles_come_first_bit_for_bit(
+    learn: bool, smooth_relief: Repair, learned_relief: Repair
+) -> None:
+    filled = (learned_relief if learn else smooth_relief).filled
+    assert filled.mesh.vertices[: len(RELIEF.vertices)].tobytes() == RELIEF.vertices.tobytes()
+    assert filled.mesh.triangles[: len(RELIEF.triangles)].tobytes() == RELIEF.triangles.tobytes()
+    (border,) = boundary_loops(filled.mesh.triangles).loops
+    assert len(border) == 4 * 119
+
+
+@pytest.mark.parametrize("seed", [0, 1])
+def test_a_smooth_repair_moves_with_its_mesh(seed: int, smooth_relief: Repair) -> None:
+    mesh, rotation, shift = moved(RELIEF, seed)
+    there = inpaint(mesh, None, RepairOptions())
+    assert there.energy == smooth_relief.energy
+    assert (there.filled.mesh.triangles == smooth_relief.filled.mesh.triangles).all()
+    expected = smooth_relief.filled.mesh.vertices @ rotation.T + shift
+    assert np.abs(there.filled.mesh.vertices - expected).max() < 1e-9
+    for one, other in zip(smooth_relief.results, there.results, strict=True):
+        assert (one.verdict, one.code) == (other.verdict, other.code)
+        assert other.confidence == (None if one.confidence is None else pytest.approx(one.confidence, abs=1e-9))
+
+
+def test_a_learned_repair_moves_with_its_mesh_as_far_as_the_quads_do(learned_relief: Repair) -> None:
+    # The mesher lays other quads over a turned mesh, so other patches are learned from and averaged: the same
+    # triangles, and displacements that differ by less than half of what they are.
+    mesh, rotation, shift = moved(RELIEF, 0)
+    there = inpaint(mesh, None, RepairOptions(), learn=True)
+    here, smooth = learned_relief, inpaint(RELIEF, None, RepairOptions())
+    assert (there.filled.mesh.triangles == here.filled.mesh.triangles).all()
+    assert here.completion is not None
+    assert there.completion is not None
+    both = (here.completion.trust & there.completion.trust)[here.filled.vertex_hole]
+    assert both.any()
+    apart = np.linalg.norm(new_vertices(here) @ rotation.T + shift - new_vertices(there), axis=1)
+    displaced = np.linalg.norm(new_vertices(here) - new_vertices(smooth), axis=1)
+    assert apart[both].mean() < 0.5 * displaced[both].mean()
+
+
+def test_a_mesh_twice_as_large_gets_the_same_repair_twice_as_large(smooth_relief: Repair) -> None:
+    doubled = inpaint(TriangleMesh(1024.0 * RELIEF.vertices, RELIEF.triangles), None, RepairOptions())
+    assert (doubled.filled.mesh.vertices == 1024.0 * smooth_relief.filled.mesh.vertices).all()
+
+
+def test_the_same_seed_gives_the_same_bits(learned_relief: Repair) -> None:
+    again = inpaint(RELIEF, None, RepairOptions(), learn=True)
+    assert again.filled.mesh.vertices.tobytes() == learned_relief.filled.mesh.vertices.tobytes()
+    assert [result.confidence for result in again.results] == [result.confidence for result in learned_relief.results]
+
+
+@pytest.mark.parametrize("learn", [False, True])
+def test_a_flat_plate_with_holes_stays_flat(learn: bool) -> None:
+    plate = bumpy_plate(60, 2.0)
+    flat = TriangleMesh(plate.vertices * [1, 1, 0], plate.triangles)
+    repair = inpaint(punched(flat, (0.3, 0.2, 0), (-0.5, -0.4, 0), radius=0.15), None, RepairOptions(), learn=learn)
+    assert len(new_vertices(repair)) > 0
+    assert np.abs(new_vertices(repair)[:, 2]).max() < 1e-12
+    assert [result.verdict for result in repair.results] == ["skipped", "filled_smooth", "filled_smooth"]
+    assert min(result.confidence or 0 for result in repair.results[1:]) > 0.999
+
+
+def test_holes_in_a_sphere_come_back_round() -> None:
+    repair = inpaint(punched(sphere(5), (0, 0, 1), (1, 0, 0), radius=0.3), None, RepairOptions())
+    assert np.abs(np.linalg.norm(new_vertices(repair), axis=1) - 1).mean() < 5e-4
+    assert [result.verdict for result in repair.results] == ["filled_smooth"] * 2
+
+
+def test_only_chosen_holes_are_filled_and_every_hole_has_a_result() -> None:
+    options = RepairOptions(HoleOptions(ids=(2, 4)))
+    repair = inpaint(RELIEF, None, options)
+    assert [hole.id for hole in repair.chosen] == [2, 4]
+    assert [result.hole.id for result in repair.results] == list(range(10))
+    verdicts = {result.hole.id: result.verdict for result in repair.results}
+    assert {number for number, verdict in verdicts.items() if verdict == "filled_smooth"} == {2, 4}
+    new = sum(result.n_new_vertices for result in repair.results)
+    assert new == len(new_vertices(repair)) > 0
+    triangles = sum(result.n_new_triangles for result in repair.results)
+    assert triangles == len(repair.filled.mesh.triangles) - len(RELIEF.triangles)
+
+
+def test_an_unknown_hole_is_refused() -> None:
+    with pytest.raises(OptionError, match="id 99"):
+        inpaint(RELIEF, None, RepairOptions(HoleOptions(ids=(99,))))
+
+
+@pytest.mark.parametrize("learn", [False, True])
+def test_a_mesh_without_holes_is_given_back(learn: bool) -> None:
+    mesh = sphere(2)
+    repair = inpaint(mesh, None, RepairOptions(), learn=learn)
+    assert repair.results == []
+    assert repair.filled.mesh.vertices.tobytes() == mesh.vertices.tobytes()
+    assert repair.filled.mesh.triangles.tobytes() == mesh.triangles.tobytes()
+
+
+def test_too_little_surface_to_learn_from_falls_back_to_geometry_and_says_so() -> None:
+    mesh = punched(sphere(2), (0, 0, 1), radius=0.5)
+    repair = inpaint(mesh, None, RepairOptions(HoleOptions(max_diameter=10.0)), learn=True)
+    geometry = inpaint(mesh, None, RepairOptions(HoleOptions(max_diameter=10.0)))
+    assert [result.verdict for result in repair.results] == ["filled_smooth"]
+    assert new_vertices(repair).tobytes() == new_vertices(geometry).tobytes()
+    result = repair.results[0]
+    assert repair.warnings or result.code == "no_practice"
+    assert "practice on this mesh showed" not in result.reason
+
+
+def test_a_hole_without_new_vertices_is_not_called_folded() -> None:
+    small = np.flatnonzero((WHOLE_RELIEF.triangles == 60 * 120 + 60).any(axis=1))[:1]
+    whole = punched(WHOLE_RELIEF, *PLACES[:4], radius=0.13)
+    drop = np.isin(whole.triangles, WHOLE_RELIEF.triangles[small]).all(axis=1)
+    repair = inpaint(TriangleMesh(whole.vertices, whole.triangles[~drop]), None, RepairOptions(), learn=True)
+    tiny = repair.results[-1]
+    assert tiny.hole.n_edges == 3
+    assert (tiny.verdict, tiny.n_new_vertices, tiny.n_new_triangles) == ("filled_smooth", 0, 1)
+    assert repair.completion is not None
+    assert tiny.code == "no_new_vertex"
+
+
+def test_confidence_falls_with_the_roughness_around_a_hole() -> None:
+    smooth = bumpy_plate(60, 2.0)
+    noise = np.random.default_rng(0).normal(0, 0.02, (3600, 3)) * [0, 0, 1]
+    rough = TriangleMesh(smooth.vertices + noise, smooth.triangles)
+    both = [inpaint(punched(one, *PLACES, radius=0.15), None, RepairOptions()).results for one in (smooth, rough)]
+    for calm, noisy in zip(*both, strict=True):
+        if calm.confidence is not None:
+            assert noisy.confidence is not None
+            assert noisy.confidence < calm.confidence
+
+
+def test_two_sheets_close_together_are_repaired_apart() -> None:
+    top = punched(bumpy_plate(60, 2.0), *PLACES, radius=0.15)
+    under = TriangleMesh(top.vertices - [0, 0, 0.01], top.triangles[:, ::-1])
+    repair = inpaint(joined(top, under), None, RepairOptions(), learn=True)
+    alone = inpaint(top, None, RepairOptions())
+    verdicts = [result.verdict for result in repair.results]
+    assert verdicts.count("skipped") == 2
+    assert verdicts.count("filled_smooth") + verdicts.count("filled") == 18
+    height = new_vertices(repair)[:, 2]
+    assert height.max() < new_vertices(alone)[:, 2].max() + 0.02
+    assert height.min() > new_vertices(alone)[:, 2].min() - 0.03
+
+
+def test_an_empty_place_for_practice_is_no_fault() -> None:
+    repair = inpaint(punched(open_grid(9), (0, 0, 0), radius=1.2), None, RepairOptions(HoleOptions(ids=(1,))))
+    assert repair.results[1].verdict == "filled_smooth"

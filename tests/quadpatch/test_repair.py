@@ -1,0 +1,338 @@
+import json
+import math
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from quadpatch.errors import EmptyMeshError, FormatError, MeshError, ModelError, OptionError, QuadpatchError, ReadError
+from quadpatch.formats.reading import read_scan
+from quadpatch.options import HoleOptions, PatchOptions, RepairOptions
+from quadpatch.repair import draw_repair, inspect_file, repair_file
+from quadpatch.types import FloatArray, TriangleMesh, Triangles
+from tests.quadpatch.shapes import bumpy_plate, faces_per_edge, joined, open_grid, punched, relief, sphere, write_ply
+
+PLACES = [(x, y, 0.0) for x in (-0.5, 0.5) for y in (-0.45, 0.5)]
+RELIEF = punched(relief(80, 2.0, 0.03, 8), *PLACES, radius=0.13)
+EVERYTHING = RepairOptions(HoleOptions(max_diameter=1e30))
+
+STAGES_OF_GEOMETRY = ["read", "holes", "fill", "judge", "write"]
+STAGES_OF_A_MODEL = [
+    *("read", "holes", "fill", "smooth", "quadrangulate", "patchify"),
+    *("learn", "inpaint", "reconstruct", "judge", "write"),
+]
+
+
+def write_stl(path: Path, mesh: TriangleMesh) -> Path:
+    corners = mesh.vertices[mesh.triangles].astype("<f4")
+    facets = np.zeros(len(corners), [("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+    facets["corners"] = corners
+    path.write_bytes(b"\0" * 80 + np.uint32(len(corners)).tobytes() + facets.tobytes())
+    return path
+
+
+WRITERS: dict[str, Callable[[Path, TriangleMesh], Path]] = {
+    "f4.ply": lambda path, mesh: write_ply(path, mesh, "f4"),
+    "f8.ply": lambda path, mesh: write_ply(path, mesh, "f8"),
+    "binary.stl": write_stl,
+}
+
+
+@pytest.fixture(scope="module")
+def scan_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return write_ply(tmp_path_factory.mktemp("scan") / "relief.ply", RELIEF)
+
+
+@pytest.fixture(scope="module", params=["smooth", "self"])
+def repaired(request: pytest.FixtureRequest, scan_file: Path) -> tuple[str, Path, dict[str, Any]]:
+    output = scan_file.with_name(f"{request.param}.ply")
+    return request.param, output, repair_file(scan_file, output, request.param)
+
+
+@pytest.mark.parametrize("model", ["smooth", "self"])
+@pytest.mark.parametrize("name", WRITERS)
+def test_every_vertex_and_face_of_the_file_comes_back_bit_for_bit_and_in_order(
+    tmp_path: Path, name: str, model: str
+) -> None:
+    source, output = WRITERS[name](tmp_path / f"in.{name}", RELIEF), tmp_path / f"out.{name}"
+    report = repair_file(source, output, model)
+    before, after = read_scan(source), read_scan(output)
+    assert after.vertices[: len(before.vertices)].tobytes() == before.vertices.tobytes()
+    assert after.triangles[: len(before.triangles)].tobytes() == before.triangles.tobytes()
+    assert report["counts"]["filled"] + report["counts"]["filled_smooth"] == 4
+    new = sum(hole["new_triangles"] for hole in report["holes"])
+    assert len(after.triangles) == len(before.triangles) + new
+    assert [hole["edges"] for hole in inspect_file(output)["holes"]] == [4 * 79]
+
+
+def test_the_same_file_options_and_model_give_the_same_bytes(
+    repaired: tuple[str, Path, dict[str, Any]], scan_file: Path, tmp_path: Path
+) -> None:
+    model, output, report = repaired
+    again = repair_file(scan_file, tmp_path / output.name, model)
+    assert (tmp_path / output.name).read_bytes() == output.read_bytes()
+    assert [stage["name"] for stage in again["stages"]] == [stage["name"] for stage in report["stages"]]
+    assert {**again, "stages": None} == {**report, "stages": None}
+
+
+def test_the_report_is_plain_json_and_its_counts_add_up(repaired: tuple[str, Path, dict[str, Any]]) -> None:
+    model, _, report = repaired
+    assert json.loads(json.dumps(report, allow_nan=False)) == report
+    assert set(report) == {
+        *("schema", "source", "length_unit", "model", "options"),
+        *("counts", "patches", "holes", "stages", "warnings"),
+    }
+    assert report["schema"] == 1
+    assert report["model"]["name"] == model
+    counts = report["counts"]
+    assert counts["found"] == len(report["holes"]) == 5
+    assert sum(counts[verdict] for verdict in ("filled", "filled_smooth", "skipped", "refused")) == counts["found"]
+    for verdict in ("filled", "filled_smooth", "skipped", "refused"):
+        assert counts[verdict] == sum(hole["verdict"] == verdict for hole in report["holes"])
+    assert counts["filled"] == 0 or model == "self"
+    expected = STAGES_OF_GEOMETRY if model == "smooth" else STAGES_OF_A_MODEL
+    assert [stage["name"] for stage in report["stages"]] == expected
+    assert all(stage["seconds"] >= 0 for stage in report["stages"])
+
+
+def test_every_hole_is_measured_judged_and_explained(repaired: tuple[str, Path, dict[str, Any]]) -> None:
+    _, _, report = repaired
+    assert [hole["id"] for hole in report["holes"]] == list(range(5))
+    for hole in report["holes"]:
+        for name in ("edges", "perimeter", "diameter", "area"):
+            assert hole[name] > 0
+        if hole["verdict"] == "filled":
+            assert hole["code"] is None
+            assert hole["reason"] is None
+        else:
+            assert hole["code"]
+            assert hole["reason"]
+        if hole["verdict"] == "skipped":
+            assert hole["confidence"] is None
+            assert hole["new_vertices"] == hole["new_triangles"] == 0
+        else:
+            assert 0 <= hole["confidence"] <= 1
+            assert hole["confidence"] == pytest.approx(math.exp(-10 * hole["expected_error"] / hole["diameter"]))
+            assert hole["measures"]["gap"] >= 0
+
+
+def test_facts_of_the_file_are_those_of_the_mesh(scan_file: Path) -> None:
+    facts = inspect_file(scan_file)
+    used = RELIEF.vertices[np.unique(RELIEF.triangles)]
+    assert (facts["format"], facts["vertices"], facts["triangles"]) == ("ply", 6400, len(RELIEF.triangles))
+    assert facts["bounding_box"] == {"min": used.min(axis=0).tolist(), "max": used.max(axis=0).tolist()}
+    assert facts["length_unit"] == "mesh units"
+    assert [hole["chosen"] for hole in facts["holes"]] == [False, True, True, True, True]
+    assert facts["holes"][0]["reason"] == "outer border of a piece of the scan"
+    assert json.loads(json.dumps(facts, allow_nan=False)) == facts
+
+
+def test_progress_runs_through_every_stage_and_never_backwards(scan_file: Path, tmp_path: Path) -> None:
+    told: list[tuple[str, float]] = []
+    repair_file(scan_file, tmp_path / "out.ply", "self", progress=lambda name, part: told.append((name, part)))
+    assert list(dict.fromkeys(name for name, _ in told)) == STAGES_OF_A_MODEL
+    for stage in STAGES_OF_A_MODEL:
+        parts = [part for name, part in told if name == stage]
+        assert parts[0] == 0.0
+        assert parts[-1] == 1.0
+        assert parts == sorted(parts)
+
+
+def test_options_reach_the_patches(scan_file: Path, tmp_path: Path) -> None:
+    options = RepairOptions(HoleOptions(ids=(1, 2)), PatchOptions(0.4, 20, 1), seed=5)
+    report = repair_file(scan_file, tmp_path / "out.ply", "self", options)
+    assert {name: report["patches"][name] for name in ("length", "resolution", "overlap")} == {
+        "length": 0.4,
+        "resolution": 20,
+        "overlap": 1,
+    }
+    assert report["options"]["seed"] == 5
+    codes = {hole["id"]: hole["code"] for hole in report["holes"] if hole["verdict"] == "skipped"}
+    assert codes == {0: "not_chosen", 3: "not_chosen", 4: "not_chosen"}
+
+
+def test_the_shipped_dictionary_repairs(scan_file: Path, tmp_path: Path) -> None:
+    report = repair_file(scan_file, tmp_path / "out.ply", "general-dictionary@1")
+    assert report["model"]["kind"] == "dictionary"
+    assert len(report["model"]["sha256"]) == 64
+    assert report["patches"]["count"] > 0
+    assert report["counts"]["filled"] + report["counts"]["filled_smooth"] == 4
+
+
+@pytest.mark.parametrize("name", WRITERS)
+def test_a_file_without_holes_comes_back_with_every_vertex_and_face_and_nothing_more(tmp_path: Path, name: str) -> None:
+    source, output = WRITERS[name](tmp_path / f"in.{name}", sphere(3)), tmp_path / f"out.{name}"
+    report = repair_file(source, output, "self")
+    before, after = read_scan(source), read_scan(output)
+    assert after.vertices.tobytes() == before.vertices.tobytes()
+    assert after.triangles.tobytes() == before.triangles.tobytes()
+    assert report["counts"] == {"found": 0, "filled": 0, "filled_smooth": 0, "skipped": 0, "refused": 0}
+    assert report["holes"] == []
+
+
+def test_what_a_repair_draws_is_a_picture(scan_file: Path, repaired: tuple[str, Path, dict[str, Any]]) -> None:
+    picture = scan_file.with_suffix(".png")
+    draw_repair(scan_file, repaired[1], picture)
+    assert picture.read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.parametrize(
+    ("mesh_name", "error"),
+    [("missing.ply", ReadError), ("folder.ply", ReadError), ("text.ply", MeshError)],
+)
+def test_files_that_are_no_mesh_give_their_error(tmp_path: Path, mesh_name: str, error: type[QuadpatchError]) -> None:
+    (tmp_path / "folder.ply").mkdir()
+    (tmp_path / "text.ply").write_text("no mesh at all\n")
+    with pytest.raises(error):
+        repair_file(tmp_path / mesh_name, tmp_path / "out.ply", "smooth")
+    with pytest.raises(error):
+        inspect_file(tmp_path / mesh_name)
+
+
+def test_a_suffix_that_is_not_written_is_refused_before_any_work(scan_file: Path, tmp_path: Path) -> None:
+    stages: list[str] = []
+    with pytest.raises(FormatError, match=r"\.docx"):
+        repair_file(scan_file, tmp_path / "out.docx", "smooth", progress=lambda name, _: stages.append(name))
+    assert stages == []
+
+
+def test_unknown_models_and_holes_are_named(scan_file: Path, tmp_path: Path) -> None:
+    with pytest.raises(ModelError, match="no-such-model"):
+        repair_file(scan_file, tmp_path / "out.ply", "no-such-model")
+    with pytest.raises(OptionError, match="id 77"):
+        repair_file(scan_file, tmp_path / "out.ply", "smooth", RepairOptions(HoleOptions(ids=(77,))))
+    assert not (tmp_path / "out.ply").exists()
+
+
+ONE: Triangles = np.array([[0, 1, 2]])
+
+
+def plate_with(*faces: tuple[int, int, int]) -> TriangleMesh:
+    mesh = punched(bumpy_plate(24, 2.0), (0.2, 0.1, 0), radius=0.25)
+    return TriangleMesh(mesh.vertices, np.concatenate([mesh.triangles, np.array(faces, np.int64).reshape(-1, 3)]))
+
+
+def strip(n: int) -> TriangleMesh:
+    """A Möbius strip."""
+    angle = 2 * np.pi * np.arange(n) / n
+    across = np.stack([np.cos(angle / 2) * np.cos(angle), np.cos(angle / 2) * np.sin(angle), np.sin(angle / 2)], 1)
+    middle = np.stack([np.cos(angle), np.sin(angle), 0 * angle], 1)
+    vertices = np.stack([middle - 0.3 * across, middle + 0.3 * across], axis=1).reshape(-1, 3)
+    rows = [(2 * i, 2 * i + 1, 2 * i + 2) for i in range(n - 1)]
+    rows += [(2 * i + 1, 2 * i + 3, 2 * i + 2) for i in range(n - 1)]
+    return TriangleMesh(vertices, np.array([*rows, (2 * n - 2, 2 * n - 1, 1), (2 * n - 1, 0, 1)]))
+
+
+def slit() -> TriangleMesh:
+    mesh = punched(open_grid(24), (0.5, 0.5, 0), radius=2.5)
+    vertices = mesh.vertices.copy()
+    inner = np.linalg.norm(vertices - [0.5, 0.5, 0], axis=1) < 4
+    vertices[inner, 1] = 0.5
+    return TriangleMesh(vertices, mesh.triangles)
+
+
+def lonely() -> TriangleMesh:
+    mesh = plate_with()
+    return TriangleMesh(np.concatenate([mesh.vertices, [[50.0, 0, 0], [0, 0, 50]]]), mesh.triangles)
+
+
+def crumbs() -> TriangleMesh:
+    """A sheet with a hole, a closed ball, a loose triangle, and a speck whose areas vanish in float64."""
+    speck = TriangleMesh(1e-170 * open_grid(5).vertices, punched(open_grid(5), (0, 0, 0), radius=0.5).triangles)
+    flat = TriangleMesh(open_grid(2).vertices + np.array([0, 0, 3]), open_grid(2).triangles[:1])
+    return joined(plate_with(), sphere(2, 0.1), flat, speck)
+
+
+def triangle(*corners: tuple[float, float, float]) -> TriangleMesh:
+    return TriangleMesh(np.array(corners, np.float64), ONE)
+
+
+NASTY: dict[str, Callable[[], TriangleMesh]] = {
+    "a single triangle": lambda: triangle((0, 0, 0), (1, 0, 0), (0, 1, 0)),
+    "a triangle without area": lambda: triangle((0, 0, 0), (1, 0, 0), (2, 0, 0)),
+    "lonely vertices": lonely,
+    "a face twice": lambda: plate_with((0, 1, 25)),
+    "a face and its back": lambda: plate_with((1, 0, 25)),
+    "faces without area": lambda: plate_with((0, 0, 1), (5, 5, 5), (0, 1, 2)),
+    "a fin": lambda: plate_with((100, 101, 500)),
+    "crumbs": crumbs,
+    "a Möbius strip": lambda: strip(30),
+    "a slit": slit,
+    "far away": lambda: TriangleMesh(plate_with().vertices + 1e9, plate_with().triangles),
+    "far away, rounded to a step of its edges": lambda: TriangleMesh(
+        plate_with().vertices + 1e15, plate_with().triangles
+    ),
+    "huge": lambda: TriangleMesh(plate_with().vertices * 1e58, plate_with().triangles),
+    "tiny": lambda: TriangleMesh(plate_with().vertices * 1e-55, plate_with().triangles),
+    "two points": lambda: TriangleMesh(np.array([[0.0, 0, 0], [1, 0, 0], [1, 0, 0]]), ONE),
+}
+
+
+@pytest.mark.parametrize("model", ["smooth", "self"])
+@pytest.mark.parametrize("name", NASTY)
+def test_nasty_meshes_give_a_repair_or_an_error_with_a_code(tmp_path: Path, name: str, model: str) -> None:
+    mesh = NASTY[name]()
+    source, output = write_ply(tmp_path / "in.ply", mesh), tmp_path / "out.ply"
+    for options in (RepairOptions(), EVERYTHING):
+        try:
+            report = repair_file(source, output, model, options)
+        except QuadpatchError:
+            # What it is must be clear from the file alone, so the list of its holes is refused, or one of them.
+            assert name in ("two points", "crumbs")
+            continue
+        check(mesh, output, report)
+
+
+def check(mesh: TriangleMesh, output: Path, report: dict[str, Any]) -> None:
+    json.dumps(report, allow_nan=False)
+    after = read_scan(output)
+    assert np.isfinite(after.vertices).all()
+    assert after.vertices[: len(mesh.vertices)].tobytes() == mesh.vertices.tobytes()
+    assert (after.triangles[: len(mesh.triangles)] == mesh.triangles).all()
+    assert crowded(after.triangles) == crowded(mesh.triangles)
+
+
+def crowded(triangles: Triangles) -> int:
+    """Edges of three and more faces."""
+    return int((faces_per_edge(triangles) > 2).sum())
+
+
+@pytest.mark.parametrize(
+    "vertices",
+    [
+        np.zeros((3, 3)),
+        np.array([[0.0, 0, 0], [0, 0, 0], [1, 0, 0]]),
+        1e-120 * np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]),
+    ],
+)
+def test_meshes_without_a_surface_are_refused(tmp_path: Path, vertices: FloatArray) -> None:
+    source = write_ply(tmp_path / "in.ply", TriangleMesh(vertices, ONE))
+    with pytest.raises(EmptyMeshError):
+        repair_file(source, tmp_path / "out.ply", "smooth")
+    with pytest.raises(EmptyMeshError):
+        inspect_file(source)
+
+
+@given(seed=st.integers(0, 2**32 - 1), n=st.integers(3, 40), m=st.integers(1, 80), lattice=st.booleans())
+@settings(max_examples=40, deadline=None)
+def test_heaps_of_random_triangles_give_a_repair_or_an_error_with_a_code(
+    tmp_path_factory: pytest.TempPathFactory, seed: int, n: int, m: int, lattice: bool
+) -> None:
+    rng = np.random.default_rng(seed)
+    vertices = rng.integers(0, 3, (n, 3)).astype(np.float64) if lattice else rng.normal(size=(n, 3))
+    mesh = TriangleMesh(vertices, rng.integers(0, n, (m, 3)))
+    folder = tmp_path_factory.mktemp("heap")
+    source = write_ply(folder / "in.ply", mesh)
+    for model in ("smooth", "self"):
+        try:
+            report = repair_file(source, folder / "out.ply", model, EVERYTHING)
+        except QuadpatchError:
+            continue
+        json.dumps(report, allow_nan=False)
+        after = read_scan(folder / "out.ply")
+        assert np.isfinite(after.vertices).all()
+        assert after.vertices[:n].tobytes() == vertices.tobytes()
