@@ -1,6 +1,6 @@
 """What learning adds to the geometric fill (sections 3 to 5 of the paper)."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from quadpatch.patches.folding import is_unfolded
 from quadpatch.patches.layout import lay_out, patchify, pick, seeds_near, take
 from quadpatch.patches.scale import PatchScale, choose_scale
 from quadpatch.patches.seeds import Seeds
-from quadpatch.practice import Practice, believed_share, distance_to_truth, error_per_gap
+from quadpatch.practice import Practice, believed_share, error_per_gap
 from quadpatch.reconstruction.displacement import displace, join_at_rim, rim_vertices
 from quadpatch.stages import Stages
 from quadpatch.types import BoolArray, FloatArray, Patches
@@ -125,7 +125,8 @@ def complete(
         sampled = pick(everywhere, near[wanted] & is_unfolded(everywhere.patches))
     with stages.stage("learn"):
         if inpainter is None:
-            inpainter = learn_from_patches(everywhere.patches, everywhere.outline, rng, stages.progress)
+            lesson = _without_practice(everywhere.patches, problem)
+            inpainter = learn_from_patches(lesson, everywhere.outline, rng, stages.progress)
         if inpainter is None:
             return None
         believed, per_gap = _rehearse(problem, _Model(inpainter, seeds, scale))
@@ -137,6 +138,16 @@ def complete(
         new = filled.mesh.vertices[filled.n_measured_vertices :]
         moved = new + believed * np.where(trust[filled.vertex_hole][:, None], joined, 0.0)
     return Completion(filled.with_vertices(moved), evidence, trust, believed, per_gap, scale, len(sampled.patches))
+
+
+def _without_practice(patches: Patches, problem: Problem) -> Patches:
+    """Hide what practice holes took, or a model would be tried on what it has learned by heart."""
+    if problem.practice is None:
+        return patches
+    cut_away = np.zeros(len(problem.filled.mesh.triangles), bool)
+    cut_away[: len(problem.practice.cut_away)] = problem.practice.cut_away
+    hidden = (patches.triangle >= 0) & cut_away[patches.triangle]
+    return replace(patches, known=patches.known & ~hidden)
 
 
 def _some(count: int, rng: np.random.Generator) -> BoolArray:
@@ -158,10 +169,9 @@ def _rehearse(problem: Problem, model: _Model) -> tuple[float, float | None]:
     sampled = pick(sampled, is_unfolded(sampled.patches))
     predicted = model.inpainter.predict(sampled.patches, sampled.outline)
     joined, evidence = _displacements(filled, sampled.patches, predicted)
-    truth, normals = distance_to_truth(problem.practice, filled)
-    along = np.where(trusted(evidence)[filled.vertex_hole], np.einsum("ij,ij->i", joined, normals), 0.0)
-    share = believed_share(truth, along)
-    return share, error_per_gap(filled, truth - share * along)
+    joined = np.where(trusted(evidence)[filled.vertex_hole][:, None], joined, 0.0)
+    share = believed_share(problem.practice, filled, joined)
+    return share, error_per_gap(problem.practice, filled.with_vertices(new + share * joined))
 
 
 def _displacements(filled: FilledMesh, patches: Patches, predicted: FloatArray) -> tuple[FloatArray, Evidence]:

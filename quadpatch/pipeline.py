@@ -17,7 +17,7 @@ from quadpatch.judge import HoleResult, judge
 from quadpatch.mesh.holes import Hole, find_holes, select_holes
 from quadpatch.mesh.measures import diagonal, mean_edge_length
 from quadpatch.options import RepairOptions
-from quadpatch.practice import choose_energy, distance_to_truth, error_per_gap, practise
+from quadpatch.practice import choose_energy, error_per_gap, practise
 from quadpatch.stages import Stages
 from quadpatch.types import TriangleMesh
 
@@ -118,6 +118,6 @@ def _fill(mesh: TriangleMesh, chosen: list[Hole], rng: np.random.Generator) -> t
     if practice is not None:
         energy = choose_energy(practice, ENERGIES)
         filled_again = fair_holes(practice.closed, energy)
-        per_gap = error_per_gap(filled_again, distance_to_truth(practice, filled_again)[0])
+        per_gap = error_per_gap(practice, filled_again)
     filled = fair_holes(close_holes(mesh, [hole.loop for hole in chosen]), energy)
     return Problem(filled, diameters, edge, practice, filled_again), energy, per_gap

@@ -11,12 +11,12 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
-from quadpatch.filling.fairing import Energy
+from quadpatch.filling.fairing import Energy, triangles_around
 from quadpatch.filling.fill import ClosedMesh, FilledMesh, close_holes, fair_holes
 from quadpatch.mesh.boundary import boundary_edge_mask, boundary_loops, directed_edges
+from quadpatch.mesh.distance import distance_to_mesh
 from quadpatch.mesh.normals import vertex_normals
-from quadpatch.raycast import RayScene
-from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh
+from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Triangles, Vertices
 
 MAX_HOLES = 64
 # Fewer holes than this decide nothing.
@@ -29,7 +29,7 @@ _ENOUGH = 24
 _MARGIN_EDGES = 4.0
 
 # Shares of the predicted displacement that are tried, and what a share must gain over none to be believed.
-_SHARES = np.linspace(0.0, 1.0, 11)
+SHARES = (0.0, 0.25, 0.5, 0.75, 1.0)
 _LEAST_GAIN = 0.02
 
 
@@ -39,14 +39,20 @@ class Practice:
 
     Attributes
     ----------
-    truth : RayScene
-        Of the mesh without practice holes.
+    truth : TriangleMesh
+        The surface that was cut away, with a ring around it.
+    removed : (r, 3) float64
+        Vertices that were cut away.
+    cut_away : (n_triangles,) bool
+        Triangles of the mesh that practice holes took.
     closed : ClosedMesh
     diameter : float
         Of the practice holes, in mesh units.
     """
 
-    truth: RayScene
+    truth: TriangleMesh
+    removed: Vertices
+    cut_away: BoolArray
     closed: ClosedMesh
     diameter: float
 
@@ -69,67 +75,78 @@ def practise(mesh: TriangleMesh, diameter: float, edge_length: float, rng: np.ra
     Practice or None
         None where the undamaged surface has no room for enough holes.
     """
-    best: tuple[TriangleMesh, list[IntArray], float] | None = None
+    best: tuple[BoolArray, list[IntArray], float] | None = None
     for size in _SIZES:
-        punched = _punch(mesh, size * diameter / 2, _MARGIN_EDGES * edge_length, rng)
-        loops = _new_loops(mesh, punched)
+        gone = _punch(mesh, size * diameter / 2, _MARGIN_EDGES * edge_length, rng)
+        loops = _new_loops(mesh, mesh.triangles[~gone[mesh.triangles].any(axis=1)])
         if len(loops) >= MIN_HOLES and (best is None or len(loops) > len(best[1])):
-            best = punched, loops, size * diameter
+            best = gone, loops, size * diameter
         if len(loops) >= _ENOUGH:
             break
     if best is None:
         return None
-    punched, loops, used = best
-    return Practice(RayScene(mesh), close_holes(punched, loops), used)
+    gone, loops, used = best
+    cut_away = np.asarray(gone[mesh.triangles].any(axis=1))
+    around = triangles_around(mesh.triangles, np.flatnonzero(gone), len(mesh.vertices), 2)
+    truth = TriangleMesh(mesh.vertices, mesh.triangles[around])
+    punched = TriangleMesh(mesh.vertices, mesh.triangles[~cut_away])
+    return Practice(truth, mesh.vertices[gone], cut_away, close_holes(punched, loops), used)
 
 
 def choose_energy(practice: Practice, energies: Sequence[Energy]) -> Energy:
     """Choose the energy that leaves the practice holes closest to the truth."""
-    errors = []
-    for energy in energies:
-        truth, _ = distance_to_truth(practice, fair_holes(practice.closed, energy))
-        errors.append(float(np.nanmean(np.abs(truth))) if np.isfinite(truth).any() else np.inf)
+    errors = [float(error_per_hole(practice, fair_holes(practice.closed, energy)).mean()) for energy in energies]
     return energies[int(np.argmin(errors))]
 
 
-def distance_to_truth(practice: Practice, filled: FilledMesh) -> tuple[FloatArray, FloatArray]:
-    """Signed distances (k,) of all new vertices along their normals (k, 3) to the true surface; NaN out of reach."""
-    first = filled.n_measured_vertices
-    points = filled.mesh.vertices[first:]
-    normals = vertex_normals(filled.mesh.vertices, filled.mesh.triangles)[first:]
-    # Start a little behind, so that a surface at distance 0 is hit.
-    behind = 1e-6 * practice.diameter
-    distances = []
-    for sign in (1.0, -1.0):
-        triangle, distance = practice.truth.cast(
-            points - sign * behind * normals, sign * normals, practice.diameter + behind
-        )
-        distances.append(np.where(triangle >= 0, distance - behind, np.inf))
-    ahead, back = distances
-    nearest = np.where(ahead <= back, ahead, -back)
-    return np.where(np.abs(nearest) < practice.diameter, nearest, np.nan), normals
-
-
-def believed_share(truth: FloatArray, along: FloatArray) -> float:
-    """Choose the share of predicted displacements (k,) that leaves the smallest mean error; 0 where none helps."""
-    usable = np.isfinite(truth)
-    if not usable.any():
-        return 0.0
-    errors = [float(np.abs(truth[usable] - share * along[usable]).mean()) for share in _SHARES]
+def believed_share(practice: Practice, filled: FilledMesh, displacement: FloatArray) -> float:
+    """Choose the share of predicted displacements (k, 3) that leaves the smallest mean error; 0 where none helps."""
+    new = filled.mesh.vertices[filled.n_measured_vertices :]
+    errors = [
+        float(error_per_hole(practice, filled.with_vertices(new + share * displacement)).mean()) for share in SHARES
+    ]
     best = int(np.argmin(errors))
-    return float(_SHARES[best]) if errors[best] < (1 - _LEAST_GAIN) * errors[0] else 0.0
+    return SHARES[best] if errors[best] < (1 - _LEAST_GAIN) * errors[0] else 0.0
 
 
-def error_per_gap(filled: FilledMesh, error: FloatArray) -> float:
-    """Mean error of the practice holes in units of their gap (see `FilledMesh`); errors (k,) may hold NaN."""
-    usable = np.isfinite(error)
-    gap = filled.gap[filled.vertex_hole[usable]]
-    total = float(gap.sum())
-    return float(np.abs(error[usable]).sum()) / total if total > 0 else 0.0
+def error_per_hole(practice: Practice, filled: FilledMesh) -> FloatArray:
+    """Measure how far each practice hole's fill is from the true surface, both ways.
+
+    Half from the new vertices and the centroids of the new triangles to the truth, half from the vertices that were cut
+    away to the fill.
+
+    Returns
+    -------
+    (n_holes,) float64
+        Mean distance, in mesh units.
+    """
+    n_holes = len(filled.gap)
+    vertices = filled.mesh.vertices
+    new = filled.mesh.triangles[filled.n_measured_triangles :]
+    points = np.concatenate([vertices[filled.n_measured_vertices :], vertices[new].mean(axis=1)])
+    hole = np.concatenate([filled.vertex_hole, filled.triangle_hole])
+    there = _mean_by(hole, distance_to_mesh(points, practice.truth), n_holes)
+    # Every removed vertex belongs to the hole whose new surface is nearest.
+    centroids = vertices[new].mean(axis=1)
+    nearest = filled.triangle_hole[cKDTree(centroids).query(practice.removed)[1]]
+    back = _mean_by(nearest, distance_to_mesh(practice.removed, TriangleMesh(vertices, new)), n_holes)
+    return 0.5 * (there + back)
 
 
-def _punch(mesh: TriangleMesh, radius: float, margin: float, rng: np.random.Generator) -> TriangleMesh:
-    """Remove disks of surface that keep clear of every boundary and of each other."""
+def error_per_gap(practice: Practice, filled: FilledMesh) -> float:
+    """Mean error of the practice holes in units of their gap (see `FilledMesh`)."""
+    total = float(filled.gap.sum())
+    return float(error_per_hole(practice, filled).sum()) / total if total > 0 else 0.0
+
+
+def _mean_by(group: IntArray, values: FloatArray, n_groups: int) -> FloatArray:
+    total = np.bincount(group, values, minlength=n_groups)
+    mean: FloatArray = total / np.maximum(np.bincount(group, minlength=n_groups), 1)
+    return mean
+
+
+def _punch(mesh: TriangleMesh, radius: float, margin: float, rng: np.random.Generator) -> BoolArray:
+    """Choose disks of surface that keep clear of every boundary and of each other: their vertices (n,) bool."""
     normals = vertex_normals(mesh.vertices, mesh.triangles)
     tree = cKDTree(mesh.vertices)
     clear = _far_from_boundary(mesh, tree, radius + margin)
@@ -145,7 +162,7 @@ def _punch(mesh: TriangleMesh, radius: float, margin: float, rng: np.random.Gene
         count += 1
         if count == MAX_HOLES:
             break
-    return TriangleMesh(mesh.vertices, mesh.triangles[~gone[mesh.triangles].any(axis=1)])
+    return gone
 
 
 def _far_from_boundary(mesh: TriangleMesh, tree: "cKDTree[None]", distance: float) -> BoolArray:
@@ -159,10 +176,10 @@ def _far_from_boundary(mesh: TriangleMesh, tree: "cKDTree[None]", distance: floa
     return far
 
 
-def _new_loops(mesh: TriangleMesh, punched: TriangleMesh) -> list[IntArray]:
+def _new_loops(mesh: TriangleMesh, left: Triangles) -> list[IntArray]:
     old = np.zeros(len(mesh.vertices), bool)
     old[_boundary_vertices(mesh)] = True
-    boundary = boundary_loops(punched.triangles)
+    boundary = boundary_loops(left)
     pairs = zip(boundary.loops, boundary.is_manifold, strict=True)
     return [loop for loop, is_manifold in pairs if is_manifold and not old[loop].any()]
 

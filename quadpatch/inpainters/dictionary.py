@@ -16,8 +16,8 @@ from quadpatch.sparse.signals import from_signals, to_signals
 from quadpatch.types import FloatArray, Patches, Progress
 
 # Self-similar dictionaries: enough atoms for a scan's own texture, few enough to be learned in seconds.
-SELF_ATOMS = 128
-SELF_NONZERO = 8
+SELF_ATOMS = 192
+SELF_NONZERO = 12
 SELF_ITERATIONS = 8
 MAX_TRAINING_PATCHES = 2000
 MIN_TRAINING_PATCHES = 24

@@ -6,9 +6,8 @@ import numpy as np
 
 from quadpatch.options import PatchOptions
 
-# A patch must see about as much known surface around a hole as the hole is wide; 1.6 keeps the corners of a
-# centred patch clear of the rim on all sides.
-HOLES_PER_LENGTH = 2.2
+# A patch must see about as much known surface around a hole as the hole is wide, also when its seed lies off centre.
+HOLES_PER_LENGTH = 1.8
 
 # Bins a little finer than the mesh lose no detail and invent none.
 EDGES_PER_BIN = 0.65
