@@ -1,0 +1,166 @@
+import numpy as np
+import pytest
+
+from quadpatch.filling.fairing import THIN_PLATE
+from quadpatch.filling.fill import FilledMesh, fair_holes
+from quadpatch.mesh.boundary import boundary_loops
+from quadpatch.mesh.measures import mean_edge_length
+from quadpatch.pipeline import ENERGIES
+from quadpatch.practice import (
+    MAX_HOLES,
+    MIN_HOLES,
+    Practice,
+    believed_share,
+    choose_energy,
+    error_per_gap,
+    error_per_hole,
+    practise,
+)
+from quadpatch.raycast import RayScene
+from quadpatch.types import FloatArray, TriangleMesh
+from tests.quadpatch.shapes import bumpy_plate, open_grid, punched, relief, sphere
+
+DIAMETER = 0.25
+
+
+def practice_on(mesh: TriangleMesh, seed: int = 0, diameter: float = DIAMETER) -> Practice | None:
+    return practise(mesh, diameter, mean_edge_length(mesh), np.random.default_rng(seed))
+
+
+def some_practice(mesh: TriangleMesh, seed: int = 0, diameter: float = DIAMETER) -> Practice:
+    found = practice_on(mesh, seed, diameter)
+    assert found is not None
+    return found
+
+
+def loops_of(mesh: TriangleMesh) -> set[tuple[int, ...]]:
+    return {tuple(loop.tolist()) for loop in boundary_loops(mesh.triangles).loops}
+
+
+def new_vertices(filled: FilledMesh) -> FloatArray:
+    return filled.mesh.vertices[filled.n_measured_vertices :]
+
+
+SHEET = punched(bumpy_plate(120, 2.0), (0.3, 0.3, 0), (-0.5, 0.2, 0), (0, -0.6, 0), radius=0.12)
+FLAT = TriangleMesh(bumpy_plate(100, 2.0).vertices * [1, 1, 0], bumpy_plate(100, 2.0).triangles)
+RELIEF = relief(120, 2.0, 0.03, 10)
+
+
+def test_real_rims_stay_as_they_are_and_practice_keeps_away_from_them() -> None:
+    practice = some_practice(SHEET)
+    opened = practice.closed.mesh
+    real = loops_of(SHEET)
+    assert real < loops_of(opened)
+    assert MIN_HOLES <= len(loops_of(opened) - real) <= MAX_HOLES
+    assert practice.closed.n_holes == len(loops_of(opened) - real)
+    rims = SHEET.vertices[np.concatenate([np.array(loop) for loop in real])]
+    for loop in loops_of(opened) - real:
+        apart = np.linalg.norm(opened.vertices[list(loop)][:, None] - rims[None], axis=2)
+        # The margin of four edges, less the triangles that a disk's border cuts.
+        assert apart.min() > 2 * mean_edge_length(SHEET)
+
+
+def test_practice_holes_are_about_as_wide_as_the_real_ones_and_apart() -> None:
+    practice = some_practice(SHEET)
+    loops = [np.array(loop) for loop in loops_of(practice.closed.mesh) - loops_of(SHEET)]
+    widths = [np.ptp(SHEET.vertices[loop, 0]) for loop in loops]
+    assert practice.diameter <= DIAMETER
+    assert practice.diameter < np.median(widths) < practice.diameter + 4 * mean_edge_length(SHEET)
+    corners = np.concatenate(loops)
+    assert len(np.unique(corners)) == len(corners)
+
+
+def test_only_surface_is_cut_away() -> None:
+    practice = some_practice(SHEET)
+    kept = {tuple(row) for row in practice.closed.mesh.triangles.tolist()}
+    assert kept < {tuple(row) for row in SHEET.triangles.tolist()}
+    assert practice.closed.mesh.vertices is SHEET.vertices or (practice.closed.mesh.vertices == SHEET.vertices).all()
+
+
+def test_the_same_generator_cuts_the_same_holes_and_another_one_others() -> None:
+    one, same, other = some_practice(SHEET, 1), some_practice(SHEET, 1), some_practice(SHEET, 2)
+    assert (one.closed.mesh.triangles == same.closed.mesh.triangles).all()
+    assert one.closed.plate.vertices.tobytes() == same.closed.plate.vertices.tobytes()
+    assert loops_of(one.closed.mesh) != loops_of(other.closed.mesh)
+
+
+@pytest.mark.parametrize(
+    "mesh", [sphere(1), open_grid(5, 0.4), punched(sphere(3), (0, 0, 1), (0, 0, -1), (1, 0, 0), radius=0.9)]
+)
+def test_without_room_there_is_no_practice(mesh: TriangleMesh) -> None:
+    assert practice_on(mesh, diameter=0.5) is None
+
+
+def test_smaller_holes_are_tried_where_there_is_no_room_for_large_ones() -> None:
+    practice = some_practice(sphere(5), diameter=0.8)
+    assert practice.diameter < 0.8
+
+
+def test_a_smooth_surface_is_continued_by_a_smooth_energy() -> None:
+    assert choose_energy(some_practice(sphere(5), diameter=0.5), ENERGIES) != THIN_PLATE
+
+
+def test_a_noisy_surface_is_continued_by_the_thin_plate() -> None:
+    mesh = open_grid(100, 2.0)
+    noise = np.random.default_rng(0).normal(0, 0.01, mesh.vertices.shape) * [0, 0, 1]
+    assert choose_energy(some_practice(TriangleMesh(mesh.vertices + noise, mesh.triangles)), ENERGIES) == THIN_PLATE
+
+
+def test_a_flat_surface_is_filled_without_error() -> None:
+    practice = some_practice(FLAT)
+    filled = fair_holes(practice.closed, THIN_PLATE)
+    errors = error_per_hole(practice, filled)
+    assert errors.shape == (practice.closed.n_holes,)
+    assert errors.max() < 1e-9
+
+
+def test_the_error_is_the_distance_to_what_was_cut_away() -> None:
+    practice = some_practice(FLAT)
+    filled = fair_holes(practice.closed, THIN_PLATE)
+    lifted = filled.with_vertices(new_vertices(filled) + np.array([0, 0, 0.001]))
+    # Triangles at the rim are lifted in part only.
+    assert error_per_hole(practice, lifted).mean() == pytest.approx(0.001, rel=0.25)
+    one_hole = filled.vertex_hole == 3
+    one = filled.with_vertices(new_vertices(filled) + one_hole[:, None] * np.array([0, 0, 0.001]))
+    errors = error_per_hole(practice, one)
+    assert errors[3] > 0.0007
+    assert np.delete(errors, 3).max() < 1e-9
+
+
+def test_the_error_per_gap_says_how_far_a_fill_is_off_in_units_of_its_uncertainty() -> None:
+    practice = some_practice(RELIEF)
+    filled = fair_holes(practice.closed, ENERGIES[1])
+    expected = error_per_hole(practice, filled).sum() / filled.gap.sum()
+    assert error_per_gap(practice, filled) == pytest.approx(expected)
+
+
+@pytest.fixture(scope="module")
+def on_relief() -> tuple[Practice, FilledMesh, FloatArray]:
+    """Practice on a relief, its fill, and what would take every new vertex to the truth."""
+    practice = some_practice(RELIEF)
+    filled = fair_holes(practice.closed, THIN_PLATE)
+    above = new_vertices(filled) * [1, 1, 0] + [0, 0, 1]
+    _, distance = RayScene(RELIEF).cast(above, np.tile([0.0, 0, -1], (len(above), 1)))
+    return practice, filled, np.column_stack([np.zeros((len(above), 2)), 1 - distance - new_vertices(filled)[:, 2]])
+
+
+def test_a_model_that_is_right_is_believed(on_relief: tuple[Practice, FilledMesh, FloatArray]) -> None:
+    practice, filled, correction = on_relief
+    assert believed_share(practice, filled, correction) == 1.0
+
+
+def test_a_model_that_says_twice_as_much_is_believed_by_half(
+    on_relief: tuple[Practice, FilledMesh, FloatArray],
+) -> None:
+    practice, filled, correction = on_relief
+    assert believed_share(practice, filled, 2 * correction) == 0.5
+
+
+@pytest.mark.parametrize("kind", ["nothing", "the opposite", "noise"])
+def test_a_model_that_does_not_help_is_not_believed(
+    on_relief: tuple[Practice, FilledMesh, FloatArray], kind: str
+) -> None:
+    practice, filled, correction = on_relief
+    noise = np.random.default_rng(0).normal(0, np.abs(correction).mean(), correction.shape)
+    says = {"nothing": 0 * correction, "the opposite": -correction, "noise": noise}[kind]
+    assert believed_share(practice, filled, says) == 0.0
