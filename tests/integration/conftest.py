@@ -1,6 +1,7 @@
 """One real box per test process, and meshes built in code."""
 
 from collections.abc import Callable, Iterator
+from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -55,11 +56,13 @@ class RunningBox:
 @pytest.fixture(scope="session")
 def box(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RunningBox]:
     data = tmp_path_factory.mktemp("box")
-    with pytest.MonkeyPatch.context() as environment:
-        for name, value in FAST.items():
-            environment.setenv(name, value)
-        with running_box(data) as url:
-            yield RunningBox(url, data)
+    with ExitStack() as stack:
+        # For the box alone: other tests of this process read the environment, too.
+        with pytest.MonkeyPatch.context() as environment:
+            for name, value in FAST.items():
+                environment.setenv(name, value)
+            url = stack.enter_context(running_box(data))
+        yield RunningBox(url, data)
 
 
 @pytest.fixture

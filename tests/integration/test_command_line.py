@@ -7,6 +7,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -99,7 +100,11 @@ def test_a_timeout_cancels_the_job(run: Callable[..., Result], large_relief: Pat
 def test_ctrl_c_cancels_the_job_and_says_so(client: Any, box: Any, large_relief: Path, tmp_path: Path) -> None:
     command = [sys.executable, "-m", "client", "repair", str(large_relief), "-o", str(tmp_path / "out.ply")]
     process = subprocess.Popen(
-        [*command, "--model", "self", "--url", box.url, "--label", "interrupted"], stderr=subprocess.PIPE, text=True
+        [*command, "--model", "self", "--url", box.url, "--label", "interrupted"],
+        stderr=subprocess.PIPE,
+        text=True,
+        # A run in the background is started with Ctrl-C ignored, and hands that on.
+        preexec_fn=partial(signal.signal, signal.SIGINT, signal.SIG_DFL),  # noqa: PLW1509
     )
     deadline = time.monotonic() + 60
     while not (jobs := [j for j in client.jobs(20) if j.spec.label == "interrupted" and j.state == JobState.RUNNING]):
