@@ -118,6 +118,7 @@ def test_the_numbers_of_the_method_are_those_of_the_code() -> None:
         "b/a = " + ", ".join(f"{energy.variation / energy.plate:g}" for energy in pipeline.ENERGIES[:-1]),
         f"fewer than {practice.MIN_HOLES} practice holes",
         f"{practice.MAX_HOLES} holes of the median diameter",
+        "one of " + ", ".join(f"{share:g}" for share in practice.SHARES[:-1]) + f" and {practice.SHARES[-1]:g}",
         f"{100 * judge.LEAST_COVERAGE:g} % of its new vertices",
         f"differ by no more than {judge.MOST_DISAGREEMENT} times",
         f"over {triangulation.MAX_TABLE_SIZE} vertices",
