@@ -19,8 +19,9 @@ from tests.quadpatch.shapes import (
 )
 
 PLACES = [(x, y, 0.0) for x in (-0.5, 0.1, 0.55) for y in (-0.45, 0.05, 0.5)]
-WHOLE_RELIEF = relief(120, 2.0, 0.03, 10)
-RELIEF = punched(WHOLE_RELIEF, *PLACES, radius=0.13)
+WHOLE_RELIEF = relief(160, 2.0, 0.02, 14)
+RELIEF = punched(WHOLE_RELIEF, *PLACES, radius=0.09)
+SMALL_RELIEF = punched(relief(80, 2.0, 0.03, 8), *PLACES, radius=0.13)
 
 
 @pytest.fixture(scope="module")
@@ -51,13 +52,13 @@ def moved(mesh: TriangleMesh, seed: int) -> tuple[TriangleMesh, FloatArray, Floa
 
 
 def test_what_was_learned_from_a_relief_beats_the_smooth_fill(smooth_relief: Repair, learned_relief: Repair) -> None:
-    assert height_errors(learned_relief).mean() < 0.75 * height_errors(smooth_relief).mean()
+    assert height_errors(learned_relief).mean() < 0.6 * height_errors(smooth_relief).mean()
     completion = learned_relief.completion
     assert completion is not None
     assert completion.believed > 0
     filled = {i for i, result in enumerate(learned_relief.results[1:]) if result.verdict == "filled"}
     assert filled == set(np.flatnonzero(completion.trust).tolist())
-    assert len(filled) >= 4
+    assert len(filled) >= 6
 
 
 def test_holes_that_the_model_does_not_complete_stay_as_geometry_filled_them(
@@ -74,11 +75,11 @@ def test_holes_that_the_model_does_not_complete_stay_as_geometry_filled_them(
 
 def test_every_stage_is_gone_through_in_order() -> None:
     stages = Stages()
-    inpaint(RELIEF, None, RepairOptions(), stages, learn=True)
+    inpaint(SMALL_RELIEF, None, RepairOptions(), stages, learn=True)
     names = ["holes", "fill", "smooth", "quadrangulate", "patchify", "learn", "inpaint", "reconstruct", "judge"]
     assert list(stages.seconds) == names
     geometry = Stages()
-    inpaint(RELIEF, None, RepairOptions(), geometry)
+    inpaint(SMALL_RELIEF, None, RepairOptions(), geometry)
     assert list(geometry.seconds) == ["holes", "fill", "judge"]
 
 
@@ -90,7 +91,7 @@ def test_measured_vertices_and_triangles_come_first_bit_for_bit(
     assert filled.mesh.vertices[: len(RELIEF.vertices)].tobytes() == RELIEF.vertices.tobytes()
     assert filled.mesh.triangles[: len(RELIEF.triangles)].tobytes() == RELIEF.triangles.tobytes()
     (border,) = boundary_loops(filled.mesh.triangles).loops
-    assert len(border) == 4 * 119
+    assert len(border) == 4 * 159
 
 
 @pytest.mark.parametrize("seed", [0, 1])
@@ -106,12 +107,14 @@ def test_a_smooth_repair_moves_with_its_mesh(seed: int, smooth_relief: Repair) -
         assert other.confidence == (None if one.confidence is None else pytest.approx(one.confidence, abs=1e-9))
 
 
-def test_a_learned_repair_moves_with_its_mesh_as_far_as_the_quads_do(learned_relief: Repair) -> None:
+def test_a_learned_repair_moves_with_its_mesh_as_far_as_the_quads_do(
+    smooth_relief: Repair, learned_relief: Repair
+) -> None:
     # The mesher lays other quads over a turned mesh, so other patches are learned from and averaged: the same
     # triangles, and displacements that differ by less than half of what they are.
     mesh, rotation, shift = moved(RELIEF, 0)
     there = inpaint(mesh, None, RepairOptions(), learn=True)
-    here, smooth = learned_relief, inpaint(RELIEF, None, RepairOptions())
+    here, smooth = learned_relief, smooth_relief
     assert (there.filled.mesh.triangles == here.filled.mesh.triangles).all()
     assert here.completion is not None
     assert there.completion is not None
@@ -125,12 +128,6 @@ def test_a_learned_repair_moves_with_its_mesh_as_far_as_the_quads_do(learned_rel
 def test_a_mesh_twice_as_large_gets_the_same_repair_twice_as_large(smooth_relief: Repair) -> None:
     doubled = inpaint(TriangleMesh(1024.0 * RELIEF.vertices, RELIEF.triangles), None, RepairOptions())
     assert (doubled.filled.mesh.vertices == 1024.0 * smooth_relief.filled.mesh.vertices).all()
-
-
-def test_the_same_seed_gives_the_same_bits(learned_relief: Repair) -> None:
-    again = inpaint(RELIEF, None, RepairOptions(), learn=True)
-    assert again.filled.mesh.vertices.tobytes() == learned_relief.filled.mesh.vertices.tobytes()
-    assert [result.confidence for result in again.results] == [result.confidence for result in learned_relief.results]
 
 
 @pytest.mark.parametrize("learn", [False, True])
@@ -189,10 +186,10 @@ def test_too_little_surface_to_learn_from_falls_back_to_geometry_and_says_so() -
 
 
 def test_a_hole_without_new_vertices_is_not_called_folded() -> None:
-    small = np.flatnonzero((WHOLE_RELIEF.triangles == 60 * 120 + 60).any(axis=1))[:1]
-    whole = punched(WHOLE_RELIEF, *PLACES[:4], radius=0.13)
-    drop = np.isin(whole.triangles, WHOLE_RELIEF.triangles[small]).all(axis=1)
-    repair = inpaint(TriangleMesh(whole.vertices, whole.triangles[~drop]), None, RepairOptions(), learn=True)
+    # One triangle is missing, far from all other holes.
+    drop = int(np.argmin(np.linalg.norm(SMALL_RELIEF.vertices[SMALL_RELIEF.triangles[:, 0]] - [0.1, 0.8, 0], axis=1)))
+    mesh = TriangleMesh(SMALL_RELIEF.vertices, np.delete(SMALL_RELIEF.triangles, drop, axis=0))
+    repair = inpaint(mesh, None, RepairOptions(), learn=True)
     tiny = repair.results[-1]
     assert tiny.hole.n_edges == 3
     assert (tiny.verdict, tiny.n_new_vertices, tiny.n_new_triangles) == ("filled_smooth", 0, 1)
