@@ -87,7 +87,7 @@ class AutoencoderInpainter:
         signals, scaling = to_signals(patches.heights - outline, np.ones_like(patches.known))
         shaped = signals.reshape(patches.heights.shape)
         correction = self._run(np.stack([shaped, patches.known], axis=1).astype(np.float32))
-        return outline + from_signals((shaped + correction).reshape(len(patches), -1), scaling)
+        return outline + from_signals((shaped + correction).reshape(signals.shape), scaling)
 
     def _predict_heights(self, patches: Patches, scale: PaperScale) -> FloatArray:
         mean = _mean_of_known(patches.heights, patches.known)[:, None, None]

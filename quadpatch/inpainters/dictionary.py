@@ -40,7 +40,7 @@ class DictionaryInpainter:
     def predict(self, patches: Patches, outline: FloatArray) -> FloatArray:
         """See `Inpainter`."""
         signals, scaling = to_signals(patches.heights - outline, patches.known)
-        known = patches.known.reshape(len(patches), -1)
+        known = patches.known.reshape(signals.shape)
         codes = masked_omp(signals, known, self.dictionary.atoms, self.dictionary.n_nonzero)
         return outline + from_signals(codes @ self.dictionary.atoms.T, scaling)
 
@@ -68,12 +68,12 @@ def learn_from_patches(
     known = patches.known[usable]
     signals, scaling = to_signals(patches.heights[usable] - outline[usable], known)
     textured = scaling.spread > 0
-    n_atoms = min(SELF_ATOMS, int(textured.sum()) // 3)
     if textured.sum() < MIN_TRAINING_PATCHES:
         return None
+    n_atoms = min(SELF_ATOMS, int(textured.sum()) // 3)
     atoms, _ = masked_ksvd(
         signals[textured],
-        known[textured].reshape(int(textured.sum()), -1),
+        known.reshape(signals.shape)[textured],
         KsvdOptions(n_atoms, min(SELF_NONZERO, n_atoms), SELF_ITERATIONS),
         rng,
         lambda i, _: progress("learn", (i + 1) / SELF_ITERATIONS),

@@ -53,9 +53,10 @@ def to_signals(detail: FloatArray, known: BoolArray, least_spread: float = 0.0) 
     scaling : Scaling
         For `from_signals`.
     """
-    n_patches = len(detail)
-    flat_known = known.reshape(n_patches, -1)
-    values = np.where(flat_known, detail.reshape(n_patches, -1), 0.0)
+    # Written out, because -1 has no meaning for no patch at all.
+    shape = len(detail), detail.shape[1] * detail.shape[2]
+    flat_known = known.reshape(shape)
+    values = np.where(flat_known, detail.reshape(shape), 0.0)
     count = np.maximum(flat_known.sum(axis=1), 1)
     mean = values.sum(axis=1) / count
     centred = np.where(flat_known, values - mean[:, None], 0.0)

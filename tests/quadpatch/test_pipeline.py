@@ -2,10 +2,12 @@ import numpy as np
 import pytest
 
 from quadpatch.errors import OptionError
+from quadpatch.inpainters.dictionary import DictionaryInpainter
 from quadpatch.mesh.boundary import boundary_loops
-from quadpatch.options import HoleOptions, RepairOptions
+from quadpatch.options import HoleOptions, PatchOptions, RepairOptions
 from quadpatch.pipeline import Repair, inpaint
 from quadpatch.raycast import RayScene
+from quadpatch.sparse.dictionary import Dictionary
 from quadpatch.stages import Stages
 from quadpatch.types import FloatArray, TriangleMesh
 from tests.quadpatch.shapes import (
@@ -183,6 +185,17 @@ def test_too_little_surface_to_learn_from_falls_back_to_geometry_and_says_so() -
     result = repair.results[0]
     assert repair.warnings or result.code == "no_practice"
     assert "practice on this mesh showed" not in result.reason
+
+
+@pytest.mark.parametrize("length", [0.02, 0.3, 1.9, 3.0, 10.0])
+@pytest.mark.parametrize("learn", [False, True])
+def test_patches_of_any_length_give_a_repair_also_where_none_shows_the_hole(length: float, learn: bool) -> None:
+    mesh = punched(sphere(4), (0, 0, 1), radius=0.4)
+    dictionary = None if learn else DictionaryInpainter(Dictionary(np.eye(256)[:, :20], 16, 4))
+    options = RepairOptions(HoleOptions(max_diameter=10.0), PatchOptions(length=length))
+    repair = inpaint(mesh, dictionary, options, learn=learn)
+    assert [result.verdict for result in repair.results] == ["filled_smooth"]
+    assert np.isfinite(new_vertices(repair)).all()
 
 
 def test_a_hole_without_new_vertices_is_not_called_folded() -> None:

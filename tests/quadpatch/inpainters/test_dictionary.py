@@ -1,0 +1,158 @@
+import numpy as np
+import pytest
+
+from quadpatch.inpainters.dictionary import (
+    LEAST_KNOWN,
+    MIN_TRAINING_PATCHES,
+    SELF_ATOMS,
+    DictionaryInpainter,
+    learn_from_patches,
+)
+from quadpatch.sparse.dictionary import Dictionary
+from quadpatch.types import BoolArray, FloatArray, Patches, no_progress
+
+N = 12
+
+
+def as_patches(heights: FloatArray, known: BoolArray | None = None) -> Patches:
+    count = len(heights)
+    known = np.ones(heights.shape, bool) if known is None else known
+    frames = np.tile(np.eye(3), (count, 1, 1))
+    return Patches(
+        np.zeros((count, 3)), frames, 1.0, heights, known, np.ones(heights.shape, bool), np.zeros(heights.shape, int)
+    )
+
+
+def waves(count: int, seed: int = 0) -> FloatArray:
+    """Reliefs of one wavelength in any phase: four functions span them all."""
+    rng = np.random.default_rng(seed)
+    row, column = np.mgrid[:N, :N] * (2 * np.pi * 1.5 / N)
+    phase = rng.uniform(0, 2 * np.pi, (2, count, 1, 1))
+    return np.asarray(rng.uniform(0.5, 2, (count, 1, 1)) * np.sin(row + phase[0]) * np.sin(column + phase[1]))
+
+
+def with_hole(count: int, seed: int = 1) -> BoolArray:
+    known = np.ones((count, N, N), bool)
+    for i, (row, column) in enumerate(np.random.default_rng(seed).integers(2, 6, (count, 2))):
+        known[i, row : row + 4, column : column + 4] = False
+    return known
+
+
+@pytest.fixture(scope="module")
+def learned() -> DictionaryInpainter:
+    heights = waves(400)
+    found = learn_from_patches(as_patches(heights), 0 * heights, np.random.default_rng(0), no_progress)
+    assert found is not None
+    return found
+
+
+def test_a_texture_that_was_learned_is_continued_into_the_unknown(learned: DictionaryInpainter) -> None:
+    truth, known = waves(50, seed=9), with_hole(50)
+    flat = np.where(known, truth, 0.0)
+    predicted = learned.predict(as_patches(flat, known), 0 * flat)
+    error, floor = (np.abs(guess - truth)[~known].mean() for guess in (predicted, flat))
+    assert error < 0.1 * floor
+
+
+def test_what_stands_in_unknown_bins_is_not_looked_at(learned: DictionaryInpainter) -> None:
+    truth, known = waves(20, seed=5), with_hole(20)
+    noise = np.random.default_rng(0).normal(size=truth.shape)
+    one, other = (
+        learned.predict(as_patches(np.where(known, truth, junk), known), 0 * truth) for junk in (0.0, 100 * noise)
+    )
+    assert (one == other).all()
+
+
+def test_the_outline_is_carried_and_only_the_detail_is_coded(learned: DictionaryInpainter) -> None:
+    truth, known = waves(20, seed=5), with_hole(20)
+    outline = np.random.default_rng(2).normal(0, 5, truth.shape)
+    plain = learned.predict(as_patches(truth, known), 0 * truth)
+    carried = learned.predict(as_patches(truth + outline, known), outline)
+    np.testing.assert_allclose(carried, plain + outline, atol=1e-9)
+
+
+def test_predictions_grow_and_shift_with_the_heights(learned: DictionaryInpainter) -> None:
+    truth, known = waves(20, seed=5), with_hole(20)
+    plain = learned.predict(as_patches(truth, known), 0 * truth)
+    changed = learned.predict(as_patches(1000 * truth + 7, known), 0 * truth)
+    np.testing.assert_allclose(changed, 1000 * plain + 7, rtol=1e-9, atol=1e-6)
+
+
+def test_a_patch_without_any_known_bin_gets_its_outline(learned: DictionaryInpainter) -> None:
+    truth = waves(2)
+    known = np.zeros(truth.shape, bool)
+    outline = np.full(truth.shape, 3.0)
+    assert (learned.predict(as_patches(truth, known), outline) == outline).all()
+
+
+def test_a_flat_patch_stays_flat(learned: DictionaryInpainter) -> None:
+    outline = waves(3)
+    predicted = learned.predict(as_patches(outline + 0.25, with_hole(3)), outline)
+    np.testing.assert_allclose(predicted, outline + 0.25, atol=1e-12)
+
+
+def test_learning_is_repeatable_and_tells_its_progress() -> None:
+    heights = waves(100)
+    told: list[float] = []
+
+    def tell(_: str, part: float) -> None:
+        told.append(part)
+
+    one, same, other = (
+        learn_from_patches(
+            as_patches(heights), 0 * heights, np.random.default_rng(seed), lambda _, part: told.append(part)
+        )
+        for seed in (0, 0, 1)
+    )
+    assert one is not None
+    assert same is not None
+    assert other is not None
+    assert one.dictionary.atoms.tobytes() == same.dictionary.atoms.tobytes()
+    assert one.dictionary.atoms.tobytes() != other.dictionary.atoms.tobytes()
+    assert told[len(told) // 3 - 1] == 1.0
+    assert told[: len(told) // 3] == sorted(told[: len(told) // 3])
+
+
+def test_unknown_bins_are_not_learned_from() -> None:
+    heights, known = waves(200), with_hole(200)
+    junk = np.where(known, heights, 1e6)
+    clean, dirty = (
+        learn_from_patches(as_patches(part, known), 0 * heights, np.random.default_rng(0), no_progress)
+        for part in (heights, junk)
+    )
+    assert clean is not None
+    assert dirty is not None
+    assert clean.dictionary.atoms.tobytes() == dirty.dictionary.atoms.tobytes()
+
+
+def test_atoms_are_of_unit_length_and_fewer_than_the_patches() -> None:
+    for count in (MIN_TRAINING_PATCHES, 400):
+        heights = waves(count)
+        found = learn_from_patches(as_patches(heights), 0 * heights, np.random.default_rng(0), no_progress)
+        assert found is not None
+        assert found.resolution == N
+        assert found.dictionary.atoms.shape == (N * N, min(SELF_ATOMS, count // 3))
+        np.testing.assert_allclose(np.linalg.norm(found.dictionary.atoms, axis=0), 1, rtol=1e-12)
+
+
+@pytest.mark.parametrize("why", ["too few", "flat", "too little known"])
+def test_nothing_to_learn_from_is_no_dictionary(why: str) -> None:
+    heights = waves(MIN_TRAINING_PATCHES - 1 if why == "too few" else 100)
+    known = np.ones(heights.shape, bool)
+    if why == "flat":
+        heights[:] = 3.0
+    if why == "too little known":
+        known[:, : int(N * (1 - LEAST_KNOWN)) + 1] = False
+    patches = as_patches(heights, known)
+    assert learn_from_patches(patches, 0 * heights, np.random.default_rng(0), no_progress) is None
+
+
+def test_no_patch_at_all_needs_no_prediction(learned: DictionaryInpainter) -> None:
+    nothing = np.zeros((0, N, N))
+    assert learned.predict(as_patches(nothing), nothing).shape == (0, N, N)
+    assert learn_from_patches(as_patches(nothing), nothing, np.random.default_rng(0), no_progress) is None
+
+
+def test_the_resolution_is_that_of_the_dictionary() -> None:
+    atoms = np.eye(64)[:, :5]
+    assert DictionaryInpainter(Dictionary(atoms, 8, 2)).resolution == 8

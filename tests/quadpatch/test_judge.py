@@ -1,0 +1,140 @@
+from dataclasses import dataclass
+from typing import Any, cast
+
+import numpy as np
+import pytest
+
+from quadpatch.completion import Completion
+from quadpatch.filling.fairing import THIN_PLATE
+from quadpatch.filling.fill import FilledMesh, close_holes, fair_holes
+from quadpatch.judge import LEAST_COVERAGE, MOST_DISAGREEMENT, Evidence, confidence, gather, judge, trusted
+from quadpatch.mesh.holes import Selection, find_holes, select_holes
+from quadpatch.options import HoleOptions
+from quadpatch.patches.scale import PatchScale
+from quadpatch.reconstruction.displacement import Displacement, rim_vertices
+from quadpatch.types import BoolArray, FloatArray
+from tests.quadpatch.shapes import bumpy_plate, punched
+
+MESH = punched(bumpy_plate(60, 2.0), (-0.5, -0.5, 0), (0.5, 0.5, 0), (0.5, -0.5, 0), radius=0.2)
+HOLES = find_holes(MESH)
+SELECTION = select_holes(HOLES, HoleOptions(), 3.0)
+FILLED = fair_holes(close_holes(MESH, [hole.loop for hole in SELECTION.chosen]), THIN_PLATE)
+
+
+@dataclass(frozen=True)
+class Says:
+    """What evidence says of three holes."""
+
+    coverage: tuple[float, float, float] = (1.0, 1.0, 1.0)
+    spread: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    departure: tuple[float, float, float] = (0.01, 0.01, 0.01)
+    rim_misfit: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+    def evidence(self) -> Evidence:
+        return Evidence(*(np.array(getattr(self, name)) for name in ("coverage", "spread", "departure", "rim_misfit")))
+
+
+def completion(says: Says, believed: float = 1.0, error_per_gap: float | None = 0.5) -> Completion:
+    evidence = says.evidence()
+    trust = trusted(evidence) & (believed > 0)
+    return Completion(FILLED, evidence, trust, believed, error_per_gap, PatchScale(0.5, 24, 2), 100)
+
+
+@pytest.mark.parametrize(
+    ("says", "trust"),
+    [
+        (Says(), [True, True, True]),
+        (Says(coverage=(LEAST_COVERAGE, LEAST_COVERAGE - 0.01, 0.0)), [True, False, False]),
+        (Says(spread=(0.01 * MOST_DISAGREEMENT, 0.0101 * MOST_DISAGREEMENT, 1.0)), [True, False, False]),
+        (Says(spread=(0.02, 0.02, 0.02), rim_misfit=(0.0, 0.01, 1.0)), [False, True, True]),
+        (Says(departure=(0.0, 0.0, 0.0)), [True, True, True]),
+    ],
+)
+def test_a_model_may_complete_what_its_patches_cover_and_agree_about(says: Says, trust: list[bool]) -> None:
+    assert trusted(says.evidence()).tolist() == trust
+
+
+@pytest.mark.parametrize(
+    ("done", "expected"),
+    [
+        (None, ["geometry"] * 3),
+        (completion(Says()), ["", "", ""]),
+        (completion(Says(), believed=0.0), ["no_gain"] * 3),
+        (completion(Says(), believed=0.0, error_per_gap=None), ["no_practice"] * 3),
+        (completion(Says(coverage=(1.0, 0.2, 1.0))), ["", "no_height_map", ""]),
+        (completion(Says(spread=(1.0, 0.0, 0.0))), ["patches_disagree", "", ""]),
+    ],
+)
+def test_every_hole_says_why_it_was_not_filled_by_the_model(done: Completion | None, expected: list[str]) -> None:
+    results = judge(HOLES, SELECTION, FILLED, done, 0.5)
+    assert [result.hole.id for result in results] == [0, 1, 2, 3]
+    assert (results[0].verdict, results[0].code) == ("skipped", "border")
+    assert [result.code for result in results[1:]] == expected
+    for result in results[1:]:
+        assert result.verdict == ("filled_smooth" if result.code else "filled")
+        assert bool(result.reason) == bool(result.code)
+
+
+def test_the_share_that_patches_see_is_told() -> None:
+    results = judge(HOLES, SELECTION, FILLED, completion(Says(coverage=(0.254, 1.0, 1.0))), 0.5)
+    assert "only 25 %" in results[1].reason
+
+
+def test_expected_errors_follow_the_gap_and_confidence_the_error() -> None:
+    results = judge(HOLES, SELECTION, FILLED, None, 0.3)
+    for i, result in enumerate(results[1:]):
+        assert result.expected_error == pytest.approx(0.3 * FILLED.gap[i])
+        assert result.confidence == pytest.approx(np.exp(-10 * 0.3 * FILLED.gap[i] / result.hole.diameter))
+        assert result.measures["gap"] == FILLED.gap[i]
+
+
+def test_new_vertices_and_triangles_are_counted_by_hole() -> None:
+    results = judge(HOLES, SELECTION, FILLED, None, 1.0)
+    assert [result.n_new_vertices for result in results] == [0, *np.bincount(FILLED.vertex_hole).tolist()]
+    assert [result.n_new_triangles for result in results] == [0, *np.bincount(FILLED.triangle_hole).tolist()]
+
+
+def test_a_hole_that_could_not_be_closed_is_refused() -> None:
+    values: dict[str, Any] = {**FILLED.__dict__, "unfilled": [1]}
+    results = judge(HOLES, SELECTION, FilledMesh(**values), None, 1.0)
+    assert [result.verdict for result in results] == ["skipped", "filled_smooth", "refused", "filled_smooth"]
+    refused = results[2]
+    assert refused.code == "no_triangulation"
+    assert refused.confidence is None
+    assert refused.expected_error is None
+
+
+def test_nothing_chosen_is_judged_too() -> None:
+    nothing = fair_holes(close_holes(MESH, []), THIN_PLATE)
+    selection = Selection([], {hole.id: ("not_chosen", "not among the chosen ids") for hole in HOLES})
+    assert {result.verdict for result in judge(HOLES, selection, nothing, None, 1.0)} == {"skipped"}
+
+
+@pytest.mark.parametrize(
+    ("error", "diameter", "expected"), [(0.0, 1.0, 1.0), (0.01, 1.0, 0.905), (0.2, 2.0, 0.368), (1.0, 0.0, 0.0)]
+)
+def test_confidence_is_one_without_error_and_falls_by_e_for_a_tenth_of_the_width(
+    error: float, diameter: float, expected: float
+) -> None:
+    assert confidence(error, diameter) == pytest.approx(expected, abs=1e-3)
+
+
+def test_evidence_is_averaged_over_the_vertices_of_each_hole() -> None:
+    rng = np.random.default_rng(0)
+    rim, rim_hole = rim_vertices(FILLED)
+    n = len(FILLED.vertex_hole)
+    overlap = (rng.random(n) < 0.5).astype(np.int64) * 3
+    inside = Displacement(rng.normal(size=(n, 3)), rng.random(n), overlap)
+    at_rim = Displacement(rng.normal(size=(len(rim), 3)), np.zeros(len(rim)), np.ones(len(rim), np.int64))
+    joined = rng.normal(size=(n, 3))
+    evidence = gather(FILLED, inside, joined, rim_hole, at_rim)
+    for hole in range(3):
+        here: BoolArray = FILLED.vertex_hole == hole
+        expected: dict[str, FloatArray] = {
+            "coverage": (overlap[here] > 0).astype(np.float64),
+            "spread": inside.spread[here],
+            "departure": np.linalg.norm(joined[here], axis=1),
+            "rim_misfit": np.linalg.norm(at_rim.mean[rim_hole == hole], axis=1),
+        }
+        for name, values in expected.items():
+            assert cast(FloatArray, getattr(evidence, name))[hole] == pytest.approx(values.mean())
