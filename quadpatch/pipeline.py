@@ -22,10 +22,11 @@ from quadpatch.stages import Stages
 from quadpatch.types import TriangleMesh
 
 # From rough to smooth: a noisy or sharp-edged surface is continued best by the first, a smooth one by the last.
-ENERGIES = (THIN_PLATE, Energy(plate=1.0, variation=2.0), Energy(plate=1.0, variation=20.0))
+ENERGIES = (THIN_PLATE, *(Energy(plate=1.0, variation=weight) for weight in (0.2, 1.0, 20.0)))
 
-# Where the surface has no room for practice: the energy in the middle, and a mean error as large as the gap.
-UNTRIED_ENERGY = ENERGIES[1]
+# Where the surface has no room for practice: an energy for surfaces neither rough nor smooth, and a mean error as large
+# as the gap.
+UNTRIED_ENERGY = ENERGIES[2]
 ERROR_PER_GAP = 1.0
 
 
