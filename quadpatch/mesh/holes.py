@@ -6,7 +6,7 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import ConvexHull, QhullError
-from scipy.spatial.distance import pdist
+from scipy.spatial.distance import cdist
 
 from quadpatch.errors import OptionError
 from quadpatch.mesh.boundary import boundary_loops
@@ -171,16 +171,24 @@ def _reason_to_skip(hole: Hole, options: HoleOptions, max_diameter: float | None
 
 def _diameter(points: Vertices) -> float:
     if len(points) > _SMALL_LOOP:
+        points = _extremes(points)
+    # In pieces: a loop on a ball has every vertex on its hull, and all pairs of a long one would fill the memory.
+    pieces = range(0, len(points), _SMALL_LOOP)
+    return max(float(cdist(points[i : i + _SMALL_LOOP], points).max()) for i in pieces)
+
+
+def _extremes(points: Vertices) -> Vertices:
+    """Pick the corners of the convex hull, in as many dimensions as the points span."""
+    centred = points - points.mean(axis=0)
+    _, _, axes = np.linalg.svd(centred, full_matrices=False)
+    for n_dimensions in (3, 2):
         try:
-            points = points[ConvexHull(points).vertices]
+            return points[ConvexHull(centred @ axes[:n_dimensions].T).vertices]
         except QhullError:
-            # A flat loop has no hull in space; its extreme points along many directions bound it as well.
-            angles = np.linspace(0, np.pi, 180, endpoint=False)
-            _, _, axes = np.linalg.svd(points - points.mean(axis=0), full_matrices=False)
-            directions = np.outer(np.cos(angles), axes[0]) + np.outer(np.sin(angles), axes[1])
-            along = points @ directions.T
-            points = points[np.unique(np.concatenate([along.argmin(axis=0), along.argmax(axis=0)]))]
-    return float(pdist(points).max())
+            # The points are flat, or lie on a line.
+            continue
+    along = centred @ axes[0]
+    return points[[int(along.argmin()), int(along.argmax())]]
 
 
 def _outwardness(points: Vertices, normal: FloatArray) -> float:

@@ -187,7 +187,7 @@ def test_too_little_surface_to_learn_from_falls_back_to_geometry_and_says_so() -
     assert "practice on this mesh showed" not in result.reason
 
 
-@pytest.mark.parametrize("length", [0.02, 0.3, 1.9, 3.0, 10.0])
+@pytest.mark.parametrize("length", [0.2, 3.0, 10.0])
 @pytest.mark.parametrize("learn", [False, True])
 def test_patches_of_any_length_give_a_repair_also_where_none_shows_the_hole(length: float, learn: bool) -> None:
     mesh = punched(sphere(4), (0, 0, 1), radius=0.4)

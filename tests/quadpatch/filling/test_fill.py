@@ -188,7 +188,7 @@ def short_loops_by_start(mesh: TriangleMesh, first: int) -> list[IntArray]:
     return [loop for loop in all_loops(mesh) if loop[0] >= first]
 
 
-@pytest.mark.parametrize("n", [40, 75, 128, 300])
+@pytest.mark.parametrize("n", [40, 75, 200])
 @pytest.mark.parametrize("length", [0.03, 0.1, 0.4])
 def test_long_rims_full_of_spikes_are_closed_without_an_edge_of_three_faces(n: int, length: float) -> None:
     mesh, loop = spiky_rim(n, length)

@@ -81,7 +81,7 @@ def test_long_loops_are_closed_by_an_oriented_disk(n: int) -> None:
 
 
 def test_a_loop_longer_than_the_square_of_the_table_is_closed() -> None:
-    n = MAX_TABLE_SIZE**2 + 1000
+    n = MAX_TABLE_SIZE**2 + 300
     found = triangulate(wavy(n))
     assert found is not None
     assert_closes(np.arange(n), found)

@@ -64,6 +64,31 @@ def test_a_long_loop_whose_every_vertex_is_extreme_is_measured() -> None:
     assert inner_hole(ring(loop)).diameter == pytest.approx(2.0, rel=1e-3)
 
 
+@pytest.mark.parametrize("n_corners", [3, 5])
+def test_a_long_flat_loop_of_even_width_is_measured_exactly(n_corners: int) -> None:
+    # Arcs around the corners of a polygon, as wide in all directions: only exact corners give the exact width.
+    corner = circle(n_corners)
+    radius = max(float(np.linalg.norm(corner - point, axis=1).max()) for point in corner)
+    arcs = []
+    for k in range(n_corners):
+        far = [(k + n_corners // 2) % n_corners, (k + n_corners // 2 + 1) % n_corners]
+        start, end = (corner[i] - corner[k] for i in far)
+        way = np.linspace(0, 1, 200, endpoint=False)[:, None]
+        between = (1 - way) * start + way * end
+        arcs.append(corner[k] + radius * between / np.linalg.norm(between, axis=1, keepdims=True))
+    loop = np.concatenate(arcs)
+    apart = max(float(np.linalg.norm(loop - point, axis=1).max()) for point in loop)
+    assert inner_hole(ring(loop)).diameter == pytest.approx(apart, rel=1e-12)
+
+
+def test_a_long_loop_on_a_line_is_as_wide_as_the_line_is_long() -> None:
+    n = 500
+    line = np.column_stack([np.abs(np.arange(n) - n / 2), np.zeros((n, 2))]) @ random_rotation(np.random.default_rng(0))
+    found = inner_hole(ring(line + np.array([0, 0, 1]), 0.0))
+    assert found.diameter == pytest.approx(n / 2)
+    assert found.area == pytest.approx(0, abs=1e-9)
+
+
 def test_planarity_is_the_distance_from_the_best_plane_in_diameters() -> None:
     n = 64
     saddle = circle(n) + np.stack([np.zeros(n), np.zeros(n), 0.2 * np.cos(4 * np.pi * np.arange(n) / n)], axis=1)
