@@ -6,7 +6,7 @@ READY  := $(VENV)/.ready
 # Twice quiet: errors only.
 PIP    := $(BIN)/python -m pip --quiet --quiet --disable-pip-version-check
 
-.PHONY: demo test check serve openapi bench clean
+.PHONY: demo test check serve openapi bench bench-quality clean
 
 $(READY): pyproject.toml constraints.txt
 	@echo "setting up $(VENV); this takes a few minutes the first time ..." >&2
@@ -36,6 +36,9 @@ openapi: $(READY)         ## write openapi.yaml from the app
 
 bench: $(READY)           ## speed of the method's stages
 	@$(BIN)/python -m benchmarks.stages
+
+bench-quality: $(READY)   ## repair quality beside the peers: make bench-quality BENCH=folder-of-the-bench
+	@$(BIN)/python -m benchmarks.quality $(BENCH)
 
 clean:
 	rm -rf $(VENV) demo var build dist *.egg-info
