@@ -19,6 +19,7 @@ from rich.text import Text
 
 from quadpatch import types
 from quadpatch.errors import QuadpatchError
+from quadpatch.files import check_outputs, write_whole
 from quadpatch.options import HoleOptions, PatchOptions, RepairOptions
 
 app = typer.Typer(help="Repair holes in 3D scans.", no_args_is_help=True, add_completion=False)
@@ -55,9 +56,10 @@ def fill(  # noqa: PLR0913, PLR0917  one argument per flag
             PatchOptions(patch_length, resolution, overlap),
             seed,
         )
+        check_outputs(source, [path for path in (output, report, picture) if path])
         result = repair_file(source, output, model, options, progress)
         if report:
-            report.write_text(json.dumps(result, indent=2) + "\n")
+            write_whole(report, (json.dumps(result, indent=2) + "\n").encode())
         if picture:
             _draw(source, output, picture)
     if not quiet:
@@ -75,7 +77,7 @@ def holes(source: Source, as_json: Annotated[bool, typer.Option("--json", help="
         print(json.dumps(facts, indent=2))  # noqa: T201  data for standard output
         return
     unit = facts["length_unit"]
-    table = Table(title=Text(f"{source.name}: {len(facts['holes'])} holes, lengths in {unit}"))
+    table = Table(title=Text(f"{source.name}: {_holes(len(facts['holes']))}, lengths in {unit}"))
     for name in ("id", "edges", "perimeter", "diameter", "area", "planarity"):
         table.add_column(name, justify="right")
     table.add_column("by default")
@@ -94,12 +96,16 @@ def summary(report: dict[str, Any]) -> str:
         if row["verdict"] in ("skipped", "refused"):
             reasons[row["reason"]] = reasons.get(row["reason"], 0) + 1
     open_holes = counts["skipped"] + counts["refused"]
-    text = f"{counts['found']} holes: {counts['filled']} filled by the model, {counts['filled_smooth']} by geometry"
+    text = f"{_holes(counts['found'])}: {counts['filled']} filled by the model, {counts['filled_smooth']} by geometry"
     text += f", {open_holes} left open"
     if reasons:
         text += " (" + "; ".join(f"{count} × {reason}" for reason, count in reasons.items()) + ")"
     seconds = sum(stage["seconds"] for stage in report["stages"])
     return f"{text}. {seconds:.1f} s."
+
+
+def _holes(count: int) -> str:
+    return "1 hole" if count == 1 else f"{count} holes"
 
 
 def _draw(source: Path, output: Path, picture: Path) -> None:

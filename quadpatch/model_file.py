@@ -159,7 +159,7 @@ def shipped_model(name: str) -> Path:
     versions = {key: int(key.rpartition("@")[2]) for key in shipped if key.rpartition("@")[2].isdecimal()}
     matching = [key for key in versions if name in (key, key.rpartition("@")[0])]
     if not matching:
-        raise ModelError(f"no shipped model {name!r}; there are: {', '.join(versions) or 'none'}")
+        raise ModelError(f"{name!r} is no file and no shipped model; shipped are: {', '.join(versions) or 'none'}")
     return shipped[max(matching, key=lambda key: versions[key])]
 
 

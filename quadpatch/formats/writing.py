@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from quadpatch.errors import FormatError
+from quadpatch.files import write_whole
 from quadpatch.formats.conversion import encode_as_obj, encode_as_off, encode_as_ply, encode_as_stl
 from quadpatch.formats.gltf.encoder import encode_as_glb, encode_as_gltf
 from quadpatch.formats.scan import Fill, Scan
@@ -41,6 +42,8 @@ def write_scan(path: Path, scan: Scan, fill: Fill) -> None:
     ------
     FormatError
         If the suffix is that of no format that is written, or the format can't hold the mesh.
+    OSError
+        If the file can't be written; what was there before stays.
     """
     check_suffix(path)
     suffix = path.suffix.lower().lstrip(".")
@@ -48,4 +51,4 @@ def write_scan(path: Path, scan: Scan, fill: Fill) -> None:
         data = scan.source.append(scan, fill)
     else:
         data = _ENCODERS[suffix](assemble(scan, fill))
-    path.write_bytes(data)
+    write_whole(path, data)

@@ -110,6 +110,8 @@ def test_holes_are_listed_for_people(scan_file: Path) -> None:
         (["fill", "SCAN", "-o", "no/such/folder/out.ply", "--model", "smooth"], "not_writable"),
         (["fill", "SCAN", "-o", "out.ply", "--model", "smooth", "--report", "no/such/out.json"], "not_writable"),
         (["fill", "SCAN", "-o", "out.ply", "--model", "smooth", "--picture", "no/such/out.png"], "not_writable"),
+        (["fill", "SCAN", "-o", "out.ply", "--model", "smooth", "--report", "out.ply"], "invalid_option"),
+        (["fill", "SCAN", "-o", "out.ply", "--model", "smooth", "--report", "SCAN"], "invalid_option"),
     ],
 )
 def test_errors_are_one_line_of_code_and_message(
@@ -118,6 +120,7 @@ def test_errors_are_one_line_of_code_and_message(
     monkeypatch.chdir(tmp_path)
     result = run(*[str(scan_file) if argument == "SCAN" else argument for argument in arguments])
     assert result.exit_code == 1, result.output
+    assert list(tmp_path.iterdir()) == []
     assert result.stdout == ""
     (line,) = result.stderr.splitlines()
     assert re.fullmatch(rf"{code}: .+", line)
