@@ -4,11 +4,14 @@ The rule is that of `quadpatch.mesh.holes.select_holes`, which this package may 
 together.
 """
 
+import math
+
 from jobkit.errors import UnknownHoleError
 from jobkit.schema import Hole, HoleSelection, JobSpec, Limits, MeshFacts, Plan, PlannedHole, ResolvedModel
 from jobkit.settings import Settings
 
 AUTO_DIAMETER_SHARE = 0.25
+MAX_NEW_VERTICES = 200_000
 
 
 def make_plan(spec: JobSpec, facts: MeshFacts, model: ResolvedModel, settings: Settings) -> Plan:
@@ -58,7 +61,13 @@ def reason_to_skip(hole: Hole, selection: HoleSelection, diagonal: float) -> str
         (selection.ids is not None and hole.id not in selection.ids, "not_chosen"),
         (selection.all_but_largest and hole.id == 0, "largest"),
         (is_automatic and hole.is_border, "border"),
+        (_expected_vertices(hole) > MAX_NEW_VERTICES, "too_many_vertices"),
         (max_diameter is not None and hole.diameter > max_diameter, "too_wide"),
         (selection.max_perimeter is not None and hole.perimeter > selection.max_perimeter, "too_long"),
     )
     return next((code for applies, code in reasons if applies), None)
+
+
+def _expected_vertices(hole: Hole) -> int:
+    edge = hole.perimeter / max(hole.edges, 1)
+    return round(hole.area / (math.sqrt(0.75) * edge**2)) if edge > 0 else 0

@@ -15,6 +15,7 @@ from scipy import sparse
 from scipy.sparse.linalg import splu
 
 from quadpatch.errors import StageError
+from quadpatch.mesh.normals import cross, length
 from quadpatch.types import BoolArray, FloatArray, IntArray, Triangles, Vertices
 
 
@@ -95,7 +96,7 @@ def _laplacian(vertices: Vertices, triangles: Triangles, *, uniform: bool) -> tu
     n = len(vertices)
     corners = vertices[triangles]
     rows, columns, weights = [], [], []
-    double_area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    double_area = length(cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]))
     tiny = 1e-12 * double_area.mean() + 1e-300
     for k in range(3):
         i, j = triangles[:, (k + 1) % 3], triangles[:, (k + 2) % 3]

@@ -14,9 +14,9 @@ from quadpatch.mesh.boundary import directed_edges
 from quadpatch.mesh.normals import triangle_normals
 from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Triangles
 
-# The minimum variation surface takes position, slope and curvature from three rings of vertices, and the
-# Laplacian of the third needs the triangles around it.
-_RINGS = 4
+# The minimum variation surface asks for the Laplacian at the rim and at one ring of vertices outside it, and that for
+# all triangles around these.
+_RINGS = 2
 
 
 # Fill and thin plate of one hole further apart than this share of its width: something ran away.
@@ -104,7 +104,7 @@ def close_holes(mesh: TriangleMesh, loops: list[IntArray]) -> ClosedMesh:
         Simple loops with the surface on their left, as `boundary_loops` gives them.
     """
     rim = np.unique(np.concatenate([np.zeros(0, np.int64), *loops]))
-    # Nothing below looks further than four rings from a rim: work on that part alone.
+    # Nothing below looks further than two rings from a rim: work on that part alone.
     near = triangles_around(mesh.triangles, rim, len(mesh.vertices), _RINGS)
     used, local = np.unique(mesh.triangles[near], return_inverse=True)
     around = local.reshape(-1, 3)

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from quadpatch.filling.triangulation import EdgeSet
-from quadpatch.mesh.normals import vertex_normals
+from quadpatch.mesh.normals import cross, length, vertex_normals
 from quadpatch.mesh.smoothing import neighbour_average
 from quadpatch.types import BoolArray, FloatArray, IntArray, Triangles, Vertices
 
@@ -65,7 +65,7 @@ def refine(patch: Refined, taken: EdgeSet) -> Refined:
 
 def _too_large(patch: Refined) -> BoolArray:
     corners = patch.vertices[patch.triangles]
-    reach = DENSITY * np.linalg.norm(corners - corners.mean(axis=1, keepdims=True), axis=2)
+    reach = DENSITY * length(corners - corners.mean(axis=1, keepdims=True))
     wanted = patch.spacing[patch.triangles]
     large: BoolArray = ((reach > wanted) & (reach > wanted.mean(axis=1, keepdims=True))).all(axis=1)
     return large
@@ -170,7 +170,7 @@ def _opposite(triangles: Triangles, half_edges: IntArray) -> IntArray:
 
 def _is_unfolded(a: Vertices, b: Vertices, c: Vertices, d: Vertices) -> BoolArray:
     """Whether the triangles (a, d, c) and (d, b, c), which the flip makes, look the same way."""
-    unfolded: BoolArray = np.einsum("ij,ij->i", np.cross(d - a, c - a), np.cross(b - d, c - d)) > 0
+    unfolded: BoolArray = np.einsum("ij,ij->i", cross(d - a, c - a), cross(b - d, c - d)) > 0
     return unfolded
 
 
@@ -189,5 +189,5 @@ def _is_first_everywhere(left: IntArray, right: IntArray, n_triangles: int) -> B
 
 def _cotangent(a: Vertices, apex: Vertices, b: Vertices) -> FloatArray:
     u, v = a - apex, b - apex
-    cotangent: FloatArray = np.einsum("ij,ij->i", u, v) / np.maximum(np.linalg.norm(np.cross(u, v), axis=1), 1e-300)
+    cotangent: FloatArray = np.einsum("ij,ij->i", u, v) / np.maximum(length(cross(u, v)), 1e-300)
     return cotangent

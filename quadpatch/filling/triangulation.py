@@ -10,7 +10,7 @@ and the rim after that; refinement then flips what this left unsmooth.
 import numpy as np
 
 from quadpatch.mesh.boundary import directed_edges
-from quadpatch.mesh.normals import unit
+from quadpatch.mesh.normals import cross, length, unit
 from quadpatch.types import BoolArray, FloatArray, IntArray, Triangles, Vertices
 
 # A coarse loop has at most this many vertices. Slivers leave folds that fairing only partly smooths out: on scans,
@@ -175,9 +175,9 @@ def _minimum_weight(points: FloatArray, rim_normals: FloatArray, taken: BoolArra
         j = i + gap
         k = i[:, None] + np.arange(1, gap)[None, :]  # (n - gap, gap - 1)
         pi, pj, pk = points[:, i, None], points[:, j, None], points[:, k]
-        cross = np.cross(pk - pj, pi - pj)
-        double_area = np.linalg.norm(cross, axis=-1)
-        unit = cross / np.maximum(double_area, 1e-300)[..., None]
+        across = cross(pk - pj, pi - pj)
+        double_area = length(across)
+        unit = across / np.maximum(double_area, 1e-300)[..., None]
         ik, kj = (slice(None), i[:, None], k), (slice(None), k, j[:, None])
         bend = np.maximum(_bend(unit, normal[ik]), _bend(unit, normal[kj]))
         if gap == n - 1:

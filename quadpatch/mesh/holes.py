@@ -22,6 +22,9 @@ AUTO_DIAMETER_SHARE = 0.25
 # the piece's own diagonal.
 BORDER_SHARE = 0.5
 
+# Vertices grow with the square of the rim; such a fill would take minutes and gigabytes.
+MAX_NEW_VERTICES = 200_000
+
 # A loop with the surface on its left runs clockwise around a hole and counter-clockwise around an outer border, seen
 # along the normals at its rim; beyond this cosine it is a border for sure.
 OUTWARD = 0.5
@@ -65,6 +68,12 @@ class Hole:
     def n_edges(self) -> int:
         """Edges, and vertices, of the loop."""
         return len(self.loop)
+
+    @property
+    def n_expected_vertices(self) -> int:
+        """About as many new vertices as a fill will have: equilateral triangles as large as the rim's edges."""
+        edge = self.perimeter / max(self.n_edges, 1)
+        return round(self.area / (np.sqrt(0.75) * edge**2)) if edge > 0 else 0
 
 
 @dataclass(frozen=True)
@@ -163,10 +172,15 @@ def _reason_to_skip(hole: Hole, options: HoleOptions, max_diameter: float | None
         (options.ids is not None and hole.id not in options.ids, "not_chosen", "not among the chosen ids"),
         (options.all_but_largest and hole.id == 0, "largest", "the largest loop is taken for the border of the scan"),
         (options.is_automatic and hole.is_border, "border", "outer border of a piece of the scan"),
+        (hole.n_expected_vertices > MAX_NEW_VERTICES, "too_many_vertices", _too_many(hole)),
         (hole.diameter > widest, "too_wide", f"diameter {hole.diameter:.6g} is over {widest:.6g}, {rule}"),
         (hole.perimeter > longest, "too_long", f"perimeter {hole.perimeter:.6g} is over {longest:.6g}, {rule}"),
     )
     return next(((code, text) for applies, code, text in reasons if applies), None)
+
+
+def _too_many(hole: Hole) -> str:
+    return f"a fill as dense as its rim takes about {hole.n_expected_vertices} new vertices, over {MAX_NEW_VERTICES}"
 
 
 def _diameter(points: Vertices) -> float:

@@ -21,10 +21,22 @@ def vertex_normals(vertices: Vertices, triangles: Triangles) -> FloatArray:
     )
 
 
+def cross(a: FloatArray, b: FloatArray) -> FloatArray:
+    """Cross products of vectors (..., 3): `numpy.cross` without its bookkeeping, which costs more than small arrays."""
+    ax, ay, az = a[..., 0], a[..., 1], a[..., 2]
+    bx, by, bz = b[..., 0], b[..., 1], b[..., 2]
+    return np.stack([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx], axis=-1)
+
+
+def length(vectors: FloatArray) -> FloatArray:
+    """Lengths (...) of vectors (..., 3)."""
+    return np.asarray(np.sqrt(np.einsum("...k,...k->...", vectors, vectors)))
+
+
 def area_vectors(vertices: Vertices, triangles: Triangles) -> FloatArray:
     """Vectors (n_triangles, 3) along the normals, twice as long as the areas."""
     a, b, c = (vertices[triangles[:, k]] for k in range(3))
-    return np.cross(b - a, c - a)
+    return cross(b - a, c - a)
 
 
 def unit(vectors: FloatArray) -> FloatArray:

@@ -10,7 +10,8 @@ from quadpatch.options import HoleOptions
 from service.plan import reason_to_skip
 
 LENGTHS = st.floats(0.1, 100.0)
-HOLES = st.lists(st.tuples(LENGTHS, LENGTHS, st.booleans(), st.booleans()), min_size=1, max_size=8)
+AREAS = st.floats(0.01, 1e8)
+HOLES = st.lists(st.tuples(LENGTHS, LENGTHS, AREAS, st.booleans(), st.booleans()), min_size=1, max_size=8)
 
 
 @settings(max_examples=200, deadline=None)
@@ -23,7 +24,7 @@ HOLES = st.lists(st.tuples(LENGTHS, LENGTHS, st.booleans(), st.booleans()), min_
     ids=st.none() | st.lists(st.integers(0, 7), min_size=1, max_size=4),
 )
 def test_a_plan_selects_what_the_method_selects(
-    measures: list[tuple[float, float, bool, bool]],
+    measures: list[tuple[float, float, float, bool, bool]],
     diagonal: float,
     max_diameter: float | None,
     max_perimeter: float | None,
@@ -37,12 +38,12 @@ def test_a_plan_selects_what_the_method_selects(
     options = HoleOptions(max_diameter, max_perimeter, all_but_largest, None if ids is None else tuple(ids))
     loop = np.zeros(3, dtype=np.int64)
     theirs = [
-        method.Hole(i, loop, perimeter, diameter, 1.0, 0.0, is_manifold, is_border)
-        for i, (perimeter, diameter, is_manifold, is_border) in enumerate(measures)
+        method.Hole(i, loop, perimeter, diameter, area, 0.0, is_manifold, is_border)
+        for i, (perimeter, diameter, area, is_manifold, is_border) in enumerate(measures)
     ]
     ours = [
-        Hole(id=i, perimeter=p, diameter=d, area=1.0, planarity=0.0, edges=3, is_manifold=m, is_border=b)
-        for i, (p, d, m, b) in enumerate(measures)
+        Hole(id=i, perimeter=p, diameter=d, area=a, planarity=0.0, edges=3, is_manifold=m, is_border=b)
+        for i, (p, d, a, m, b) in enumerate(measures)
     ]
     selection = method.select_holes(theirs, options, diagonal)
     expected = {hole.id: None for hole in selection.chosen} | {i: code for i, (code, _) in selection.skipped.items()}

@@ -219,3 +219,15 @@ def test_a_rim_that_is_no_manifold_is_never_filled(options: HoleOptions) -> None
 def test_an_unknown_id_is_named(ids: tuple[int, ...], named: int) -> None:
     with pytest.raises(OptionError, match=f"no hole has the id {named}; this mesh has 4 holes"):
         select_holes(HOLES, HoleOptions(ids=ids), 1.0)
+
+
+def test_a_hole_that_would_take_millions_of_vertices_stays_open() -> None:
+    loop = np.arange(5000)
+    fine = Hole(0, loop, perimeter=5000.0, diameter=1600.0, area=2e6, planarity=0.0, is_manifold=True)
+    coarse = Hole(1, loop[:500], perimeter=500.0, diameter=160.0, area=2e4, planarity=0.0, is_manifold=True)
+    selection = select_holes([fine, coarse], HoleOptions(ids=(0, 1)), diagonal=1e4)
+    assert selection.chosen == [coarse]
+    assert selection.skipped[0] == (
+        "too_many_vertices",
+        "a fill as dense as its rim takes about 2309401 new vertices, over 200000",
+    )
