@@ -27,7 +27,7 @@ from client.options import (
     UrlOption,
     make_spec,
 )
-from client.repairing import Task
+from client.repairing import Task, format_of
 from client.repairing import repair as run_repair
 from client.screen import Screen
 from client.sdk import Client
@@ -82,7 +82,10 @@ def repair(  # noqa: PLR0913 - one parameter per option of the command line
     format_: Annotated[
         OutputFormat | None,
         typer.Option(
-            "--format", help="Format of the repaired mesh.", show_default="that of MESH", rich_help_panel=_OUTPUT
+            "--format",
+            help="Format of the repaired mesh.",
+            show_default="the suffix of OUTPUT",
+            rich_help_panel=_OUTPUT,
         ),
     ] = None,
     report: Annotated[Path | None, typer.Option(help="Where to put the JSON report.", rich_help_panel=_OUTPUT)] = None,
@@ -98,18 +101,22 @@ def repair(  # noqa: PLR0913 - one parameter per option of the command line
     quiet: QuietOption = False,
 ) -> None:
     """Repair a mesh file: upload it, fill its holes, fetch the result."""
-    task = Task(
-        source=mesh,
-        output=output,
-        holes=HoleChoice(max_diameter, max_perimeter, all_but_largest, hole),
-        method=MethodChoice(method, model, patch_length, resolution, overlap),
-        rest={"seed": seed, "label": label, "output": {"format": format_, "preview": preview is not None}},
-        report=report,
-        preview=preview,
-        timeout_s=timeout,
-    )
     screen = Screen(quiet)
     with _connected(screen, url, api_key) as client:
+        task = Task(
+            source=mesh,
+            output=output,
+            holes=HoleChoice(max_diameter, max_perimeter, all_but_largest, hole),
+            method=MethodChoice(method, model, patch_length, resolution, overlap),
+            rest={
+                "seed": seed,
+                "label": label,
+                "output": {"format": format_ or format_of(output), "preview": preview is not None},
+            },
+            report=report,
+            preview=preview,
+            timeout_s=timeout,
+        )
         job = run_repair(client, screen, task)
     if as_json:
         _print_json(job)

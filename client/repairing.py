@@ -6,14 +6,14 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, cast, get_args
 
-from client.errors import ClientError, WaitTimeoutError
+from client.errors import ClientError, UsageError, WaitTimeoutError
 from client.options import HoleChoice, MethodChoice, make_spec
 from client.screen import Screen
 from client.sdk import Client
 from client.summary import paragraph
-from jobkit.schema import Job, JobSpec
+from jobkit.schema import Job, JobSpec, OutputFormat
 
 
 @dataclass(frozen=True)
@@ -53,14 +53,41 @@ def repair(client: Client, screen: Screen, task: Task) -> Job:
     KeyboardInterrupt
         After the job has been canceled.
     """
-    # A wrong option should show before a large file has been sent.
+    # A wrong option or path should show before a large file has been sent and an hour been spent on it.
     make_spec("0" * 64, task.holes, task.method, **task.rest)
+    check_outputs(task)
     with screen.transfer("uploading") as progress:
         mesh = client.upload(task.source, progress)
     screen.say(f"{task.source.name}: {_size(mesh.size_bytes)} uploaded")
     job = _run(client, screen, make_spec(mesh.id, task.holes, task.method, **task.rest), task.timeout_s)
     _fetch(client, screen, task, job)
     return job
+
+
+def check_outputs(task: Task) -> None:
+    """Raise UsageError where an output has no folder, is one, or would overwrite another one or the scan."""
+    taken: set[Path] = set()
+    for path in (task.output, task.report, task.preview):
+        if path is None:
+            continue
+        if path.is_dir():
+            raise UsageError(f"{path} is a folder, not a file to write")
+        if not path.parent.is_dir():
+            raise UsageError(f"{path} can't be written: there is no folder {path.parent}")
+        if path.resolve() in taken:
+            raise UsageError(f"{path} is named twice: mesh, report and preview need files of their own")
+        # The repaired mesh may take the place of the scan; report and preview may not.
+        taken |= {path.resolve(), task.source.resolve()}
+
+
+def format_of(output: Path) -> OutputFormat:
+    """Return the format that the suffix of an output asks for; raise UsageError where it asks for none."""
+    suffix = output.suffix.lower().lstrip(".")
+    if suffix not in get_args(OutputFormat):
+        raise UsageError(
+            f"{output} does not end in one of {', '.join(get_args(OutputFormat))}; rename it or give --format"
+        )
+    return cast(OutputFormat, suffix)
 
 
 def _run(client: Client, screen: Screen, spec: JobSpec, timeout_s: float | None) -> Job:

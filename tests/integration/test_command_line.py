@@ -42,6 +42,17 @@ def test_repair_writes_what_was_asked_for_and_tells_so(
     assert all(path.stat().st_size > 0 for path in (output, report, preview))
 
 
+def test_the_suffix_of_the_output_says_its_format(
+    run: Callable[..., Result], relief_file: Callable[[str], Path], tmp_path: Path
+) -> None:
+    options = ["--method", "smooth", "--json", "--quiet"]
+    done = run("repair", relief_file("float.ply"), "-o", tmp_path / "out.glb", *options)
+    assert json.loads(done.stdout)["result"]["format"] == "glb"
+    assert (tmp_path / "out.glb").read_bytes().startswith(b"glTF")
+    run("repair", relief_file("float.ply"), "-o", tmp_path / "out.mesh", "--format", "ply", *options)
+    assert (tmp_path / "out.mesh").read_bytes().startswith(b"ply")
+
+
 def test_json_on_stdout_is_the_job(
     run: Callable[..., Result], relief_file: Callable[[str], Path], tmp_path: Path
 ) -> None:
@@ -79,6 +90,8 @@ def test_exit_codes_tell_what_went_wrong(
         ("repair", mesh, "-o", output, "--max-diameter", "-1"): ExitCode.USAGE,
         ("repair", tmp_path / "absent.ply", "-o", output): ExitCode.USAGE,
         ("repair", mesh, "-o", tmp_path / "absent" / "out.ply", "--method", "smooth"): ExitCode.USAGE,
+        ("repair", mesh, "-o", tmp_path / "out.xyz", "--method", "smooth"): ExitCode.USAGE,
+        ("repair", mesh, "-o", output, "--method", "smooth", "--report", output): ExitCode.USAGE,
         ("repair", mesh, "-o", output, "--model", "no-such-model@1"): ExitCode.REJECTED,
         ("repair", mesh, "-o", output, "--method", "cnn"): ExitCode.REJECTED,
         ("repair", mesh, "-o", output, "--method", "smooth", "--hole", "99"): ExitCode.REJECTED,
