@@ -26,6 +26,20 @@ def open_holes(report: Mapping[str, Any]) -> str:
         if hole["verdict"] in ("skipped", "refused"):
             reason = str(hole.get("reason") or "no reason was given")
             reasons.setdefault(str(hole.get("code") or reason), []).append(f"hole {hole['id']}: {reason}")
+    return _by_reason(reasons)
+
+
+def geometry_only(report: Mapping[str, Any]) -> str:
+    """Say why geometry alone filled holes, the commonest reason first; empty if it filled none."""
+    reasons: dict[str, int] = {}
+    for hole in report["holes"]:
+        if hole["verdict"] == "filled_smooth" and hole.get("reason"):
+            reasons[hole["reason"]] = reasons.get(hole["reason"], 0) + 1
+    commonest = sorted(reasons.items(), key=lambda item: -item[1])
+    return "; ".join(f"{count} × {reason}" for reason, count in commonest)
+
+
+def _by_reason(reasons: Mapping[str, list[str]]) -> str:
     commonest = sorted(reasons.items(), key=lambda item: -len(item[1]))[:_LONGEST_LIST]
     return "; ".join(_reason_in_words(code, examples) for code, examples in commonest)
 
@@ -54,6 +68,9 @@ def paragraph(name: str, job: Job, report: Mapping[str, Any]) -> str:
         f"{name} has {_counted(counts.found, 'hole')}: {verdicts(counts)}.",
         _added(job.result),
     ]
+    smooth = geometry_only(report)
+    if smooth:
+        sentences.append(f"By geometry alone: {smooth}.")
     left_open = open_holes(report)
     if left_open:
         sentences.append(f"Left open: {left_open}.")

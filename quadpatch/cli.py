@@ -6,6 +6,7 @@ option is at fault (`code: message` on standard error), 2 wrong usage.
 
 import json
 import sys
+from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -91,17 +92,18 @@ def holes(source: Source, as_json: Annotated[bool, typer.Option("--json", help="
 def summary(report: dict[str, Any]) -> str:
     """One paragraph for people: what was found, filled and left open, and why."""
     counts = report["counts"]
-    reasons: dict[str, int] = {}
-    for row in report["holes"]:
-        if row["verdict"] in ("skipped", "refused"):
-            reasons[row["reason"]] = reasons.get(row["reason"], 0) + 1
     open_holes = counts["skipped"] + counts["refused"]
     text = f"{_holes(counts['found'])}: {counts['filled']} filled by the model, {counts['filled_smooth']} by geometry"
-    text += f", {open_holes} left open"
-    if reasons:
-        text += " (" + "; ".join(f"{count} × {reason}" for reason, count in reasons.items()) + ")"
+    text += _reasons(report, "filled_smooth") + f", {open_holes} left open" + _reasons(report, "skipped", "refused")
     seconds = sum(stage["seconds"] for stage in report["stages"])
-    return f"{text}. {seconds:.1f} s."
+    warnings = "".join(f" Warning: {warning}." for warning in report["warnings"])
+    return f"{text}. {seconds:.1f} s.{warnings}"
+
+
+def _reasons(report: dict[str, Any], *verdicts: str) -> str:
+    """Count the reasons behind some verdicts, in brackets; empty where there are none."""
+    counts = Counter(row["reason"] for row in report["holes"] if row["verdict"] in verdicts)
+    return " (" + "; ".join(f"{count} × {reason}" for reason, count in counts.items()) + ")" if counts else ""
 
 
 def _holes(count: int) -> str:

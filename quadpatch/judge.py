@@ -134,7 +134,7 @@ def judge(
 
 def _verdict(i: int, n_new_vertices: int, completion: "Completion | None") -> tuple[str, str, str]:
     if completion is None:
-        return "filled_smooth", "geometry", "filled by geometry: no learned model took part"
+        return "filled_smooth", "geometry", "no learned model took part"
     if completion.trust[i]:
         return "filled", "", ""
     coverage = completion.evidence.coverage[i]

@@ -1,6 +1,7 @@
 """From file to file: what the command line and the worker's engine call."""
 
 import hashlib
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -24,6 +25,9 @@ from quadpatch.types import Progress, TriangleMesh, no_progress
 
 SMOOTH = "smooth"
 SELF = "self"
+
+# Formats whose lengths have a unit by definition, or by the default that our writer leaves standing.
+IMPLIED_UNITS = {".glb": "meter", ".gltf": "meter", ".3mf": "millimeter"}
 
 # Areas and their squares vanish in float64 for a mesh smaller than this, in mesh units.
 LEAST_DIAGONAL = 1e-60
@@ -67,6 +71,7 @@ def repair_file(
     repair = inpaint(welded.mesh, inpainter, options, stages, learn=model == SELF)
     with stages.stage("write"):
         write_scan(output, scan, _fill(scan, welded, repair))
+    repair = replace(repair, warnings=[*repair.warnings, *_unit_warnings(scan, output)])
     return build_report(scan, welded.mesh, repair, options, card, stages)
 
 
@@ -98,6 +103,14 @@ def _read(source: Path) -> tuple[Scan, Weld]:
     if not diagonal(welded.mesh) > LEAST_DIAGONAL:
         raise EmptyMeshError(f"the mesh is only {diagonal(welded.mesh):.3g} wide; that is no surface in float64")
     return scan, welded
+
+
+def _unit_warnings(scan: Scan, output: Path) -> list[str]:
+    """Say when the output's format gives the numbers a unit that the input did not state."""
+    implied = IMPLIED_UNITS.get(output.suffix.lower())
+    if implied is None or scan.unit is not None:
+        return []
+    return [f"the scan states no length unit, and {output.suffix} always means {implied}: the numbers are unchanged"]
 
 
 def _resolve(model: str | Path) -> tuple[Inpainter | None, dict[str, Any]]:

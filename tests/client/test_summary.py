@@ -3,7 +3,7 @@ from typing import Any
 
 import pytest
 
-from client.summary import open_holes, paragraph, verdicts
+from client.summary import geometry_only, open_holes, paragraph, verdicts
 from jobkit.schema import HoleCounts, Job
 
 
@@ -44,6 +44,11 @@ def test_open_holes_are_told_by_reason_the_commonest_first() -> None:
     ]
     assert open_holes({"holes": holes}) == "2 × too wide (hole 1: 10 is over 5); hole 0: it is the border"
     assert open_holes({"holes": [hole(0, "filled")]}) == ""
+
+
+def test_holes_filled_by_geometry_say_why() -> None:
+    holes = [hole(0, "filled_smooth", "no_gain", "no gain"), hole(1, "filled_smooth", "no_gain", "no gain")]
+    assert geometry_only({"holes": [*holes, hole(2, "filled")]}) == "2 × no gain"
 
 
 def test_a_paragraph_tells_counts_reasons_and_seconds() -> None:

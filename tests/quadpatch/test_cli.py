@@ -37,7 +37,9 @@ def test_fill_writes_the_mesh_the_report_and_the_picture(scan_file: Path, tmp_pa
     assert len(read_scan(output).triangles) > len(read_scan(scan_file).triangles)
     assert picture.read_bytes().startswith(b"\x89PNG")
     assert result.stdout == ""
-    assert "4 holes: 0 filled by the model, 3 by geometry, 1 left open (1 × outer border" in result.stderr
+    assert "3 by geometry (3 × no learned model took part), 1 left open (1 × outer border" in " ".join(
+        result.stderr.split()
+    )
 
 
 def test_quiet_says_nothing(scan_file: Path, tmp_path: Path) -> None:
@@ -148,11 +150,21 @@ def test_wrong_usage_has_its_own_exit_code(arguments: list[str]) -> None:
 def test_the_summary_counts_reasons() -> None:
     row = {"verdict": "skipped", "reason": "too wide"}
     report = {
-        "counts": {"found": 4, "filled": 1, "filled_smooth": 0, "skipped": 2, "refused": 1},
-        "holes": [row, row, {"verdict": "refused", "reason": "no way"}, {"verdict": "filled", "reason": None}],
+        "counts": {"found": 5, "filled": 1, "filled_smooth": 1, "skipped": 2, "refused": 1},
+        "holes": [
+            row,
+            row,
+            {"verdict": "refused", "reason": "no way"},
+            {"verdict": "filled", "reason": None},
+            {"verdict": "filled_smooth", "reason": "no gain"},
+        ],
+        "warnings": ["beware"],
         "stages": [{"name": "read", "seconds": 1.25}, {"name": "fill", "seconds": 0.5}],
     }
-    expected = "4 holes: 1 filled by the model, 0 by geometry, 3 left open (2 × too wide; 1 × no way). 1.8 s."
+    expected = (
+        "5 holes: 1 filled by the model, 1 by geometry (1 × no gain), "
+        "3 left open (2 × too wide; 1 × no way). 1.8 s. Warning: beware."
+    )
     assert summary(report) == expected
 
 

@@ -336,3 +336,11 @@ def test_heaps_of_random_triangles_give_a_repair_or_an_error_with_a_code(
         after = read_scan(folder / "out.ply")
         assert np.isfinite(after.vertices).all()
         assert after.vertices[:n].tobytes() == vertices.tobytes()
+
+
+def test_a_format_that_implies_a_unit_is_a_warning(tmp_path: Path) -> None:
+    mesh = punched(sphere(3), (0.0, 0.0, 1.0), radius=0.4)
+    write_ply(tmp_path / "in.ply", mesh)
+    (warning,) = repair_file(tmp_path / "in.ply", tmp_path / "out.glb", "smooth")["warnings"]
+    assert warning == "the scan states no length unit, and .glb always means meter: the numbers are unchanged"
+    assert repair_file(tmp_path / "in.ply", tmp_path / "out.ply", "smooth")["warnings"] == []
