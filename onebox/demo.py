@@ -20,6 +20,7 @@ from client.sdk import Client
 from onebox.box import ADDRESS_FILE, LOCK_NAME
 from onebox.errors import DemoError
 from onebox.logs import log_tail
+from onebox.processes import stop
 from worker.leash import leash
 
 MODEL = "general-dictionary@1"
@@ -108,12 +109,7 @@ def running_box(data: Path) -> Iterator[str]:
     try:
         yield _wait_for_address(address_file, process, log_path)
     finally:
-        process.terminate()
-        try:
-            process.wait(_STOP_TIMEOUT_S)
-        except subprocess.TimeoutExpired:
-            process.kill()
-            process.wait()
+        stop(process, _STOP_TIMEOUT_S)
 
 
 def _wait_for_address(address_file: Path, process: subprocess.Popen[bytes], log_path: Path) -> str:

@@ -1,6 +1,6 @@
 """A small supervisor: starts programs in order, restarts what dies, stops them in reverse.
 
-It has one thread on purpose. Children are tied to the thread that forks them (see `onebox.leash`), and each writes
+It has one thread on purpose. Children are tied to the thread that forks them (see `worker.leash`), and each writes
 straight into its own log file, so nothing is lost when the supervisor itself is killed.
 """
 
@@ -204,3 +204,13 @@ def _ending(returncode: int) -> str:
     if returncode < 0:
         return f"signal {signal.Signals(-returncode).name}"
     return f"exit code {returncode}"
+
+
+def stop(process: subprocess.Popen[bytes], patience_s: float) -> None:
+    """Ask one process to end, and end it when it takes longer than `patience_s`."""
+    process.terminate()
+    try:
+        process.wait(patience_s)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.wait()

