@@ -103,20 +103,35 @@ def close_holes(mesh: TriangleMesh, loops: list[IntArray]) -> ClosedMesh:
     loops : list of (n_loop,) int64
         Simple loops with the surface on their left, as `boundary_loops` gives them.
     """
-    rim = np.unique(np.concatenate([np.zeros(0, np.int64), *loops]))
-    # Nothing below looks further than two rings from a rim: work on that part alone.
-    near = triangles_around(mesh.triangles, rim, len(mesh.vertices), _RINGS)
-    used, local = np.unique(mesh.triangles[near], return_inverse=True)
-    around = local.reshape(-1, 3)
-    centre = mesh.vertices[used].mean(axis=0) if len(used) else np.zeros(3)
-    taken = EdgeSet(directed_edges(around))
-    local_loops = [np.searchsorted(used, loop) for loop in loops]
-    patch, unfilled = _close(mesh.vertices[used] - centre, around, local_loops, taken)
+    near = _surroundings(mesh, loops)
+    patch, unfilled = _close(near.vertices, near.around, near.loops, near.taken)
     # A first, crumpled fairing; its bulge makes room for more vertices, and its shape better weights.
-    patch = _faired(patch, around, THIN_PLATE, uniform=True)
-    patch = relax(refine(patch, taken), around, taken)
-    plate = _faired(patch, around, THIN_PLATE)
-    return ClosedMesh(mesh, used, centre, around, plate, len(loops), unfilled)
+    patch = _faired(patch, near.around, THIN_PLATE, uniform=True)
+    patch = relax(refine(patch, near.taken), near.around, near.taken)
+    plate = _faired(patch, near.around, THIN_PLATE)
+    return ClosedMesh(mesh, near.used, near.centre, near.around, plate, len(loops), unfilled)
+
+
+def close_flat(mesh: TriangleMesh, loops: list[IntArray]) -> FilledMesh:
+    """Triangulate and refine boundary loops and leave it at that: the closing that the paper starts from.
+
+    New vertices lie on the flat triangles that span the rim.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+    loops : list of (n_loop,) int64
+        Simple loops with the surface on their left, as `boundary_loops` gives them.
+
+    Returns
+    -------
+    FilledMesh
+        Its gap is NaN: there is no plate to be apart from.
+    """
+    near = _surroundings(mesh, loops)
+    patch, unfilled = _close(near.vertices, near.around, near.loops, near.taken)
+    closed = ClosedMesh(mesh, near.used, near.centre, near.around, patch, len(loops), unfilled)
+    return _appended(closed, patch, np.full(len(loops), np.nan))
 
 
 def fair_holes(closed: ClosedMesh, energy: Energy) -> FilledMesh:
@@ -128,6 +143,36 @@ def fair_holes(closed: ClosedMesh, energy: Energy) -> FilledMesh:
         The input's vertices and triangles are its bit-exact prefix.
     """
     patch, gap = _fair_patch(closed.plate, closed.around, energy, closed.n_holes)
+    return _appended(closed, patch, gap)
+
+
+@dataclass(frozen=True)
+class _Surroundings:
+    """The measured surface next to the holes, in vertices and coordinates of its own (see `ClosedMesh`)."""
+
+    used: IntArray
+    centre: FloatArray
+    vertices: FloatArray
+    around: Triangles
+    loops: list[IntArray]
+    taken: EdgeSet
+
+
+def _surroundings(mesh: TriangleMesh, loops: list[IntArray]) -> _Surroundings:
+    """Cut out what the filling reads: nothing in it looks further than two rings from a rim."""
+    rim = np.unique(np.concatenate([np.zeros(0, np.int64), *loops]))
+    near = triangles_around(mesh.triangles, rim, len(mesh.vertices), _RINGS)
+    used, local = np.unique(mesh.triangles[near], return_inverse=True)
+    around = local.reshape(-1, 3)
+    centre = mesh.vertices[used].mean(axis=0) if len(used) else np.zeros(3)
+    local_loops = [np.searchsorted(used, loop) for loop in loops]
+    return _Surroundings(
+        used, centre, mesh.vertices[used] - centre, around, local_loops, EdgeSet(directed_edges(around))
+    )
+
+
+def _appended(closed: ClosedMesh, patch: Refined, gap: FloatArray) -> FilledMesh:
+    """Put a fill in local vertices behind the mesh's own."""
     mesh, n_local = closed.mesh, len(closed.used)
     n_input = len(mesh.vertices)
     to_mesh = np.concatenate([closed.used, n_input + np.arange(len(patch.vertices) - n_local)])
