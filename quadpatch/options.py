@@ -9,6 +9,12 @@ from quadpatch.errors import OptionError
 
 RESOLUTION_RANGE = (8, 128)
 OVERLAP_RANGE = (0, 8)
+ATOMS_RANGE = (2, 4096)
+NONZERO_RANGE = (1, 256)
+
+# How a model's patches become surface: `default` is this project's own way, `paper` that of the paper, step by step.
+DEFAULT, PAPER = "default", "paper"
+RECIPES = (DEFAULT, PAPER)
 
 
 @dataclass(frozen=True)
@@ -67,14 +73,40 @@ class PatchOptions:
 
 
 @dataclass(frozen=True)
+class DictionaryOptions:
+    """How large a dictionary is learned from the mesh itself; read by the recipe `paper` alone.
+
+    Attributes
+    ----------
+    atoms : int, optional
+        At most so many; there are never more than patches to learn from.
+    nonzero : int, optional
+        Atoms that one patch may use.
+    """
+
+    atoms: int | None = None
+    nonzero: int | None = None
+
+    def __post_init__(self) -> None:
+        _check_range("dictionary.atoms", self.atoms, ATOMS_RANGE)
+        _check_range("dictionary.nonzero", self.nonzero, NONZERO_RANGE)
+
+
+@dataclass(frozen=True)
 class RepairOptions:
-    """Everything that a repair can be told; `seed` starts every random choice."""
+    """Everything that a repair can be told; `recipe` is one of `RECIPES`, `seed` starts every random choice."""
 
     holes: HoleOptions = field(default_factory=HoleOptions)
     patches: PatchOptions = field(default_factory=PatchOptions)
     seed: int = 0
+    recipe: str = DEFAULT
+    dictionary: DictionaryOptions = field(default_factory=DictionaryOptions)
 
     def __post_init__(self) -> None:
+        if self.recipe not in RECIPES:
+            raise OptionError(f"recipe must be one of {', '.join(RECIPES)}; it is {self.recipe!r}")
+        if self.recipe != PAPER and self.dictionary != DictionaryOptions():
+            raise OptionError("dictionary.atoms and dictionary.nonzero go with the recipe paper only")
         if not isinstance(self.seed, int) or self.seed < 0:
             raise OptionError(f"seed must be a whole number of 0 or more; it is {self.seed}")
 
@@ -86,8 +118,9 @@ class RepairOptions:
             if holes.get("ids") is not None:
                 holes["ids"] = tuple(int(i) for i in holes["ids"])
             patches = dict(values.get("patches") or {})
-            rest = {name: value for name, value in values.items() if name not in ("holes", "patches")}
-            return cls(HoleOptions(**holes), PatchOptions(**patches), **rest)
+            dictionary = DictionaryOptions(**(values.get("dictionary") or {}))
+            rest = {name: value for name, value in values.items() if name not in ("holes", "patches", "dictionary")}
+            return cls(HoleOptions(**holes), PatchOptions(**patches), dictionary=dictionary, **rest)
         except (TypeError, ValueError) as error:
             raise OptionError(f"options don't fit: {error}") from error
 

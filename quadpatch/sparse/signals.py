@@ -14,6 +14,9 @@ from quadpatch.types import BoolArray, FloatArray
 # What model cards call this normalisation; a model made with another one can't be used here.
 NORMALISATION = "detail-mean-spread"
 
+# The same for dictionaries of the paper's own recipe: heights over the plane of the patch, less their mean.
+HEIGHTS = "heights-mean"
+
 # A spread this small against the heights themselves is rounding, not relief.
 FLAT = 1e-9
 
@@ -86,3 +89,27 @@ def from_signals(signals: FloatArray, scaling: Scaling) -> FloatArray:
     resolution = int(np.sqrt(n_bins))
     detail = scaling.mean[:, None] + scaling.spread[:, None] * signals
     return detail.reshape(n_patches, resolution, resolution)
+
+
+def mean_free(heights: FloatArray, known: BoolArray) -> tuple[FloatArray, FloatArray]:
+    """Take the mean of the known bins out of every patch: all that the paper's own recipe does to heights.
+
+    Parameters
+    ----------
+    heights : (n_patches, N, N) float64
+        Over the plane of the patch, in mesh units; unknown bins may hold anything.
+    known : (n_patches, N, N) bool
+        True = measured bin.
+
+    Returns
+    -------
+    signals : (n_patches, N * N) float64
+        In mesh units; 0 in unknown bins.
+    mean : (n_patches,) float64
+        In mesh units; 0 where no bin is known.
+    """
+    shape = len(heights), heights.shape[1] * heights.shape[2]
+    flat_known = known.reshape(shape)
+    values = np.where(flat_known, heights.reshape(shape), 0.0)
+    mean = values.sum(axis=1) / np.maximum(flat_known.sum(axis=1), 1)
+    return np.where(flat_known, values - mean[:, None], 0.0), mean

@@ -1,0 +1,103 @@
+"""Completion of patches by sparse coding, exactly as in section 4 of the paper.
+
+What is coded is the height of the surface over the plane of its patch, less the mean of the known bins, in mesh
+units. Nothing else is taken out: the atoms carry the shape of the object as well as its detail. The default recipe has
+`quadpatch.inpainters.dictionary` in its place.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from quadpatch.options import DictionaryOptions
+from quadpatch.sparse.dictionary import Dictionary
+from quadpatch.sparse.ksvd import KsvdOptions, OnIteration, masked_ksvd
+from quadpatch.sparse.omp import masked_omp
+from quadpatch.sparse.signals import mean_free
+from quadpatch.types import BoolArray, FloatArray, Patches, Progress, no_progress
+
+# The paper finds no gain beyond 50 to 100 atoms on the patches of one shape, and takes 500 for those of many.
+LOCAL_ATOMS = 100
+GLOBAL_ATOMS = 500
+# Codes with fewer atoms than this lose detail; codes with many more fit what is known and run wild where it is not.
+NONZERO = 10
+ITERATIONS = 15
+
+MIN_TRAINING_PATCHES = 24
+MAX_TRAINING_PATCHES = 5000
+
+# Patches to learn from show measured surface everywhere; up to this share of bins that saw none is forgiven.
+LEAST_KNOWN = 0.95
+
+
+@dataclass(frozen=True)
+class HeightsInpainter:
+    """Sparse codes of heights over one dictionary."""
+
+    dictionary: Dictionary
+
+    @property
+    def resolution(self) -> int:
+        """Bins along one side of its patches."""
+        return self.dictionary.resolution
+
+    def predict(self, patches: Patches, outline: FloatArray | None = None) -> FloatArray:
+        """Predict every bin from the known ones of its patch; see `Inpainter`. The outline is not looked at."""
+        del outline
+        signals, mean = mean_free(patches.heights, patches.known)
+        known = patches.known.reshape(signals.shape)
+        codes = masked_omp(signals, known, self.dictionary.atoms, self.dictionary.n_nonzero)
+        completed = codes @ self.dictionary.atoms.T + mean[:, None]
+        return completed.reshape(patches.heights.shape)
+
+
+def is_learnable(known: BoolArray) -> BoolArray:
+    """Say which patches (n_patches,) are known (n_patches, N, N) well enough to learn from."""
+    return np.asarray(known.mean(axis=(1, 2)) >= LEAST_KNOWN)
+
+
+def learn_heights(
+    heights: FloatArray,
+    known: BoolArray,
+    options: DictionaryOptions,
+    rng: np.random.Generator,
+    progress: Progress = no_progress,
+) -> HeightsInpainter | None:
+    """Learn a dictionary of heights by K-SVD.
+
+    Parameters
+    ----------
+    heights : (n_patches, N, N) float64
+        In mesh units; those that are not known are never read.
+    known : (n_patches, N, N) bool
+    options : DictionaryOptions
+        At most as many atoms as there are patches to learn from.
+    rng : numpy.random.Generator
+    progress : callable
+
+    Returns
+    -------
+    HeightsInpainter or None
+        None where too few patches are known well enough to learn anything.
+    """
+    usable = np.flatnonzero(is_learnable(known))
+    if len(usable) > MAX_TRAINING_PATCHES:
+        usable = np.sort(rng.choice(usable, MAX_TRAINING_PATCHES, replace=False))
+    signals, _ = mean_free(heights[usable], known[usable])
+    textured = signals.any(axis=1)
+    if textured.sum() < MIN_TRAINING_PATCHES:
+        return None
+    n_atoms = min(options.atoms or LOCAL_ATOMS, int(textured.sum()))
+    n_nonzero = min(options.nonzero or NONZERO, n_atoms, signals.shape[1])
+    atoms, _ = masked_ksvd(
+        signals[textured],
+        known[usable].reshape(signals.shape)[textured],
+        KsvdOptions(n_atoms, n_nonzero, ITERATIONS),
+        rng,
+        _reported(progress),
+    )
+    return HeightsInpainter(Dictionary(atoms, int(heights.shape[1]), n_nonzero))
+
+
+def _reported(progress: Progress) -> OnIteration:
+    return lambda i, _: progress("learn", (i + 1) / ITERATIONS)
