@@ -37,8 +37,9 @@ openapi: $(READY)         ## write openapi.yaml from the app
 bench: $(READY)           ## speed of the method's stages
 	@$(BIN)/python -m benchmarks.stages
 
-bench-quality: $(READY)   ## repair quality beside the peers: make bench-quality BENCH=folder-of-the-bench
-	@$(BIN)/python -m benchmarks.quality $(BENCH)
+bench-quality: $(READY)   ## repair quality beside the peers: make bench-quality BENCH=folder ARGS="--radius all"
+	@$(PIP) install --constraint constraints.txt --editable '.[bench]'
+	@$(BIN)/python -m benchmarks.quality $(BENCH) $(ARGS)
 
 clean:
 	rm -rf $(VENV) demo var build dist *.egg-info

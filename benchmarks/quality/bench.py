@@ -1,0 +1,123 @@
+"""The bench: meshes with known truth, a script that punches and scores, and the errors that peers reach.
+
+The folder holds ``bench.py``, ``meshes/NAME.ply`` and ``baselines.json`` (mesh, then hole radius, then peer). Its
+meshes are normalised, longest side 1, so every length here is a share of the object's size. They are for measuring
+only.
+"""
+
+import hashlib
+import importlib.util
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+from quadpatch.types import TriangleMesh
+
+RADII = ("0.015", "0.025", "0.035")
+
+
+class BenchError(Exception):
+    """The folder is no bench, or lacks what was asked for."""
+
+
+@dataclass(frozen=True)
+class Shape:
+    """A mesh with known truth.
+
+    Attributes
+    ----------
+    name : str
+    truth : Path
+        PLY, normalised.
+    peers : dict
+        Figures of ``bench.score`` by radius and peer; more may be computed on the spot.
+    """
+
+    name: str
+    truth: Path
+    peers: dict[str, dict[str, dict[str, Any]]]
+
+    @property
+    def sha256(self) -> str:
+        """Hash of the truth: results of another mesh of the same name must not be taken for this one's."""
+        return file_sha256(self.truth)
+
+
+@dataclass(frozen=True)
+class Case:
+    """A shape with holes of one radius, in a folder with ``punched.ply`` and ``holes.json``."""
+
+    shape: Shape
+    radius: str
+    folder: Path
+
+    @property
+    def punched(self) -> Path:
+        """The mesh with the holes."""
+        return self.folder / "punched.ply"
+
+    @property
+    def peers(self) -> dict[str, dict[str, Any]]:
+        """Figures by peer; empty where none were measured."""
+        return self.shape.peers.get(self.radius, {})
+
+    def holes(self) -> list[dict[str, Any]]:
+        """Id, centre and radius of the punched holes."""
+        return list(json.loads((self.folder / "holes.json").read_text())["holes"])
+
+
+@dataclass(frozen=True)
+class Bench:
+    """The bench's folder and its script."""
+
+    folder: Path
+    script: ModuleType
+
+    @classmethod
+    def open(cls, folder: Path) -> "Bench":
+        """Load ``bench.py`` from a folder; raises BenchError where there is none."""
+        path = folder / "bench.py"
+        spec = importlib.util.spec_from_file_location("bench", path) if path.is_file() else None
+        if spec is None or spec.loader is None:
+            raise BenchError(f"there is no {path}")
+        module = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(module)
+        return cls(folder, module)
+
+    def shapes(self, names: list[str] | None = None) -> list[Shape]:
+        """List the shapes by name, or only some; raises BenchError for an unknown one."""
+        baselines = json.loads((self.folder / "baselines.json").read_text())
+        unknown = sorted(set(names or []) - set(baselines))
+        if unknown:
+            raise BenchError(f"no mesh {unknown[0]!r} in the bench; there are {', '.join(sorted(baselines))}")
+        chosen = sorted(names or baselines)
+        return [Shape(name, self.folder / "meshes" / f"{name}.ply", baselines[name]) for name in chosen]
+
+    def case(self, shape: Shape, radius: str, output: Path) -> Case:
+        """Punch a shape, unless that was done before for this very truth."""
+        case = Case(shape, radius, output / f"{shape.name}_{radius}")
+        stamp = case.folder / "truth.sha256"
+        if not (case.punched.is_file() and stamp.is_file() and stamp.read_text() == shape.sha256):
+            self.script.punch(shape.truth, float(radius), case.folder)
+            stamp.write_text(shape.sha256)
+        return case
+
+    def score(self, case: Case, repaired: Path) -> dict[str, Any]:
+        """Errors of a repaired mesh over the punched holes, in unit-cube units."""
+        scores: dict[str, Any] = self.script.score(case.shape.truth, case.folder, repaired)
+        return scores
+
+    def read(self, path: Path) -> TriangleMesh:
+        """Read a PLY as the bench reads it."""
+        return TriangleMesh(*self.script.read_ply(path))
+
+    def write(self, path: Path, mesh: TriangleMesh) -> None:
+        """Write a PLY as the bench writes it: float32."""
+        self.script.write_ply(path, mesh.vertices, mesh.triangles)
+
+
+def file_sha256(path: Path) -> str:
+    """Hash of a file's bytes, in hex."""
+    return hashlib.sha256(path.read_bytes()).hexdigest()

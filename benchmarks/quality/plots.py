@@ -1,0 +1,62 @@
+"""Plots, drawn without a display."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+
+_WIDTH, _HEIGHT = 9.0, 4.6
+
+
+def ratio_plot(title: str, meshes: Sequence[str], series: Mapping[str, Sequence[float | None]]) -> Figure:
+    """Draw one group of bars for each mesh, one bar for each method; the line at 1 is the reference."""
+    figure = Figure(figsize=(_WIDTH, _HEIGHT), layout="constrained")
+    axes = figure.add_subplot()
+    width = 0.8 / max(len(series), 1)
+    places = np.arange(len(meshes))
+    for k, (name, values) in enumerate(series.items()):
+        heights = [np.nan if value is None else value for value in values]
+        axes.bar(places + (k + 0.5) * width - 0.4, heights, width, label=name)
+    axes.axhline(1.0, color="black", linewidth=0.8)
+    axes.set_xticks(places, meshes, rotation=30, ha="right")
+    # Beyond twice the reference it is enough to know that a bar leaves the picture.
+    axes.set_ylim(0, 2)
+    axes.set_title(title)
+    axes.legend(ncols=4, fontsize="small")
+    return figure
+
+
+def calibration_plot(holes: Mapping[str, Sequence[dict[str, Any]]]) -> Figure:
+    """Draw true over expected error of every hole, one panel for each method; on the line they agree."""
+    figure = Figure(figsize=(4.0 * max(len(holes), 1), 4.2), layout="constrained")
+    for k, (name, found) in enumerate(holes.items()):
+        axes = figure.add_subplot(1, len(holes), k + 1)
+        # A missing expectation becomes a NaN, which no comparison holds for.
+        expected = np.array([hole["expected_error"] for hole in found], dtype=np.float64)
+        true = np.array([hole["true_error"] for hole in found], dtype=np.float64)
+        shown = (expected > 0) & (true > 0)
+        axes.loglog(expected[shown], true[shown], ".", markersize=2, alpha=0.5)
+        if shown.any():
+            ends = [min(expected[shown].min(), true[shown].min()), max(expected[shown].max(), true[shown].max())]
+            axes.loglog(ends, ends, color="black", linewidth=0.8)
+        axes.set_xlabel("expected error")
+        axes.set_ylabel("true error")
+        axes.set_title(f"{name}, {len(found)} holes")
+    return figure
+
+
+def curve_plot(
+    title: str, labels: tuple[str, str], series: Mapping[str, tuple[Sequence[float], Sequence[float]]]
+) -> Figure:
+    """Draw one line for each name through its points (x, y); `labels` are those of the axes."""
+    figure = Figure(figsize=(_WIDTH, _HEIGHT), layout="constrained")
+    axes = figure.add_subplot()
+    for name, (x, y) in series.items():
+        axes.plot(x, y, marker="o", markersize=3, label=name)
+    axes.set_xlabel(labels[0])
+    axes.set_ylabel(labels[1])
+    axes.set_title(title)
+    axes.grid(alpha=0.3)
+    axes.legend(fontsize="small", ncols=2)
+    return figure

@@ -1,0 +1,56 @@
+"""Results that are kept: an experiment that was cut short goes on where it stopped.
+
+One JSON file per result, named by what was measured and with all of that inside. The code is no part of it: after a
+change of the code, ask for fresh results.
+"""
+
+import hashlib
+import json
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+Key = Mapping[str, str | int | float]
+
+
+@dataclass
+class Results:
+    """A folder of results; with `fresh`, those of earlier runs don't count."""
+
+    folder: Path
+    fresh: bool = False
+    _made: set[Path] = field(default_factory=set)
+
+    def get(self, kind: str, key: Key, compute: Callable[[], dict[str, Any]]) -> dict[str, Any]:
+        """Return the result of a key, from its file or computed and put there.
+
+        Parameters
+        ----------
+        kind : str
+            Of measurement: a folder.
+        key : mapping of str to str or number
+            Everything that the result depends on, but the code.
+        compute : callable
+            Gives the result, JSON-ready.
+        """
+        path = self.folder / kind / f"{_name(key)}.json"
+        if path.is_file() and (not self.fresh or path in self._made):
+            kept: dict[str, Any] = json.loads(path.read_text())
+            return dict(kept["result"])
+        result = compute()
+        path.parent.mkdir(parents=True, exist_ok=True)
+        # In one step: a run may be stopped at any moment.
+        partial = path.with_suffix(".partial")
+        partial.write_text(json.dumps({"key": dict(key), "result": result}, indent=1) + "\n")
+        partial.replace(path)
+        self._made.add(path)
+        return dict(json.loads(path.read_text())["result"])
+
+
+def _name(key: Key) -> str:
+    """Name a file for people, and by a hash for good."""
+    words = [str(value) for name, value in key.items() if "sha256" not in name]
+    digest = hashlib.sha256(json.dumps(dict(key), sort_keys=True).encode()).hexdigest()[:10]
+    return re.sub(r"[^A-Za-z0-9.@=+-]+", "-", "_".join(words))[:100] + "_" + digest
