@@ -21,7 +21,7 @@ from rich.text import Text
 from quadpatch import types
 from quadpatch.errors import QuadpatchError
 from quadpatch.files import check_outputs, write_whole
-from quadpatch.options import HoleOptions, PatchOptions, RepairOptions
+from quadpatch.options import DictionaryOptions, HoleOptions, PatchOptions, Recipe, RepairOptions
 
 app = typer.Typer(help="Repair holes in 3D scans.", no_args_is_help=True, add_completion=False)
 _errors = Console(stderr=True)
@@ -36,6 +36,9 @@ def fill(  # noqa: PLR0913, PLR0917  one argument per flag
     model: Annotated[
         str, typer.Option(help="self (learn from this mesh), smooth (geometry only), a shipped model, or a model file.")
     ] = "self",
+    recipe: Annotated[
+        Recipe, typer.Option(help="How the model is put to use: our way, or exactly the paper's.")
+    ] = "default",
     report: Annotated[Path | None, typer.Option(help="Write the report as JSON.")] = None,
     picture: Annotated[Path | None, typer.Option(help="Write a before/after picture as PNG.")] = None,
     max_diameter: Annotated[float | None, typer.Option(help="Leave wider holes open (mesh units).")] = None,
@@ -45,6 +48,10 @@ def fill(  # noqa: PLR0913, PLR0917  one argument per flag
     patch_length: Annotated[float | None, typer.Option(help="Side of a patch (mesh units).")] = None,
     resolution: Annotated[int | None, typer.Option(help="Bins along one side of a patch.")] = None,
     overlap: Annotated[int | None, typer.Option(help="k: every quad carries 1 + 4 k patches.")] = None,
+    atoms: Annotated[int | None, typer.Option(help="Atoms to learn (recipe paper, model self).")] = None,
+    nonzero: Annotated[
+        int | None, typer.Option(help="Atoms that one patch may use (recipe paper, model self).")
+    ] = None,
     seed: Annotated[int, typer.Option(help="Start of every random choice.")] = 0,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress, no summary.")] = False,
 ) -> None:
@@ -56,6 +63,8 @@ def fill(  # noqa: PLR0913, PLR0917  one argument per flag
             HoleOptions(max_diameter, max_perimeter, all_but_largest, tuple(hole) if hole else None),
             PatchOptions(patch_length, resolution, overlap),
             seed,
+            recipe,
+            DictionaryOptions(atoms, nonzero),
         )
         check_outputs(source, [path for path in (output, report, picture) if path])
         result = repair_file(source, output, model, options, progress)

@@ -16,8 +16,9 @@ from safetensors import SafetensorError, safe_open
 from safetensors.numpy import save
 
 from quadpatch.errors import ModelError
+from quadpatch.options import Recipe
 from quadpatch.sparse.dictionary import Dictionary
-from quadpatch.sparse.signals import NORMALISATION
+from quadpatch.sparse.signals import HEIGHTS, NORMALISATION
 from quadpatch.types import FloatArray
 
 SHIPPED_MODELS = Path(__file__).parent / "shipped_models"
@@ -27,6 +28,9 @@ MAX_RESOLUTION = 128
 MAX_ATOMS = 16384
 # Files may round atoms to float32, or keep a few digits less; further from 1 they are no atoms.
 FILE_NORM_TOLERANCE = 1e-3
+
+# What dictionaries say of their signals, and the recipe that makes such signals.
+RECIPES: dict[str, Recipe] = {NORMALISATION: "default", HEIGHTS: "paper"}
 
 Card = dict[str, Any]
 
@@ -45,12 +49,15 @@ class Model:
         Empty for a network: its card stands in its own metadata, which the ONNX adapter reads.
     dictionary : Dictionary or None
         None for a network.
+    recipe : str
+        What it was learned for: `default` or `paper`.
     """
 
     path: Path
     kind: Literal["dictionary", "autoencoder"]
     card: Card
     dictionary: Dictionary | None
+    recipe: Recipe = "default"
 
 
 def load_model(path: str | Path) -> Model:
@@ -72,14 +79,17 @@ def load_model(path: str | Path) -> Model:
     if path.suffix == ".onnx":
         return Model(path, "autoencoder", {}, None)
     card = model_card(path)
-    if card.get("normalisation") != NORMALISATION:
-        raise ModelError(f"normalisation {card.get('normalisation')!r}; only {NORMALISATION!r} is known")
+    recipe = RECIPES.get(str(card.get("normalisation")))
+    if recipe is None:
+        raise ModelError(f"normalisation {card.get('normalisation')!r}; known are {', '.join(map(repr, RECIPES))}")
     resolution = _count(card, "patch_resolution", MAX_RESOLUTION)
     dictionary = Dictionary(_read_atoms(path), resolution, _count(card, "n_nonzero", MAX_ATOMS))
-    return Model(path, "dictionary", card, dictionary)
+    return Model(path, "dictionary", card, dictionary, recipe)
 
 
-def save_dictionary(path: str | Path, dictionary: Dictionary, card: Mapping[str, Any]) -> None:
+def save_dictionary(
+    path: str | Path, dictionary: Dictionary, card: Mapping[str, Any], normalisation: str = NORMALISATION
+) -> None:
     """Write a dictionary and its card; same dictionary and card, same bytes.
 
     Parameters
@@ -90,6 +100,8 @@ def save_dictionary(path: str | Path, dictionary: Dictionary, card: Mapping[str,
         Its atoms are stored as float32 and brought back to unit norm on reading.
     card : mapping
         JSON-ready. What follows from the dictionary itself is added to it.
+    normalisation : str
+        How the signals that it was learned from were made, one of `RECIPES`.
 
     Raises
     ------
@@ -102,7 +114,7 @@ def save_dictionary(path: str | Path, dictionary: Dictionary, card: Mapping[str,
     whole_card = {
         **card,
         "kind": "dictionary",
-        "normalisation": NORMALISATION,
+        "normalisation": normalisation,
         "patch_resolution": dictionary.resolution,
         "n_atoms": dictionary.n_atoms,
         "n_nonzero": dictionary.n_nonzero,

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Literal, get_args
 
 from quadpatch.errors import OptionError
 
@@ -13,8 +13,7 @@ ATOMS_RANGE = (2, 4096)
 NONZERO_RANGE = (1, 256)
 
 # How a model's patches become surface: `default` is this project's own way, `paper` that of the paper, step by step.
-DEFAULT, PAPER = "default", "paper"
-RECIPES = (DEFAULT, PAPER)
+Recipe = Literal["default", "paper"]
 
 
 @dataclass(frozen=True)
@@ -94,18 +93,29 @@ class DictionaryOptions:
 
 @dataclass(frozen=True)
 class RepairOptions:
-    """Everything that a repair can be told; `recipe` is one of `RECIPES`, `seed` starts every random choice."""
+    """Everything that a repair can be told.
+
+    Attributes
+    ----------
+    holes : HoleOptions
+    patches : PatchOptions
+    seed : int
+        Starts every random choice.
+    recipe : str
+        `default` or `paper`.
+    dictionary : DictionaryOptions
+    """
 
     holes: HoleOptions = field(default_factory=HoleOptions)
     patches: PatchOptions = field(default_factory=PatchOptions)
     seed: int = 0
-    recipe: str = DEFAULT
+    recipe: Recipe = "default"
     dictionary: DictionaryOptions = field(default_factory=DictionaryOptions)
 
     def __post_init__(self) -> None:
-        if self.recipe not in RECIPES:
-            raise OptionError(f"recipe must be one of {', '.join(RECIPES)}; it is {self.recipe!r}")
-        if self.recipe != PAPER and self.dictionary != DictionaryOptions():
+        if self.recipe not in get_args(Recipe):
+            raise OptionError(f"recipe must be one of {', '.join(get_args(Recipe))}; it is {self.recipe!r}")
+        if self.recipe != "paper" and self.dictionary != DictionaryOptions():
             raise OptionError("dictionary.atoms and dictionary.nonzero go with the recipe paper only")
         if not isinstance(self.seed, int) or self.seed < 0:
             raise OptionError(f"seed must be a whole number of 0 or more; it is {self.seed}")

@@ -7,17 +7,19 @@ from typing import Any
 
 import numpy as np
 
-from quadpatch.errors import EmptyMeshError
+from quadpatch.errors import EmptyMeshError, OptionError
 from quadpatch.formats.reading import read_scan
 from quadpatch.formats.scan import Fill, Scan
 from quadpatch.formats.writing import check_suffix, write_scan
 from quadpatch.inpainters.dictionary import DictionaryInpainter
+from quadpatch.inpainters.heights import HeightsInpainter
 from quadpatch.inpainters.inpainter import Inpainter
 from quadpatch.mesh.holes import find_holes, select_holes
 from quadpatch.mesh.measures import diagonal
 from quadpatch.mesh.weld import Weld, weld
-from quadpatch.model_file import load_model, shipped_model
-from quadpatch.options import RepairOptions
+from quadpatch.model_file import Model, load_model, shipped_model
+from quadpatch.options import DictionaryOptions, RepairOptions
+from quadpatch.paper import NOTHING_TO_DO, inpaint_as_paper
 from quadpatch.pipeline import Repair, inpaint
 from quadpatch.report import UNKNOWN_UNIT, build_report, describe_hole, describe_mesh
 from quadpatch.stages import Stages
@@ -65,10 +67,11 @@ def repair_file(
     options = options or RepairOptions()
     check_suffix(output)
     stages = Stages(progress)
-    inpainter, card = _resolve(model)
+    inpainter, card = _resolve(model, options)
     with stages.stage("read"):
         scan, welded = _read(source)
-    repair = inpaint(welded.mesh, inpainter, options, stages, learn=model == SELF)
+    by_recipe = inpaint_as_paper if options.recipe == "paper" else inpaint
+    repair = by_recipe(welded.mesh, inpainter, options, stages, learn=model == SELF)
     with stages.stage("write"):
         write_scan(output, scan, _fill(scan, welded, repair))
     repair = replace(repair, warnings=[*repair.warnings, *_unit_warnings(scan, output)])
@@ -113,21 +116,39 @@ def _unit_warnings(scan: Scan, output: Path) -> list[str]:
     return [f"the scan states no length unit, and {output.suffix} always means {implied}: the numbers are unchanged"]
 
 
-def _resolve(model: str | Path) -> tuple[Inpainter | None, dict[str, Any]]:
+def _resolve(model: str | Path, options: RepairOptions) -> tuple[Inpainter | None, dict[str, Any]]:
     """Turn a model's name or path into its inpainter, and what the report says of it."""
+    if model == SMOOTH and options.recipe == "paper":
+        raise OptionError(NOTHING_TO_DO)
     if model in (SMOOTH, SELF):
         return None, {"name": str(model)}
     path = Path(model)
     if not path.is_file():
         path = shipped_model(str(model))
     loaded = load_model(path)
+    _check_recipe(loaded, options)
     facts = {"name": loaded.card.get("name", path.stem), "version": loaded.card.get("version"), "kind": loaded.kind}
     facts["sha256"] = hashlib.sha256(path.read_bytes()).hexdigest()
     if loaded.dictionary is None:
         from quadpatch.inpainters.autoencoder import AutoencoderInpainter  # noqa: PLC0415  onnxruntime is slow to load
 
         return AutoencoderInpainter.load(path), facts
-    return DictionaryInpainter(loaded.dictionary), facts
+    inpainter = HeightsInpainter if loaded.recipe == "paper" else DictionaryInpainter
+    return inpainter(loaded.dictionary), facts
+
+
+def _check_recipe(model: Model, options: RepairOptions) -> None:
+    """Refuse a model that was learned for the other recipe, and a size for a dictionary that has one."""
+    name = model.path.name
+    if model.kind == "autoencoder" and options.recipe == "paper":
+        raise OptionError(f"{name} is a network and has a recipe of its own; the recipe paper goes with dictionaries")
+    if model.recipe != options.recipe:
+        raise OptionError(
+            f"{name} was learned for the recipe {model.recipe}, not for {options.recipe}: "
+            f"ask for the recipe {model.recipe}, or take the model self"
+        )
+    if options.dictionary != DictionaryOptions():
+        raise OptionError(f"dictionary.atoms and dictionary.nonzero go with the model self; {name} has its own")
 
 
 def _fill(scan: Scan, welded: Weld, repair: Repair) -> Fill:

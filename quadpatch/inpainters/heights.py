@@ -19,15 +19,16 @@ from quadpatch.types import BoolArray, FloatArray, Patches, Progress, no_progres
 # The paper finds no gain beyond 50 to 100 atoms on the patches of one shape, and takes 500 for those of many.
 LOCAL_ATOMS = 100
 GLOBAL_ATOMS = 500
-# Codes with fewer atoms than this lose detail; codes with many more fit what is known and run wild where it is not.
-NONZERO = 10
+# Heights hold the bend of the surface besides its relief, so a code needs more atoms than one of a relief alone.
+NONZERO = 20
 ITERATIONS = 15
 
 MIN_TRAINING_PATCHES = 24
 MAX_TRAINING_PATCHES = 5000
 
-# Patches to learn from show measured surface everywhere; up to this share of bins that saw none is forgiven.
-LEAST_KNOWN = 0.95
+# Patches to learn from are known in at least this share of their bins. On scans with a hole in every patch, none is
+# known everywhere.
+LEAST_KNOWN = 0.7
 
 
 @dataclass(frozen=True)

@@ -77,9 +77,23 @@ def test_flags_about_patches_reach_them(scan_file: Path, tmp_path: Path) -> None
         "holes": {"max_diameter": None, "max_perimeter": None, "all_but_largest": False, "ids": None},
         "patches": {"length": 0.5, "resolution": 18, "overlap": 1},
         "seed": 3,
+        "recipe": "default",
+        "dictionary": {"atoms": None, "nonzero": None},
     }
     assert content["patches"]["resolution"] == 18
     assert content["model"] == {"name": "self"}
+
+
+def test_flags_about_the_recipe_reach_it(scan_file: Path, tmp_path: Path) -> None:
+    report = tmp_path / "out.json"
+    flags = ["--recipe", "paper", "--atoms", "30", "--nonzero", "5", "--patch-length", "0.5", "--resolution", "12"]
+    result = run("fill", scan_file, "-o", tmp_path / "out.ply", "--report", report, *flags)
+    assert result.exit_code == 0, result.output
+    assert verdicts(report) == ["skipped", "filled", "filled", "filled"]
+    options = json.loads(report.read_text())["options"]
+    assert (options["recipe"], options["dictionary"]) == ("paper", {"atoms": 30, "nonzero": 5})
+    assert run("fill", scan_file, "-o", tmp_path / "out.ply", "--recipe", "paper", "--model", "smooth").exit_code == 1
+    assert run("fill", scan_file, "-o", tmp_path / "out.ply", "--recipe", "ours").exit_code == 2
 
 
 def test_holes_are_listed_as_json(scan_file: Path) -> None:
