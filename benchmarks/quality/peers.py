@@ -70,7 +70,8 @@ def close_by_meshlab(mesh: TriangleMesh, max_edges: int) -> TriangleMesh:
     meshes = pymeshlab.MeshSet()
     meshes.add_mesh(pymeshlab.Mesh(mesh.vertices, mesh.triangles))
     meshes.meshing_close_holes(
-        maxholesize=max_edges,
+        # Loops must be shorter than this.
+        maxholesize=max_edges + 1,
         # What is refined is what is selected: without this, nothing.
         newfaceselected=True,
         selfintersection=False,
