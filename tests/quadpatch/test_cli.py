@@ -86,7 +86,7 @@ def test_flags_about_patches_reach_them(scan_file: Path, tmp_path: Path) -> None
 
 def test_flags_about_the_recipe_reach_it(scan_file: Path, tmp_path: Path) -> None:
     report = tmp_path / "out.json"
-    flags = ["--recipe", "paper", "--atoms", "30", "--nonzero", "5", "--patch-length", "0.5", "--resolution", "12"]
+    flags = ["--recipe", "paper", "--atoms", "30", "--nonzero", "5", "--patch-length", "0.3", "--resolution", "12"]
     result = run("fill", scan_file, "-o", tmp_path / "out.ply", "--report", report, *flags)
     assert result.exit_code == 0, result.output
     assert verdicts(report) == ["skipped", "filled", "filled", "filled"]

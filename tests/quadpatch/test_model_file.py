@@ -53,6 +53,15 @@ def test_writing_what_was_read_gives_the_same_bytes(tmp_path: Path) -> None:
     assert first.read_bytes() == second.read_bytes()
 
 
+@pytest.mark.parametrize(("normalisation", "recipe"), [("detail-mean-spread", "default"), ("heights-mean", "paper")])
+def test_the_normalisation_of_a_dictionary_says_which_recipe_it_is_for(
+    tmp_path: Path, normalisation: str, recipe: str
+) -> None:
+    save_dictionary(tmp_path / "a.safetensors", Dictionary(some_atoms(), 4, 3), {}, normalisation)
+    model = load_model(tmp_path / "a.safetensors")
+    assert (model.recipe, model.card["normalisation"]) == (recipe, normalisation)
+
+
 def test_a_network_is_handed_over_unopened(tmp_path: Path) -> None:
     path = tmp_path / "net.onnx"
     path.write_bytes(b"anything")

@@ -3,7 +3,7 @@ from typing import Any
 import pytest
 
 from quadpatch.errors import OptionError
-from quadpatch.options import HoleOptions, PatchOptions, RepairOptions
+from quadpatch.options import DictionaryOptions, HoleOptions, PatchOptions, RepairOptions
 
 
 def test_nothing_given_means_every_automatic_rule() -> None:
@@ -25,9 +25,12 @@ def test_plain_values_become_options() -> None:
             "holes": {"max_diameter": 2, "ids": [3, 1]},
             "patches": {"length": 0.5, "resolution": 24, "overlap": 0},
             "seed": 7,
+            "recipe": "paper",
+            "dictionary": {"atoms": 50, "nonzero": 5},
         }
     )
-    assert options == RepairOptions(HoleOptions(max_diameter=2, ids=(3, 1)), PatchOptions(0.5, 24, 0), 7)
+    holes, patches = HoleOptions(max_diameter=2, ids=(3, 1)), PatchOptions(0.5, 24, 0)
+    assert options == RepairOptions(holes, patches, 7, "paper", DictionaryOptions(50, 5))
 
 
 @pytest.mark.parametrize(
@@ -53,6 +56,16 @@ def test_plain_values_become_options() -> None:
         {"seed": 0.5},
         {"seed": "today"},
         {"colour": "red"},
+        {"recipe": "ours"},
+        {"recipe": None},
+        {"recipe": ["paper"]},
+        {"dictionary": {"atoms": 50}},
+        {"recipe": "default", "dictionary": {"nonzero": 5}},
+        {"recipe": "paper", "dictionary": {"atoms": 1}},
+        {"recipe": "paper", "dictionary": {"atoms": 2.5}},
+        {"recipe": "paper", "dictionary": {"nonzero": 0}},
+        {"recipe": "paper", "dictionary": {"size": 3}},
+        {"recipe": "paper", "dictionary": [3]},
     ],
 )
 def test_what_can_not_be_meant_is_refused_with_a_code(values: dict[str, Any]) -> None:
@@ -68,6 +81,9 @@ def test_what_can_not_be_meant_is_refused_with_a_code(values: dict[str, Any]) ->
         ({"patches": {"resolution": 7}}, r"patches\.resolution must be a whole number between 8 and 128; it is 7"),
         ({"seed": -1}, "seed must be a whole number of 0 or more; it is -1"),
         ({"colour": "red"}, "colour"),
+        ({"recipe": "ours"}, "recipe must be one of default, paper; it is 'ours'"),
+        ({"dictionary": {"atoms": 9}}, r"dictionary\.atoms and dictionary\.nonzero go with the recipe paper only"),
+        ({"dictionary": {"atoms": 1}}, r"dictionary\.atoms must be a whole number between 2 and 4096; it is 1"),
     ],
 )
 def test_the_message_names_the_option_its_value_and_the_limit(values: dict[str, Any], message: str) -> None:

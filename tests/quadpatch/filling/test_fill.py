@@ -4,7 +4,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from quadpatch.filling.fairing import THIN_PLATE, Energy
-from quadpatch.filling.fill import FilledMesh, close_holes, fair_holes
+from quadpatch.filling.fill import FilledMesh, close_flat, close_holes, fair_holes
 from quadpatch.mesh.boundary import boundary_loops
 from quadpatch.types import FloatArray, IntArray, TriangleMesh, Triangles
 from tests.quadpatch.shapes import (
@@ -322,3 +322,36 @@ def test_sheets_that_lie_close_together_are_filled_one_by_one() -> None:
     first = int(np.argmin([loop[0] for loop in loops]))
     mine = result.mesh.vertices[len(mesh.vertices) :][result.vertex_hole == first]
     assert np.abs(mine - alone.mesh.vertices[len(top.vertices) :]).max() < 1e-9
+
+
+def test_a_flat_closing_leaves_new_vertices_on_the_triangles_that_span_the_rim() -> None:
+    """Nothing bulges: the missing cap of a sphere comes back as a lid within the convex hull of its planar rim."""
+    ball = sphere(4)
+    top = ball.vertices[:, 2] > 0.8
+    mesh = TriangleMesh(ball.vertices, ball.triangles[~top[ball.triangles].any(axis=1)])
+    (loop,) = all_loops(mesh)
+    result = close_flat(mesh, [loop])
+    assert_keeps(result, mesh)
+    assert is_oriented_manifold(result.mesh.triangles)
+    assert euler_characteristic(result.mesh.triangles) == 2
+    new, rim = result.mesh.vertices[result.n_measured_vertices :], mesh.vertices[loop]
+    assert len(new) > 30
+    assert new[:, 2].max() <= rim[:, 2].max()
+    assert new[:, 2].min() >= rim[:, 2].min()
+    assert np.isnan(result.gap).all()
+
+
+def test_a_flat_closing_of_a_flat_hole_is_flat_and_as_dense_as_what_was_lost() -> None:
+    whole = open_grid(41, 2.0)
+    mesh = punched(whole, (0, 0, 0), radius=0.4)
+    result = close_flat(mesh, short_loops(mesh))
+    new = result.mesh.vertices[result.n_measured_vertices :]
+    lost = len(whole.vertices) - len(np.unique(mesh.triangles))
+    assert (new[:, 2] == 0).all()
+    assert 0.5 < len(new) / lost < 2
+
+
+def test_a_flat_closing_of_no_hole_gives_the_mesh_back() -> None:
+    result = close_flat(sphere(2), [])
+    assert result.mesh.vertices.tobytes() == sphere(2).vertices.tobytes()
+    assert result.mesh.triangles.tobytes() == sphere(2).triangles.tobytes()

@@ -1,0 +1,206 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from quadpatch.errors import OptionError, StageError
+from quadpatch.filling.fill import close_flat
+from quadpatch.inpainters.heights import LOCAL_ATOMS, HeightsInpainter
+from quadpatch.mesh.distance import distance_to_mesh
+from quadpatch.options import DictionaryOptions, HoleOptions, PatchOptions, RepairOptions
+from quadpatch.paper import NO_FAIRING, OVERLAP, RESOLUTION, cut_heights, inpaint_as_paper, learn_as_paper, paper_scale
+from quadpatch.patches.height_map import sample_height_maps
+from quadpatch.patches.scale import PatchScale
+from quadpatch.patches.seeds import Seeds
+from quadpatch.pipeline import Repair
+from quadpatch.raycast import RayScene
+from quadpatch.sparse.dictionary import Dictionary
+from quadpatch.stages import Stages
+from quadpatch.types import FloatArray, Patches, TriangleMesh
+from tests.quadpatch.shapes import bumpy_plate, open_grid, punched, relief, sphere
+
+PLACES = [(x, y, 0.0) for x in (-0.5, 0.1, 0.55) for y in (-0.45, 0.05, 0.5)]
+WHOLE = relief(110, 2.0, 0.03, 10)
+RELIEF = punched(WHOLE, *PLACES, radius=0.1)
+OPTIONS = RepairOptions(patches=PatchOptions(0.3, 16), recipe="paper", dictionary=DictionaryOptions(60, 20))
+
+
+class Truth:
+    """A model that knows the whole surface: what it predicts are true heights."""
+
+    def __init__(self, whole: TriangleMesh, resolution: int) -> None:
+        self.whole = whole
+        self.resolution = resolution
+
+    def predict(self, patches: Patches, outline: FloatArray) -> FloatArray:
+        seeds = Seeds(patches.origins, patches.frames, np.zeros(len(patches), np.int64))
+        nothing = np.zeros(len(self.whole.triangles), bool)
+        scene = RayScene(self.whole)
+        true = sample_height_maps(scene, self.whole, nothing, seeds, patches.length, self.resolution)
+        return np.where(true.seen, true.heights, patches.heights)
+
+
+@pytest.fixture(scope="module")
+def repaired() -> Repair:
+    return inpaint_as_paper(RELIEF, None, OPTIONS, learn=True)
+
+
+def new_vertices(repair: Repair) -> FloatArray:
+    return repair.filled.mesh.vertices[repair.filled.n_measured_vertices :]
+
+
+def closed(repair: Repair, mesh: TriangleMesh) -> FloatArray:
+    """New vertices where the closing puts them."""
+    filled = close_flat(mesh, [hole.loop for hole in repair.chosen])
+    return filled.mesh.vertices[filled.n_measured_vertices :]
+
+
+def mean_error(points: FloatArray, whole: TriangleMesh) -> float:
+    return float(distance_to_mesh(points, whole).mean())
+
+
+def verdicts(repair: Repair) -> list[tuple[str, str]]:
+    return [(result.verdict, result.code) for result in repair.results]
+
+
+def test_what_a_relief_teaches_beats_the_closing(repaired: Repair) -> None:
+    assert mean_error(new_vertices(repaired), WHOLE) < 0.5 * mean_error(closed(repaired, RELIEF), WHOLE)
+    assert verdicts(repaired) == [("skipped", "border")] + 9 * [("filled", "")]
+
+
+def test_measured_vertices_and_triangles_are_a_bit_exact_prefix(repaired: Repair) -> None:
+    mesh, filled = repaired.filled.mesh, repaired.filled
+    assert mesh.vertices[: filled.n_measured_vertices].tobytes() == RELIEF.vertices.tobytes()
+    assert mesh.triangles[: filled.n_measured_triangles].tobytes() == RELIEF.triangles.tobytes()
+    assert len(new_vertices(repaired)) > 100
+
+
+def test_true_heights_put_every_vertex_on_the_true_surface() -> None:
+    """Reconstruction is exact but for the bilinear reading of bins and the mean over patches of different tilt."""
+    whole = sphere(5)
+    mesh = punched(whole, (0, 0, 1), (1, 0, 0), (0, -1, 0), radius=0.2)
+    repair = inpaint_as_paper(mesh, Truth(whole, 24), RepairOptions())
+    assert repair.completion is not None
+    evidence = repair.completion.evidence
+    assert (evidence.coverage == 1).all()
+    error, before = (np.abs(np.linalg.norm(v, axis=1) - 1) for v in (new_vertices(repair), closed(repair, mesh)))
+    assert error.mean() < before.mean() / 20
+    assert error.max() < before.max() / 3
+    assert evidence.rim_misfit.max() < 0.1 * evidence.departure.min()
+
+
+def test_nothing_is_faired_gated_or_joined() -> None:
+    """A dictionary of one constant atom codes no mean-free patch: each is a plane at the height of its known bins."""
+    atoms = np.full((256, 1), 1 / 16)
+    mesh = punched(sphere(4), (0, 0, 1), radius=0.3)
+    repair = inpaint_as_paper(mesh, HeightsInpainter(Dictionary(atoms, 16, 1)), RepairOptions())
+    assert repair.energy == NO_FAIRING
+    assert repair.completion is not None
+    assert repair.completion.believed == 1.0
+    assert verdicts(repair) == [("filled", "")]
+    # Planes don't meet the rim of a hole in a sphere, and nobody makes them.
+    assert repair.completion.evidence.rim_misfit[0] > 0.01
+
+
+def test_neither_confidence_nor_expected_error_is_made_up(repaired: Repair) -> None:
+    for result in repaired.results:
+        assert (result.confidence, result.expected_error) == (None, None)
+    assert repaired.results[1].measures.keys() == {"coverage", "spread", "departure", "rim_misfit"}
+    assert repaired.results[1].n_new_vertices > 0
+    assert repaired.results[1].n_new_triangles > 0
+
+
+def test_every_stage_is_gone_through_in_the_order_of_the_paper() -> None:
+    stages = Stages()
+    inpaint_as_paper(punched(bumpy_plate(50, 2.0), (0, 0, 0), radius=0.2), None, OPTIONS, stages, learn=True)
+    assert list(stages.seconds) == [
+        *("holes", "fill", "smooth", "quadrangulate", "patchify", "learn", "inpaint", "reconstruct", "judge")
+    ]
+
+
+def test_the_same_mesh_and_options_give_the_same_bytes(repaired: Repair) -> None:
+    again = inpaint_as_paper(RELIEF, None, OPTIONS, learn=True)
+    assert again.filled.mesh.vertices.tobytes() == repaired.filled.mesh.vertices.tobytes()
+    assert again.filled.mesh.triangles.tobytes() == repaired.filled.mesh.triangles.tobytes()
+
+
+def test_a_dictionary_of_the_undamaged_mesh_does_no_worse_than_one_of_the_punched_one(repaired: Repair) -> None:
+    assert repaired.completion is not None
+    local = learn_as_paper([WHOLE], repaired.completion.scale, OPTIONS.dictionary)
+    repair = inpaint_as_paper(RELIEF, local, OPTIONS)
+    assert mean_error(new_vertices(repair), WHOLE) < 1.1 * mean_error(new_vertices(repaired), WHOLE)
+    assert "learn" not in (stages := Stages()).seconds
+    inpaint_as_paper(RELIEF, local, OPTIONS, stages)
+    assert "learn" not in stages.seconds
+
+
+def test_dictionaries_grow_with_what_they_are_learned_from() -> None:
+    scale = PatchScale(0.4, 8, 2)
+    one = learn_as_paper([relief(60)], scale)
+    many = learn_as_paper([relief(60), bumpy_plate(60, 2.0), relief(60, waves=4)], scale)
+    patches = [len(cut_heights(mesh, scale)) for mesh in (relief(60), bumpy_plate(60, 2.0), relief(60, waves=4))]
+    assert one.dictionary.n_atoms == min(LOCAL_ATOMS, patches[0])
+    assert LOCAL_ATOMS < many.dictionary.n_atoms <= sum(patches)
+    three = learn_as_paper([relief(60)], scale, DictionaryOptions(3, 2))
+    assert (three.dictionary.n_atoms, three.dictionary.n_nonzero, three.resolution) == (3, 2, 8)
+    again = learn_as_paper([relief(60)], scale, DictionaryOptions(3, 2))
+    assert again.dictionary.atoms.tobytes() == three.dictionary.atoms.tobytes()
+
+
+def test_a_mesh_too_small_for_a_patch_teaches_nothing() -> None:
+    with pytest.raises(StageError, match="0 patches"):
+        learn_as_paper([open_grid(3)], PatchScale(1e6, 8, 1))
+
+
+def test_a_mesh_too_small_to_learn_from_is_closed_with_a_warning() -> None:
+    mesh = punched(bumpy_plate(20, 2.0), (0, 0, 0), radius=0.22)
+    repair = inpaint_as_paper(mesh, None, replace(OPTIONS, patches=PatchOptions(length=1.0, overlap=0)), learn=True)
+    assert repair.completion is None
+    (warning,) = repair.warnings
+    assert "the holes were closed, nothing more" in warning
+    assert (new_vertices(repair) == closed(repair, mesh)).all()
+    assert verdicts(repair)[1] == ("filled_smooth", "geometry")
+
+
+def test_a_hole_that_no_patch_sees_stays_as_it_was_closed() -> None:
+    """Patches so narrow that many lie inside the hole: without a known bin they have nothing to go by."""
+    mesh = punched(bumpy_plate(50, 2.0), (-0.5, -0.5, 0), (0.5, 0.4, 0), radius=0.25)
+    options = RepairOptions(patches=PatchOptions(length=0.1, overlap=0))
+    repair = inpaint_as_paper(mesh, Truth(bumpy_plate(50, 2.0), 8), options)
+    assert repair.completion is not None
+    still = (new_vertices(repair) == closed(repair, mesh)).all(axis=1)
+    assert 0.2 < still.mean() < 1
+
+
+def test_a_mesh_without_holes_comes_back() -> None:
+    repair = inpaint_as_paper(sphere(3), None, OPTIONS, learn=True)
+    assert (repair.results, repair.completion, repair.warnings) == ([], None, [])
+    assert repair.filled.mesh.vertices.tobytes() == sphere(3).vertices.tobytes()
+
+
+def test_a_hole_without_new_vertices_is_named_as_such() -> None:
+    mesh = TriangleMesh(open_grid(9, 2.0).vertices, np.delete(open_grid(9, 2.0).triangles, 60, axis=0))
+    repair = inpaint_as_paper(mesh, Truth(open_grid(9, 2.0), 8), RepairOptions())
+    assert verdicts(repair) == [("skipped", "border"), ("filled_smooth", "no_new_vertex")]
+
+
+def test_holes_that_were_not_chosen_stay_open() -> None:
+    mesh = punched(sphere(4), (0, 0, 1), (0, 0, -1), radius=0.4)
+    repair = inpaint_as_paper(mesh, Truth(sphere(4), 8), RepairOptions(HoleOptions(ids=(1,))))
+    assert verdicts(repair) == [("skipped", "not_chosen"), ("filled", "")]
+
+
+def test_without_a_model_there_is_nothing_to_do() -> None:
+    with pytest.raises(OptionError, match="drop the recipe or take self"):
+        inpaint_as_paper(RELIEF, None, OPTIONS)
+
+
+def test_what_is_asked_for_beats_the_rule_of_thumb_and_the_model_beats_both() -> None:
+    chosen = PatchOptions(length=0.3, resolution=20, overlap=0)
+    assert paper_scale([0.1, 0.2], 0.001, chosen) == PatchScale(0.3, 20, 0)
+    assert paper_scale([0.1, 0.2], 0.001, chosen, Truth(RELIEF, 12)).resolution == 12
+    automatic = paper_scale([0.1, 0.2], 0.001, PatchOptions())
+    assert (automatic.resolution, automatic.overlap) == (RESOLUTION, OVERLAP)
+    assert 0.1 < automatic.length < 0.4
+    # Bins far below the mesh's edges would show its triangles.
+    assert paper_scale([0.1], 1.0, PatchOptions()).length >= 0.5 * RESOLUTION

@@ -1,0 +1,94 @@
+"""`repair_file` by the paper's recipe: the method itself is tested in `test_paper.py`."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from quadpatch.errors import OptionError, QuadpatchError
+from quadpatch.formats.reading import read_scan
+from quadpatch.model_file import save_dictionary
+from quadpatch.options import DictionaryOptions, HoleOptions, PatchOptions, RepairOptions
+from quadpatch.repair import repair_file
+from quadpatch.sparse.dictionary import Dictionary
+from quadpatch.sparse.signals import HEIGHTS, NORMALISATION
+from quadpatch.types import TriangleMesh
+from tests.quadpatch.shapes import punched, relief, write_ply
+
+PLACES = [(x, y, 0.0) for x in (-0.5, 0.5) for y in (-0.45, 0.5)]
+PAPER = RepairOptions(patches=PatchOptions(0.4, 8), recipe="paper")
+
+
+@pytest.fixture(scope="module")
+def scan_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    mesh = punched(relief(80, 2.0, 0.03, 8), *PLACES, radius=0.13)
+    return write_ply(tmp_path_factory.mktemp("scan") / "relief.ply", mesh)
+
+
+def dictionary_file(folder: Path, normalisation: str) -> Path:
+    path = folder / f"{normalisation}.safetensors"
+    atoms = np.random.default_rng(0).normal(size=(64, 20))
+    save_dictionary(path, Dictionary(atoms / np.linalg.norm(atoms, axis=0), 8, 3), {"name": "mine"}, normalisation)
+    return path
+
+
+@pytest.mark.parametrize("of_its_own", [False, True])
+def test_a_file_is_repaired_by_the_paper_and_keeps_every_bit(scan_file: Path, tmp_path: Path, of_its_own: bool) -> None:
+    model = dictionary_file(tmp_path, HEIGHTS) if of_its_own else "self"
+    report = repair_file(scan_file, tmp_path / "out.ply", model, PAPER)
+    before, after = read_scan(scan_file), read_scan(tmp_path / "out.ply")
+    assert after.vertices[: len(before.vertices)].tobytes() == before.vertices.tobytes()
+    assert after.triangles[: len(before.triangles)].tobytes() == before.triangles.tobytes()
+    assert json.loads(json.dumps(report, allow_nan=False)) == report
+    assert report["options"]["recipe"] == "paper"
+    assert report["model"]["name"] == ("mine" if of_its_own else "self")
+    assert report["counts"]["filled"] == 4
+    assert report["patches"]["resolution"] == 8
+    assert report["patches"]["believed_share"] == 1.0
+    for hole in report["holes"]:
+        assert (hole["confidence"], hole["expected_error"]) == (None, None)
+    repair_file(scan_file, tmp_path / "again.ply", model, PAPER)
+    assert (tmp_path / "again.ply").read_bytes() == (tmp_path / "out.ply").read_bytes()
+
+
+def test_a_dictionary_learned_for_the_other_recipe_is_refused(scan_file: Path, tmp_path: Path) -> None:
+    ours, papers = dictionary_file(tmp_path, NORMALISATION), dictionary_file(tmp_path, HEIGHTS)
+    with pytest.raises(OptionError, match="learned for the recipe default, not for paper: ask for the recipe default"):
+        repair_file(scan_file, tmp_path / "out.ply", ours, PAPER)
+    with pytest.raises(OptionError, match="learned for the recipe paper, not for default: ask for the recipe paper"):
+        repair_file(scan_file, tmp_path / "out.ply", papers)
+
+
+def test_what_the_recipe_has_no_use_for_is_refused(scan_file: Path, tmp_path: Path) -> None:
+    output = tmp_path / "out.ply"
+    with pytest.raises(OptionError, match="with smooth there is none"):
+        repair_file(scan_file, output, "smooth", PAPER)
+    (tmp_path / "net.onnx").write_bytes(b"\x08\x0a")
+    with pytest.raises(OptionError, match="a network and has a recipe of its own"):
+        repair_file(scan_file, output, tmp_path / "net.onnx", PAPER)
+    sized = RepairOptions(recipe="paper", dictionary=DictionaryOptions(atoms=30))
+    with pytest.raises(OptionError, match="has its own"):
+        repair_file(scan_file, output, dictionary_file(tmp_path, HEIGHTS), sized)
+    assert not output.exists()
+
+
+@given(seed=st.integers(0, 2**32 - 1), n=st.integers(3, 40), m=st.integers(1, 80))
+@settings(max_examples=15, deadline=None)
+def test_heaps_of_random_triangles_give_a_repair_or_an_error_with_a_code(
+    tmp_path_factory: pytest.TempPathFactory, seed: int, n: int, m: int
+) -> None:
+    rng = np.random.default_rng(seed)
+    vertices = rng.normal(size=(n, 3))
+    folder = tmp_path_factory.mktemp("heap")
+    source = write_ply(folder / "in.ply", TriangleMesh(vertices, rng.integers(0, n, (m, 3))))
+    try:
+        report = repair_file(source, folder / "out.ply", "self", RepairOptions(HoleOptions(1e30), recipe="paper"))
+    except QuadpatchError:
+        return
+    json.dumps(report, allow_nan=False)
+    after = read_scan(folder / "out.ply")
+    assert np.isfinite(after.vertices).all()
+    assert after.vertices[:n].tobytes() == vertices.tobytes()
