@@ -3,35 +3,39 @@
 BENCH is the folder that holds ``bench.py`` (which punches holes and scores repairs), ``meshes/`` and
 ``baselines.json``. Tables go to the console; JSON, Markdown, plots and pictures to the output folder. A run that was
 stopped goes on where it was. Meshes of the bench are for measuring only: models learned from them stay in that folder.
+
+experiments
+    repair        errors beside the peers', calibration of the confidence, the worst and the best hole of every mesh
+    dictionaries  the paper's local, global, leave-one-out and self-similar dictionaries beside our own methods
+    atoms         the paper's local dictionary, by its number of atoms
+    patch-length  the paper's local dictionary and our `self`, by the ratio of hole to patch
+    shapes        the paper's global dictionary, by the number of shapes that it was learned from
 """
 
 import argparse
 import sys
 from pathlib import Path
 
-from rich.console import Console
-
-from benchmarks.quality.bench import RADII, Bench, BenchError, Case
+from benchmarks.quality.bench import RADII, Bench, BenchError
 from benchmarks.quality.measurement import Method
-from benchmarks.quality.outcome import Progress
 from benchmarks.quality.own_meshes import own_shapes
-from benchmarks.quality.peers import with_peers
-from benchmarks.quality.pictures import draw_extremes
-from benchmarks.quality.repair_experiment import repair_experiment
 from benchmarks.quality.results import Results
+from benchmarks.quality.session import EXPERIMENTS, REPAIR, Session
 from quadpatch.errors import QuadpatchError
 
 MODELS = ["smooth", "self", "general-dictionary"]
 DEFAULT_RADIUS = "0.025"
-# Tables are wide; into a file they go as they are.
-WIDTH = 160
+ALL = "all"
 
 
 def main() -> None:
     """Read the command line and run the experiments that it names."""
     arguments = _parser().parse_args()
+    chosen = arguments.experiment or [REPAIR]
     try:
-        run(arguments)
+        session = _open(arguments)
+        for name in EXPERIMENTS if ALL in chosen else dict.fromkeys(chosen):
+            EXPERIMENTS[name](session)
     except (BenchError, QuadpatchError) as error:
         sys.exit(f"error: {error}")
 
@@ -41,6 +45,8 @@ def _parser() -> argparse.ArgumentParser:
         prog="python -m benchmarks.quality", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("bench", type=Path, help="folder of the bench")
+    names = [*EXPERIMENTS, ALL]
+    parser.add_argument("--experiment", action="append", choices=names, help=f"repeat for more; default {REPAIR}")
     parser.add_argument("--meshes", type=Path, help="folder of meshes of your own, in place of the bench's")
     parser.add_argument("--mesh", action="append", help="just this mesh; repeat for more")
     parser.add_argument("--radius", action="append", help=f"hole radius; repeat for more, or all: {', '.join(RADII)}")
@@ -51,37 +57,19 @@ def _parser() -> argparse.ArgumentParser:
     return parser
 
 
-def run(arguments: argparse.Namespace) -> None:
-    """Run what the command line asks for."""
+def _open(arguments: argparse.Namespace) -> Session:
     bench = Bench.open(arguments.bench)
-    results = Results(arguments.output / "results", arguments.fresh)
-    methods = [Method.of(model) for model in arguments.model or MODELS]
-    cases = _cases(bench, arguments, results)
-    progress = Progress(len(cases) * len(methods))
-    outcome = repair_experiment(bench, cases, methods, results, progress)
-    outcome.publish(arguments.output, _console())
-    if not arguments.no_pictures:
-        progress = Progress(len(cases) * len(methods))
-        for case in cases:
-            for method in methods:
-                progress.step(f"picture {draw_extremes(bench, case, method, results, arguments.output / 'pictures')}")
-
-
-def _cases(bench: Bench, arguments: argparse.Namespace, results: Results) -> list[Case]:
     radii = arguments.radius or [DEFAULT_RADIUS]
-    if "all" in radii:
-        radii = list(RADII)
-    if arguments.meshes:
-        shapes = own_shapes(bench, arguments.meshes, arguments.output, arguments.mesh)
-    else:
-        shapes = bench.shapes(arguments.mesh)
-    cases = [bench.case(shape, radius, arguments.output) for radius in radii for shape in shapes]
-    return [with_peers(bench, case, results) for case in cases]
-
-
-def _console() -> Console:
-    console = Console()
-    return console if console.is_terminal else Console(width=WIDTH)
+    return Session(
+        bench=bench,
+        results=Results(arguments.output / "results", arguments.fresh),
+        every=own_shapes(bench, arguments.meshes, arguments.output) if arguments.meshes else bench.shapes(),
+        names=arguments.mesh or [],
+        radii=RADII if ALL in radii else radii,
+        methods=[Method.of(model) for model in arguments.model or MODELS],
+        output=arguments.output,
+        is_drawing=not arguments.no_pictures,
+    )
 
 
 if __name__ == "__main__":

@@ -8,6 +8,7 @@ only.
 import hashlib
 import importlib.util
 import json
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
@@ -86,14 +87,10 @@ class Bench:
         spec.loader.exec_module(module)
         return cls(folder, module)
 
-    def shapes(self, names: list[str] | None = None) -> list[Shape]:
-        """List the shapes by name, or only some; raises BenchError for an unknown one."""
+    def shapes(self) -> list[Shape]:
+        """List the shapes by name."""
         baselines = json.loads((self.folder / "baselines.json").read_text())
-        unknown = sorted(set(names or []) - set(baselines))
-        if unknown:
-            raise BenchError(f"no mesh {unknown[0]!r} in the bench; there are {', '.join(sorted(baselines))}")
-        chosen = sorted(names or baselines)
-        return [Shape(name, self.folder / "meshes" / f"{name}.ply", baselines[name]) for name in chosen]
+        return [Shape(name, self.folder / "meshes" / f"{name}.ply", baselines[name]) for name in sorted(baselines)]
 
     def case(self, shape: Shape, radius: str, output: Path) -> Case:
         """Punch a shape, unless that was done before for this very truth."""
@@ -116,6 +113,15 @@ class Bench:
     def write(self, path: Path, mesh: TriangleMesh) -> None:
         """Write a PLY as the bench writes it: float32."""
         self.script.write_ply(path, mesh.vertices, mesh.triangles)
+
+
+def named(shapes: Sequence[Shape], names: Sequence[str]) -> list[Shape]:
+    """Take the shapes of some names, all for none; raises BenchError for an unknown one."""
+    by_name = {shape.name: shape for shape in shapes}
+    unknown = sorted(set(names) - set(by_name))
+    if unknown:
+        raise BenchError(f"no mesh {unknown[0]!r}; there are {', '.join(sorted(by_name))}")
+    return [by_name[name] for name in dict.fromkeys(names or by_name)]
 
 
 def file_sha256(path: Path) -> str:

@@ -46,4 +46,4 @@ class Progress:
     def step(self, what: str) -> None:
         """Say what was done."""
         self.done += 1
-        self.console.print(f"[{self.done}/{self.n_steps}] {what}", markup=False)
+        self.console.print(f"[{self.done}/{self.n_steps}] {what}", markup=False, soft_wrap=True)

@@ -11,26 +11,25 @@ from quadpatch.mesh.weld import weld
 from quadpatch.types import IntArray, TriangleMesh, Triangles
 
 
-def own_shapes(bench: Bench, folder: Path, output: Path, names: list[str] | None = None) -> list[Shape]:
-    """Prepare the meshes of a folder, or those named by their stems; the peers' figures are left to be measured.
+def own_shapes(bench: Bench, folder: Path, output: Path) -> list[Shape]:
+    """Prepare the meshes of a folder; the peers' figures are left to be measured.
 
     Raises
     ------
     BenchError
-        If there is no such mesh.
+        If there is no mesh.
     QuadpatchError
         If one can't be read.
     """
-    files = {path.stem: path for path in sorted(folder.iterdir()) if path.suffix.lower()[1:] in KNOWN}
-    unknown = sorted(set(names or []) - set(files))
-    if unknown or not files:
-        raise BenchError(f"no mesh {unknown[0]!r} in {folder}" if unknown else f"no mesh in {folder}")
+    files = sorted(path for path in folder.iterdir() if path.suffix.lower()[1:] in KNOWN) if folder.is_dir() else []
+    if not files:
+        raise BenchError(f"no mesh in {folder}")
     shapes = []
-    for name in sorted(names or files):
-        truth = output / "truth" / f"{name}.ply"
+    for path in files:
+        truth = output / "truth" / f"{path.stem}.ply"
         truth.parent.mkdir(parents=True, exist_ok=True)
-        bench.write(truth, prepare(files[name]))
-        shapes.append(Shape(name, truth, {}))
+        bench.write(truth, prepare(path))
+        shapes.append(Shape(path.stem, truth, {}))
     return shapes
 
 
