@@ -32,7 +32,7 @@ from client.repairing import repair as run_repair
 from client.screen import Screen
 from client.sdk import Client
 from client.tables import print_holes, print_jobs, print_models
-from jobkit.schema import JobState, OutputFormat
+from jobkit.schema import JobState, OutputFormat, Recipe
 
 app = typer.Typer(
     name="quadpatch-client",
@@ -61,6 +61,10 @@ def repair(  # noqa: PLR0913 - one parameter per option of the command line
     model: Annotated[
         str | None,
         typer.Option(help="name@version, an alias, or 'self': learned from the mesh itself.", show_default="default"),
+    ] = None,
+    recipe: Annotated[
+        Recipe | None,
+        typer.Option(help="How a dictionary is put to use: our way, or exactly the paper's.", show_default="default"),
     ] = None,
     max_diameter: MaxDiameterOption = None,
     max_perimeter: MaxPerimeterOption = None,
@@ -107,7 +111,7 @@ def repair(  # noqa: PLR0913 - one parameter per option of the command line
             source=mesh,
             output=output,
             holes=HoleChoice(max_diameter, max_perimeter, all_but_largest, hole),
-            method=MethodChoice(method, model, patch_length, resolution, overlap),
+            method=MethodChoice(method, model, patch_length, resolution, overlap, recipe),
             rest={
                 "seed": seed,
                 "label": label,

@@ -7,7 +7,7 @@ import typer
 from pydantic import ValidationError
 
 from client.errors import UsageError
-from jobkit.schema import JobSpec
+from jobkit.schema import JobSpec, Recipe
 
 DEFAULT_URL = "http://127.0.0.1:8000"
 MethodName = Literal["dictionary", "cnn", "smooth"]
@@ -60,6 +60,7 @@ class MethodChoice:
     length: float | None = None
     resolution: int | None = None
     overlap: int | None = None
+    recipe: Recipe | None = None
 
 
 def make_spec(mesh_id: str, holes: HoleChoice, method: MethodChoice, **rest: Any) -> JobSpec:
@@ -80,11 +81,13 @@ def make_spec(mesh_id: str, holes: HoleChoice, method: MethodChoice, **rest: Any
 
 def _method(choice: MethodChoice) -> dict[str, Any]:
     patches = _given({"length": choice.length, "resolution": choice.resolution, "overlap": choice.overlap})
+    if choice.method != "dictionary" and choice.recipe is not None:
+        raise UsageError(f"the method {choice.method!r} takes no recipe; recipes go with dictionaries")
     if choice.method == "smooth":
         if choice.model is not None or patches:
             raise UsageError("the method 'smooth' takes no model and no patch options")
         return {"method": "smooth"}
-    return {"method": choice.method, "patches": patches, **_given({"model": choice.model})}
+    return {"method": choice.method, "patches": patches, **_given({"model": choice.model, "recipe": choice.recipe})}
 
 
 def _given(values: dict[str, Any]) -> dict[str, Any]:

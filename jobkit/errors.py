@@ -17,7 +17,7 @@
     │   ├── JobHasNoResultError     job_has_no_result     the job ended without one
     │   ├── JobFinishedError        job_finished          the job ended before it could be changed
     │   ├── NoNetworkError          no_network_registered a CNN job while no network is registered
-    │   ├── ModelKindError          model_kind_mismatch   the model is of the other kind
+    │   ├── ModelKindError          model_kind_mismatch   the model is of the other kind or for the other recipe
     │   ├── NameTakenError          name_taken            a model and an alias can't share a name
     │   └── IdempotencyError        idempotency_conflict  the key came before with another request
     ├── OverLimitError              over_service_limit    more time or memory than the service grants
@@ -121,7 +121,7 @@ class NoNetworkError(ConflictError):
 
 
 class ModelKindError(ConflictError):
-    """The model is of the other kind."""
+    """The model is of the other kind, or was learned for the other recipe."""
 
     code = "model_kind_mismatch"
 

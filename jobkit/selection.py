@@ -2,7 +2,10 @@
 
 from jobkit.errors import ModelKindError, NoNetworkError
 from jobkit.registry import Registry
-from jobkit.schema import SELF, CnnMethod, Method, ModelKind, ResolvedModel, SmoothMethod
+from jobkit.schema import SELF, CnnMethod, Method, ModelKind, ModelVersion, Recipe, ResolvedModel, SmoothMethod
+
+# What cards of dictionaries that were learned for the recipe `paper` say of their normalisation.
+PAPER_NORMALISATION = "heights-mean"
 
 
 def resolve_method(registry: Registry, method: Method) -> ResolvedModel:
@@ -13,7 +16,7 @@ def resolve_method(registry: Registry, method: Method) -> ResolvedModel:
     ModelNotFoundError
         If the reference means nothing.
     ModelKindError
-        If it means a model of the other kind.
+        If it means a model of the other kind, or one learned for another recipe than the method's.
     NoNetworkError
         If a network is asked for while none is registered.
     """
@@ -25,18 +28,33 @@ def resolve_method(registry: Registry, method: Method) -> ResolvedModel:
                 "no network is registered; upload one with POST /v1/models/{name}/versions, "
                 "or use the method 'dictionary' or 'smooth'"
             )
-        return _pin(registry, method.model, "autoencoder")
+        return _pinned(method.model, _of_kind(registry, method.model, "autoencoder"))
     if method.model == SELF:
         return ResolvedModel(requested=SELF, kind="self")
-    return _pin(registry, method.model, "dictionary")
+    version = _of_kind(registry, method.model, "dictionary")
+    _check_recipe(version, method.recipe)
+    return _pinned(method.model, version)
 
 
-def _pin(registry: Registry, reference: str, kind: ModelKind) -> ResolvedModel:
+def _of_kind(registry: Registry, reference: str, kind: ModelKind) -> ModelVersion:
     version = registry.resolve(reference)
     if version.kind != kind:
         raise ModelKindError(
             f"{version.name}@{version.version} is of kind {version.kind}; this method needs kind {kind}"
         )
+    return version
+
+
+def _check_recipe(version: ModelVersion, recipe: Recipe) -> None:
+    learned_for: Recipe = "paper" if version.card.normalisation == PAPER_NORMALISATION else "default"
+    if learned_for != recipe:
+        raise ModelKindError(
+            f"{version.name}@{version.version} was learned for the recipe {learned_for}, not for {recipe}: "
+            f"ask for the recipe {learned_for}, or take the model self"
+        )
+
+
+def _pinned(reference: str, version: ModelVersion) -> ResolvedModel:
     return ResolvedModel(
-        requested=reference, kind=kind, name=version.name, version=version.version, sha256=version.sha256
+        requested=reference, kind=version.kind, name=version.name, version=version.version, sha256=version.sha256
     )

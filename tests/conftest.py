@@ -23,6 +23,7 @@ from jobkit.store import ObjectStore, open_store
 from onebox.valkey import running_valkey
 from quadpatch.model_file import save_dictionary
 from quadpatch.sparse.dictionary import Dictionary
+from quadpatch.sparse.signals import HEIGHTS, NORMALISATION
 
 
 @pytest.fixture(scope="session")
@@ -78,14 +79,15 @@ def store(data_dir: Path) -> ObjectStore:
 
 @pytest.fixture(scope="session")
 def dictionary_bytes(tmp_path_factory: pytest.TempPathFactory) -> Callable[[int], bytes]:
-    """Make small dictionary files as training writes them, another one for every seed."""
+    """Make small dictionary files as training writes them, another one for every seed; below 0: for recipe paper."""
     folder = tmp_path_factory.mktemp("dictionaries")
 
     def make(seed: int) -> bytes:
-        atoms = np.random.default_rng(seed).normal(size=(64, 5))
+        atoms = np.random.default_rng(abs(seed)).normal(size=(64, 5))
         dictionary = Dictionary(atoms / np.linalg.norm(atoms, axis=0), 8, 3)
         path = folder / f"{seed}.safetensors"
-        save_dictionary(path, dictionary, {"description": f"seed {seed}", "licence": "GPL-3.0-or-later", "seed": seed})
+        card = {"description": f"seed {seed}", "licence": "GPL-3.0-or-later", "seed": seed}
+        save_dictionary(path, dictionary, card, NORMALISATION if seed >= 0 else HEIGHTS)
         return path.read_bytes()
 
     return make

@@ -18,9 +18,9 @@ from client.exits import MEANINGS
 from jobkit.schema import JobState
 from jobkit.schema.jobs import STAGES
 from jobkit.settings import settings_table
-from quadpatch import completion, judge, pipeline, practice
+from quadpatch import completion, judge, paper, pipeline, practice
 from quadpatch.filling import triangulation
-from quadpatch.inpainters import dictionary
+from quadpatch.inpainters import dictionary, heights
 from quadpatch.mesh import holes
 from quadpatch.patches import scale, sighting
 from quadpatch.report import VERDICTS
@@ -125,6 +125,13 @@ def test_the_numbers_of_the_method_are_those_of_the_code() -> None:
         f"{completion.SMOOTHING_ITERATIONS} uniform Laplacian iterations",
         f"normal · z > {sighting.LEAST_FACING}",
         f"at the rim over {holes.OUTWARD}",
+        f"length {paper.HOLES_PER_LENGTH} d, but at least {paper.LEAST_EDGES_PER_BIN} e · {paper.RESOLUTION} ",
+        f"{paper.RESOLUTION} bins; overlap {paper.OVERLAP}.",
+        f"has up to {heights.LOCAL_ATOMS} atoms",
+        f"many up to {heights.GLOBAL_ATOMS} as in the paper",
+        f"a patch uses {heights.NONZERO} of them",
+        f"{heights.ITERATIONS} rounds over up to {heights.MAX_TRAINING_PATCHES} patches known in at least "
+        f"{100 * heights.LEAST_KNOWN:g} % of their bins",
     ]
     prose = " ".join(method.split())
     assert not [claim for claim in claims if claim.strip() not in prose]

@@ -4,7 +4,7 @@ from pathlib import PurePath
 from typing import Any, get_args
 
 from jobkit.meshes import MeshSource
-from jobkit.schema import Format, JobSpec, OutputFormat, SmoothMethod
+from jobkit.schema import DictionaryMethod, Format, JobSpec, OutputFormat, SmoothMethod
 from worker.limits import EngineLimits
 from worker.request import MESH_FOLDER, EngineRequest
 
@@ -64,7 +64,8 @@ def inspect_request(source: MeshSource, limits: EngineLimits) -> EngineRequest:
 def method_options(spec: JobSpec) -> dict[str, Any]:
     """Return the options as `quadpatch.options.RepairOptions.from_dict` reads them."""
     patches = {} if isinstance(spec.method, SmoothMethod) else spec.method.patches.model_dump()
-    return {"holes": spec.holes.model_dump(), "patches": patches, "seed": spec.seed}
+    recipe = spec.method.recipe if isinstance(spec.method, DictionaryMethod) else "default"
+    return {"holes": spec.holes.model_dump(), "patches": patches, "seed": spec.seed, "recipe": recipe}
 
 
 def lowered(limits: EngineLimits, spec: JobSpec) -> EngineLimits:

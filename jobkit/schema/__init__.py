@@ -43,6 +43,7 @@ from jobkit.schema.spec import (
     Output,
     OutputFormat,
     PatchOptions,
+    Recipe,
     RepairSpec,
     SmoothMethod,
 )
@@ -94,6 +95,7 @@ __all__ = [
     "Plan",
     "PlannedHole",
     "Problem",
+    "Recipe",
     "RepairSpec",
     "Request",
     "ResolvedModel",

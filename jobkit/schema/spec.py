@@ -11,6 +11,7 @@ OutputFormat = Literal["ply", "stl", "obj", "off", "glb", "3mf"]
 DEFAULT_MODEL = "default"
 DEFAULT_NETWORK = "default-network"
 SELF = "self"
+Recipe = Literal["default", "paper"]
 
 Resolution = Annotated[int, Field(ge=8, le=128), WHOLE]
 Overlap = Annotated[int, Field(ge=0, le=8), WHOLE]
@@ -52,6 +53,12 @@ class DictionaryMethod(Request):
         description="`name@version`, `name` (its latest version), an alias, or `self`: learn a dictionary from the "
         "undamaged part of the uploaded mesh.",
         examples=["self"],
+    )
+    recipe: Recipe = Field(
+        default="default",
+        description="How the dictionary is put to use: `default`, or `paper`, exactly as in the paper that the method "
+        "follows. `paper` needs `self` or a dictionary learned for it.",
+        examples=["default"],
     )
     patches: PatchOptions = Field(default_factory=PatchOptions, description="How patches are laid out.")
 

@@ -45,3 +45,19 @@ def test_a_network_is_asked_for_in_vain_until_one_is_registered(registry: Regist
         resolve_method(registry, CnnMethod(method="cnn", model="reliefs"))
     with pytest.raises(ModelKindError):
         resolve_method(registry, DictionaryMethod(method="dictionary", model="small"))
+
+
+def test_a_dictionary_is_used_by_the_recipe_that_it_was_learned_for(
+    registry: Registry, tmp_path: Path, dictionary_bytes: Callable[[int], bytes]
+) -> None:
+    (tmp_path / "heights").write_bytes(dictionary_bytes(-1))
+    registry.publish_file("heights", tmp_path / "heights")
+    ours, papers = (DictionaryMethod(method="dictionary", model=name) for name in ("reliefs", "heights"))
+    assert resolve_method(registry, ours).name == "reliefs"
+    assert resolve_method(registry, papers.model_copy(update={"recipe": "paper"})).name == "heights"
+    with pytest.raises(ModelKindError, match="heights@1 was learned for the recipe paper, not for default"):
+        resolve_method(registry, papers)
+    with pytest.raises(ModelKindError, match="ask for the recipe default, or take the model self"):
+        resolve_method(registry, ours.model_copy(update={"recipe": "paper"}))
+    own = DictionaryMethod(method="dictionary", model="self", recipe="paper")
+    assert resolve_method(registry, own).kind == "self"

@@ -1,9 +1,13 @@
-from typing import Any
+from typing import Any, get_args
 
 import pytest
 
+import jobkit.schema
+import quadpatch.options
 from jobkit.meshes import MeshSource
 from jobkit.schema import JobSpec
+from jobkit.selection import PAPER_NORMALISATION
+from quadpatch.model_file import RECIPES
 from quadpatch.options import HoleOptions, PatchOptions, RepairOptions
 from worker.limits import EngineLimits
 from worker.spec import inspect_request, method_options, output_format, repair_request, source_name
@@ -27,13 +31,22 @@ def test_a_job_without_wishes_is_a_repair_with_all_defaults() -> None:
 
 def test_every_option_of_a_job_reaches_the_method() -> None:
     job = spec(
-        method={"method": "dictionary", "model": "self", "patches": {"length": 2.5, "resolution": 16, "overlap": 3}},
+        method={
+            **{"method": "dictionary", "model": "self", "recipe": "paper"},
+            "patches": {"length": 2.5, "resolution": 16, "overlap": 3},
+        },
         holes={"max_diameter": 9.0, "max_perimeter": 30.0, "all_but_largest": True, "ids": [4, 1]},
         seed=7,
     )
     assert RepairOptions.from_dict(method_options(job)) == RepairOptions(
-        HoleOptions(9.0, 30.0, True, (4, 1)), PatchOptions(2.5, 16, 3), seed=7
+        HoleOptions(9.0, 30.0, True, (4, 1)), PatchOptions(2.5, 16, 3), 7, "paper"
     )
+
+
+def test_the_recipes_of_the_contract_are_those_of_the_method() -> None:
+    assert get_args(jobkit.schema.Recipe) == get_args(quadpatch.options.Recipe)
+    assert RECIPES[PAPER_NORMALISATION] == "paper"
+    assert list(RECIPES.values()).count("paper") == 1
 
 
 def test_every_field_of_the_contract_is_one_of_the_method() -> None:

@@ -1,0 +1,31 @@
+import pytest
+
+from client.errors import UsageError
+from client.options import HoleChoice, MethodChoice, MethodName, make_spec
+from jobkit.schema import DictionaryMethod
+
+MESH_ID = "0" * 64
+
+
+def test_a_recipe_reaches_the_spec_and_is_the_services_default_otherwise() -> None:
+    chosen = make_spec(MESH_ID, HoleChoice(), MethodChoice(model="self", recipe="paper"))
+    assert chosen.method == DictionaryMethod(method="dictionary", model="self", recipe="paper")
+    usual = make_spec(MESH_ID, HoleChoice(), MethodChoice())
+    assert usual.method == DictionaryMethod(method="dictionary")
+
+
+@pytest.mark.parametrize("method", ["cnn", "smooth"])
+def test_a_recipe_goes_with_dictionaries_only(method: MethodName) -> None:
+    with pytest.raises(UsageError, match=f"the method '{method}' takes no recipe"):
+        make_spec(MESH_ID, HoleChoice(), MethodChoice(method, recipe="paper"))
+
+
+def test_smooth_takes_neither_a_model_nor_patch_options() -> None:
+    for choice in (MethodChoice("smooth", model="self"), MethodChoice("smooth", overlap=1)):
+        with pytest.raises(UsageError, match="takes no model and no patch options"):
+            make_spec(MESH_ID, HoleChoice(), choice)
+
+
+def test_an_option_out_of_its_range_is_named() -> None:
+    with pytest.raises(UsageError, match="resolution"):
+        make_spec(MESH_ID, HoleChoice(), MethodChoice(resolution=7))
