@@ -2,6 +2,7 @@
 
 import shlex
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
@@ -10,9 +11,9 @@ from rich.console import Console
 
 from jobkit.errors import JobkitError
 from quadpatch.errors import OptionError, QuadpatchError
+from quadpatch.options import Recipe
 from quadpatch.sparse.ksvd import KsvdOptions
-from training.corpus import PatchRecipe
-from training.dictionary import LearningOptions
+from training.dictionary import USUAL, LearningOptions
 from training.run import Request, run
 
 app = typer.Typer(add_completion=False, no_args_is_help=True, help="Learn models and publish them.")
@@ -29,9 +30,12 @@ def dictionary(  # noqa: PLR0913 - one parameter for each option of the command 
     *,
     name: Annotated[str, typer.Option(help="Name of the model, or name@version.")],
     output: Annotated[Path | None, typer.Option(help="File to write; NAME.safetensors if not given.")] = None,
-    atoms: Annotated[int, typer.Option(min=2, help="Atoms of the dictionary.")] = 256,
+    recipe: Annotated[Recipe, typer.Option(help="Of the repairs that it is for: our way, or the paper's.")] = "default",
+    atoms: Annotated[int | None, typer.Option(min=2, help="Atoms; 256, or 500 for the recipe paper.")] = None,
     resolution: Annotated[int, typer.Option(min=8, max=128, help="Bins along one side of a patch.")] = 24,
-    nonzero: Annotated[int, typer.Option(min=1, help="Atoms that one patch may use.")] = 10,
+    nonzero: Annotated[
+        int | None, typer.Option(min=1, help="Atoms that one patch may use; 10, or 20 for the recipe paper.")
+    ] = None,
     iterations: Annotated[int, typer.Option(min=1, help="Rounds of K-SVD.")] = 15,
     patch_length: Annotated[str, typer.Option(help="Side of the smallest patches in mesh units, or auto.")] = "auto",
     overlap: Annotated[int, typer.Option(min=0, max=8, help="Every quad carries 4 k offset patches.")] = 1,
@@ -44,8 +48,10 @@ def dictionary(  # noqa: PLR0913 - one parameter for each option of the command 
     """Learn a patch dictionary by K-SVD and write it with its card."""
     console = Console(stderr=True)
     try:
-        recipe = PatchRecipe(resolution=resolution, length=_length(patch_length), overlap=overlap)
-        options = LearningOptions(recipe, KsvdOptions(atoms, nonzero, iterations), procedural, seed=seed)
+        usual = USUAL[recipe]
+        patches = replace(usual.recipe, resolution=resolution, length=_length(patch_length), overlap=overlap)
+        ksvd = KsvdOptions(atoms or usual.ksvd.n_atoms, nonzero or usual.ksvd.n_nonzero, iterations)
+        options = LearningOptions(patches, ksvd, procedural, seed=seed)
         file = output or Path(f"{name}.safetensors")
         run(Request(name, meshes, holdout or [], options, _command(), file, curve, register), console)
     except (QuadpatchError, JobkitError) as error:

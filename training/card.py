@@ -4,15 +4,21 @@ from pathlib import Path
 from typing import Any
 
 from quadpatch.model_file import Card
+from quadpatch.sparse.signals import HEIGHTS, NORMALISATION
 from training.dictionary import Learned, LearningOptions
 from training.patterns import PATTERNS
 from training.sources import Source, corpus_sha256
 
 INTENDED_USE = (
-    "Completing height-map patches of scanned surfaces inside holes, over a smooth outline, as Quadpatch does it. It "
+    "Completing height-map patches of scanned surfaces inside holes, as Quadpatch does it. It "
     "invents plausible relief; it does not measure. Not for patches normalised in another way, and not as evidence of "
     "what a damaged object looked like."
 )
+
+_SIGNALS = {
+    NORMALISATION: "heights over the outline (30 Laplacian iterations), mean removed, divided by their spread",
+    HEIGHTS: "heights over the plane of the patch, mean removed: the paper's own recipe",
+}
 
 _REPEATING = (
     "Paths are shortened to their last part; the meshes are those listed below. The same meshes and the same command",
@@ -61,7 +67,7 @@ def dictionary_card(
         ),
         "length_rule": "auto",
         "recipe": {
-            "signal": "heights over the outline (30 Laplacian iterations), mean removed, divided by their spread",
+            "signal": _SIGNALS[recipe.normalisation],
             "training_patch_length": f"patches {base}; times {scales}",
             "n_iterations": ksvd.n_iterations,
             "overlap": recipe.overlap,

@@ -1,7 +1,8 @@
 """Training patches: the detail of measured surface, cut out by the method's own stages.
 
-The detail of a patch is its heights minus those of the smoothed outline over the same bins. Repairing codes the same
-quantity, made by the same functions, so a dictionary meets in a repair what it has seen here.
+The detail of a patch is its heights minus those of the smoothed outline over the same bins; for the paper's own recipe
+it is the heights themselves. Repairing codes the same quantity, made by the same functions, so a dictionary meets in a
+repair what it has seen here.
 """
 
 from dataclasses import dataclass
@@ -22,7 +23,7 @@ from quadpatch.patches.seeds import Seeds, seed_points
 from quadpatch.quads.frames import quad_frames
 from quadpatch.quads.mesher import quadrangulate
 from quadpatch.raycast import RayScene
-from quadpatch.sparse.signals import to_signals
+from quadpatch.sparse.signals import HEIGHTS, NORMALISATION, to_signals
 from quadpatch.types import BoolArray, FloatArray, Patches, TriangleMesh
 
 # Patches that vary less than this part of their side show noise, not a pattern worth an atom.
@@ -49,6 +50,8 @@ class PatchRecipe:
         k: besides its centre, every quad carries 4 k offset patches.
     max_seeds : int
         At most so many places of one mesh, drawn at random, so that a large scan does not drown a small one.
+    normalisation : str
+        How signals are made of them, one of `quadpatch.sparse.signals.NORMALISATIONS`.
     """
 
     resolution: int = 24
@@ -56,6 +59,12 @@ class PatchRecipe:
     scales: tuple[float, ...] = (1.0, 1.5, 2.0)
     overlap: int = 1
     max_seeds: int = 1000
+    normalisation: str = NORMALISATION
+
+    @property
+    def with_outline(self) -> bool:
+        """Whether detail is over the outline; the paper's own recipe codes heights over the plane of the patch."""
+        return self.normalisation != HEIGHTS
 
 
 @dataclass(frozen=True)
@@ -65,7 +74,7 @@ class TrainingPatches:
     Attributes
     ----------
     detail : (n, N, N) float64
-        In mesh units; 0 in unknown bins.
+        Over the outline, or over the plane of the patch; in mesh units, 0 in unknown bins.
     known : (n, N, N) bool
     """
 
@@ -131,14 +140,15 @@ def cut_patches(mesh: TriangleMesh, recipe: PatchRecipe, rng: np.random.Generato
             sample_height_maps(scene, m, nothing_invented, seeds, scale * length, recipe.resolution)
             for scene, m in zip(scenes, (mesh, outline), strict=True)
         )
-        cut.append(_worth_learning(surface, smooth))
+        cut.append(_worth_learning(surface, smooth if recipe.with_outline else None))
     return TrainingPatches.joined(cut, recipe.resolution)
 
 
-def _worth_learning(surface: Patches, smooth: Patches) -> TrainingPatches:
+def _worth_learning(surface: Patches, smooth: Patches | None) -> TrainingPatches:
     """Keep the patches that are height maps, known almost everywhere and not flat."""
-    known = surface.known & smooth.seen
-    detail = np.where(known, surface.heights - smooth.heights, 0.0)
+    known = surface.known if smooth is None else surface.known & smooth.seen
+    base = 0.0 if smooth is None else smooth.heights
+    detail = np.where(known, surface.heights - base, 0.0)
     _, scaling = to_signals(detail, known)
     keep = is_height_map(surface) & (known.mean(axis=(1, 2)) >= LEAST_KNOWN)
     keep &= scaling.spread > LEAST_RELIEF * surface.length

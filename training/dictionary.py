@@ -9,9 +9,11 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from quadpatch.errors import StageError
+from quadpatch.inpainters import heights
+from quadpatch.options import Recipe
 from quadpatch.sparse.dictionary import Dictionary
 from quadpatch.sparse.ksvd import KsvdOptions, OnIteration, masked_ksvd
-from quadpatch.sparse.signals import to_signals
+from quadpatch.sparse.signals import HEIGHTS, NORMALISATIONS
 from quadpatch.types import FloatArray, Progress, no_progress
 from training.corpus import PatchRecipe, TrainingPatches, cut_patches, read_mesh, turn_at_random
 from training.evaluation import evaluate
@@ -47,6 +49,15 @@ class LearningOptions:
     seed: int = 0
 
 
+# What is learned where nothing else is asked for, for each recipe of a repair.
+USUAL: dict[Recipe, LearningOptions] = {
+    "default": LearningOptions(),
+    "paper": LearningOptions(
+        PatchRecipe(scales=(1.0,), normalisation=HEIGHTS), KsvdOptions(heights.GLOBAL_ATOMS, heights.NONZERO)
+    ),
+}
+
+
 @dataclass(frozen=True)
 class Learned:
     """A dictionary, and how it came about.
@@ -55,7 +66,7 @@ class Learned:
     ----------
     dictionary : Dictionary
     errors : (n_iterations,) float64
-        Root mean square error on the training signals after each iteration; 1 is the spread of a patch.
+        Root mean square error on the training signals after each iteration; 1 is their own root mean square.
     n_patches : int
         Training patches.
     metrics : dict
@@ -101,9 +112,13 @@ def learn_dictionary(
     if len(patches) < ksvd.n_atoms:
         raise StageError(f"the meshes give {len(patches)} patches; {ksvd.n_atoms} atoms need at least as many")
     patches = turn_at_random(patches, np.random.default_rng([options.seed, 1]))
-    signals, _ = to_signals(patches.detail, patches.known)
+    signals, _ = NORMALISATIONS[options.recipe.normalisation](patches.detail, patches.known)
+    known = patches.known.reshape(signals.shape)
+    if options.recipe.normalisation == HEIGHTS:
+        # As a whole, not patch by patch: it changes no atom, and errors mean the same in every unit of length.
+        signals = signals / np.sqrt((signals[known] ** 2).mean())
     rng = np.random.default_rng([options.seed, 2])
-    atoms, errors = masked_ksvd(signals, patches.known.reshape(signals.shape), ksvd, rng, on_iteration)
+    atoms, errors = masked_ksvd(signals, known, ksvd, rng, on_iteration)
     dictionary = Dictionary(_in_file_precision(atoms), options.recipe.resolution, ksvd.n_nonzero)
     return Learned(dictionary, errors, len(patches), _measure(dictionary, holdout, options, progress))
 
@@ -112,13 +127,13 @@ def _measure(
     dictionary: Dictionary, holdout: list[Source], options: LearningOptions, progress: Progress
 ) -> dict[str, float]:
     """Measure on scans and on procedural reliefs apart: they are not alike, and reliefs would outnumber the scans."""
-    seed = options.seed + HOLDOUT_SEED_OFFSET
+    seed, normalisation = options.seed + HOLDOUT_SEED_OFFSET, options.recipe.normalisation
     metrics: dict[str, float] = {}
     for kind, sources, n_procedural in (("scan", holdout, 0), ("relief", [], min(options.n_procedural, 1))):
         patches = _gather(sources, options, (n_procedural, seed), _named(progress, f"held-out {kind}s"))
         clean = patches.detail[patches.is_clean]
         if len(clean):
-            metrics |= {f"{kind}_{key}": value for key, value in evaluate(dictionary, clean).items()}
+            metrics |= {f"{kind}_{key}": value for key, value in evaluate(dictionary, clean, normalisation).items()}
     return metrics
 
 

@@ -10,14 +10,14 @@ import numpy as np
 
 from quadpatch.sparse.dictionary import Dictionary
 from quadpatch.sparse.omp import masked_omp
-from quadpatch.sparse.signals import from_signals, to_signals
+from quadpatch.sparse.signals import NORMALISATION, NORMALISATIONS, from_signals
 from quadpatch.types import BoolArray, FloatArray
 from training.spreading import disk, spread
 
 HOLE_SHARES = (0.25, 0.5)
 
 
-def evaluate(dictionary: Dictionary, patches: FloatArray) -> dict[str, float]:
+def evaluate(dictionary: Dictionary, patches: FloatArray, normalisation: str = NORMALISATION) -> dict[str, float]:
     """Measure a dictionary on patches known in every bin.
 
     Parameters
@@ -25,6 +25,8 @@ def evaluate(dictionary: Dictionary, patches: FloatArray) -> dict[str, float]:
     dictionary : Dictionary
     patches : (n, N, N) float64
         Detail, in mesh units; n at least 1.
+    normalisation : str
+        How signals are made of them, one of `NORMALISATIONS`.
 
     Returns
     -------
@@ -37,7 +39,7 @@ def evaluate(dictionary: Dictionary, patches: FloatArray) -> dict[str, float]:
     spreads = patches.std(axis=(1, 2))
     patches, spreads = patches[spreads > 0.0], spreads[spreads > 0.0]
     everything = np.ones(patches.shape[1:], dtype=np.bool_)
-    whole = complete(dictionary, patches, everything)
+    whole = complete(dictionary, patches, everything, normalisation)
     for share in HOLE_SHARES:
         known = disk(dictionary.resolution, share)
         hidden = np.where(known, patches, 0.0)
@@ -47,7 +49,7 @@ def evaluate(dictionary: Dictionary, patches: FloatArray) -> dict[str, float]:
             "unhidden": whole,
         }
         name = f"hole_{round(100 * share)}"
-        completed = join(complete(dictionary, hidden, known), hidden, known)
+        completed = join(complete(dictionary, hidden, known, normalisation), hidden, known)
         error = _error(completed, patches, spreads, ~known)
         measures[f"{name}_error"] = error
         for other, filled in fills.items():
@@ -55,10 +57,12 @@ def evaluate(dictionary: Dictionary, patches: FloatArray) -> dict[str, float]:
     return {key: round(value, 4) for key, value in measures.items()}
 
 
-def complete(dictionary: Dictionary, patches: FloatArray, known: BoolArray) -> FloatArray:
+def complete(
+    dictionary: Dictionary, patches: FloatArray, known: BoolArray, normalisation: str = NORMALISATION
+) -> FloatArray:
     """Code patches of which all have the same known bins (N, N), and give back what the codes say everywhere."""
     masks = np.broadcast_to(known, patches.shape)
-    signals, scaling = to_signals(patches, masks)
+    signals, scaling = NORMALISATIONS[normalisation](patches, masks)
     codes = masked_omp(signals, masks.reshape(signals.shape), dictionary.atoms, dictionary.n_nonzero)
     return from_signals(codes @ dictionary.atoms.T, scaling)
 

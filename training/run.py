@@ -65,7 +65,7 @@ def run(request: Request, console: Console) -> Learned:
     sources, holdout = split_holdout(find_sources(request.meshes), request.holdout)
     learned = _learn(sources, holdout, request.options, console)
     card = dictionary_card((name, version), learned, (sources, holdout), request.options, request.command)
-    save_dictionary(request.output, learned.dictionary, card)
+    save_dictionary(request.output, learned.dictionary, card, request.options.recipe.normalisation)
     digest = hashlib.sha256(request.output.read_bytes()).hexdigest()
     write_card_page(request.output.with_suffix(".md"), card, digest)
     console.print(f"{learned.n_patches} patches; error by iteration {text_curve(learned.errors)}", highlight=False)

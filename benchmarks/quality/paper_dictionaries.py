@@ -114,9 +114,9 @@ class Learner:
 
 def _coding_error(heights: FloatArray, known: BoolArray, dictionary: Dictionary) -> float:
     """Mean absolute difference between known heights and what their codes make of them."""
-    signals, mean = mean_free(heights, known)
+    signals, taken = mean_free(heights, known)
     flat = known.reshape(signals.shape)
-    coded = masked_omp(signals, flat, dictionary.atoms, dictionary.n_nonzero) @ dictionary.atoms.T + mean[:, None]
+    coded = masked_omp(signals, flat, dictionary.atoms, dictionary.n_nonzero) @ dictionary.atoms.T + taken.mean[:, None]
     return float(np.abs(coded - heights.reshape(signals.shape))[flat].mean())
 
 

@@ -13,7 +13,7 @@ from quadpatch.options import DictionaryOptions
 from quadpatch.sparse.dictionary import Dictionary
 from quadpatch.sparse.ksvd import KsvdOptions, OnIteration, masked_ksvd
 from quadpatch.sparse.omp import masked_omp
-from quadpatch.sparse.signals import mean_free
+from quadpatch.sparse.signals import from_signals, mean_free
 from quadpatch.types import BoolArray, FloatArray, Patches, Progress, no_progress
 
 # The paper finds no gain beyond 50 to 100 atoms on the patches of one shape, and takes 500 for those of many.
@@ -45,11 +45,10 @@ class HeightsInpainter:
     def predict(self, patches: Patches, outline: FloatArray | None = None) -> FloatArray:
         """Predict every bin from the known ones of its patch; see `Inpainter`. The outline is not looked at."""
         del outline
-        signals, mean = mean_free(patches.heights, patches.known)
+        signals, scaling = mean_free(patches.heights, patches.known)
         known = patches.known.reshape(signals.shape)
         codes = masked_omp(signals, known, self.dictionary.atoms, self.dictionary.n_nonzero)
-        completed = codes @ self.dictionary.atoms.T + mean[:, None]
-        return completed.reshape(patches.heights.shape)
+        return from_signals(codes @ self.dictionary.atoms.T, scaling)
 
 
 def is_learnable(known: BoolArray) -> BoolArray:

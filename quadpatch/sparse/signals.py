@@ -5,6 +5,7 @@ divided by their spread, so that a shallow and a deep relief of the same shape g
 inpainting both call this module: a dictionary only fits signals made the way its own were.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -71,14 +72,14 @@ def to_signals(detail: FloatArray, known: BoolArray, least_spread: float = 0.0) 
 
 
 def from_signals(signals: FloatArray, scaling: Scaling) -> FloatArray:
-    """Undo `to_signals`.
+    """Undo `to_signals` or `mean_free`.
 
     Parameters
     ----------
     signals : (n_patches, N * N) float64
         Completed signals, ``codes @ atoms.T``.
     scaling : Scaling
-        As `to_signals` gave it.
+        As they gave it.
 
     Returns
     -------
@@ -91,7 +92,7 @@ def from_signals(signals: FloatArray, scaling: Scaling) -> FloatArray:
     return detail.reshape(n_patches, resolution, resolution)
 
 
-def mean_free(heights: FloatArray, known: BoolArray) -> tuple[FloatArray, FloatArray]:
+def mean_free(heights: FloatArray, known: BoolArray) -> tuple[FloatArray, Scaling]:
     """Take the mean of the known bins out of every patch: all that the paper's own recipe does to heights.
 
     Parameters
@@ -105,11 +106,18 @@ def mean_free(heights: FloatArray, known: BoolArray) -> tuple[FloatArray, FloatA
     -------
     signals : (n_patches, N * N) float64
         In mesh units; 0 in unknown bins.
-    mean : (n_patches,) float64
-        In mesh units; 0 where no bin is known.
+    scaling : Scaling
+        For `from_signals`; its spread is 1, a pure number.
     """
     shape = len(heights), heights.shape[1] * heights.shape[2]
     flat_known = known.reshape(shape)
     values = np.where(flat_known, heights.reshape(shape), 0.0)
     mean = values.sum(axis=1) / np.maximum(flat_known.sum(axis=1), 1)
-    return np.where(flat_known, values - mean[:, None], 0.0), mean
+    return np.where(flat_known, values - mean[:, None], 0.0), Scaling(mean, np.ones(len(heights)))
+
+
+# How signals are made, by what model cards call it. `from_signals` undoes them all.
+NORMALISATIONS: dict[str, Callable[[FloatArray, BoolArray], tuple[FloatArray, Scaling]]] = {
+    NORMALISATION: to_signals,
+    HEIGHTS: mean_free,
+}

@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 
 from quadpatch.mesh.measures import mean_edge_length
+from quadpatch.sparse.signals import HEIGHTS
 from quadpatch.types import TriangleMesh
 from training.corpus import LEAST_KNOWN, PatchRecipe, TrainingPatches, cut_patches, turn_at_random
 from training.procedural import relief_mesh
@@ -30,6 +31,18 @@ def test_detail_is_measured_from_the_outline_and_not_from_the_plane_of_the_patch
     bent = TriangleMesh(np.stack([x, y, z + 0.01 * x**2], axis=1), relief.triangles)
     plain, lifted = (cut_patches(mesh, RECIPE, np.random.default_rng(1)) for mesh in (relief, bent))
     assert lifted.detail.std() < 1.5 * plain.detail.std()
+
+
+def test_heights_are_measured_from_the_plane_of_the_patch_where_they_are_asked_for(relief: TriangleMesh) -> None:
+    """A smooth trough c x^2 has no detail, but its heights spread by c L^2 / (6 sqrt 5), askew by 1.32 times that."""
+    x, y, _ = relief.vertices.T
+    trough = TriangleMesh(np.stack([x, y, 0.005 * x**2], axis=1), relief.triangles)
+    recipe = PatchRecipe(resolution=24, length=10.0, scales=(1.0,), max_seeds=60, normalisation=HEIGHTS)
+    patches = cut_patches(trough, recipe, np.random.default_rng(1))
+    assert len(patches) > 10
+    spread = patches.detail[patches.is_clean].std(axis=(1, 2))
+    along = 0.005 * 10**2 / (6 * np.sqrt(5))
+    assert 0.9 * along < np.median(spread) < 1.1 * 1.32 * along
 
 
 def test_a_smooth_sheet_has_nothing_to_learn(relief: TriangleMesh) -> None:

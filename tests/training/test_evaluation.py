@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 
 from quadpatch.sparse.dictionary import Dictionary
+from quadpatch.sparse.signals import HEIGHTS
 from quadpatch.types import FloatArray
 from training.evaluation import complete, evaluate, join
 from training.spreading import disk
@@ -56,3 +57,13 @@ def test_flat_patches_are_left_out_of_the_measures() -> None:
     dictionary = Dictionary(wave_atoms(), N, 4)
     with_flat, without = evaluate(dictionary, patches), evaluate(dictionary, patches[:20])
     assert with_flat == {**without, "n_patches": 23.0}
+
+
+def test_heights_are_completed_as_they_are() -> None:
+    """Neither depth nor offset is taken out but for the mean, and a pattern that is known is completed all the same."""
+    patches = 1e-3 * wave_patches() + 5.0
+    measures = evaluate(Dictionary(wave_atoms(), N, 4), patches, HEIGHTS)
+    assert measures["hole_50_to_plate"] < 0.1
+    known = disk(N, 0.25)
+    completed = complete(Dictionary(wave_atoms(), N, 4), patches, known, HEIGHTS)
+    np.testing.assert_allclose(completed[:, ~known], patches[:, ~known], atol=2e-4)

@@ -11,8 +11,12 @@ from typer.testing import CliRunner
 from jobkit.database import Database
 from jobkit.registry import Registry
 from jobkit.store import open_store
+from quadpatch.errors import OptionError
 from quadpatch.model_file import load_model, model_card
+from quadpatch.options import HoleOptions, PatchOptions, RepairOptions
+from quadpatch.repair import repair_file
 from quadpatch.types import TriangleMesh
+from tests.quadpatch.shapes import punched
 from training.__main__ import app
 from training.procedural import relief_mesh
 
@@ -123,3 +127,26 @@ def test_what_cannot_work_is_answered_with_a_code(
     assert result.exit_code == 1
     assert f"error ({code})" in result.output
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_dictionary_of_heights_is_learned_for_the_recipe_of_the_paper_and_repairs_by_it(
+    meshes: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file = tmp_path / "heights.safetensors"
+    shared = ["dictionary", str(meshes), "--name", "heights", "--recipe", "paper", *SMALL, "--holdout", "noise"]
+    output = train(monkeypatch, *shared, "--output", str(file))
+    assert "error by iteration" in output
+    model = load_model(file)
+    assert (model.recipe, model.card["normalisation"]) == ("paper", "heights-mean")
+    assert "heights over the plane of the patch" in model.card["recipe"]["signal"]
+    assert "times 1" in model.card["recipe"]["training_patch_length"]
+    assert model.card["metrics"]["scan_n_patches"] > 10
+    errors = model.card["recipe"]["rms_error_by_iteration"]
+    assert 0 < errors[-1] < errors[0] < 1
+    damaged = punched(relief_mesh("waves", np.random.default_rng(7), 50), (0.0, 0.0, 0.0), radius=4.0)
+    source = write_ply(tmp_path / "scan.ply", damaged)
+    options = RepairOptions(HoleOptions(ids=(1,)), PatchOptions(length=10.0), recipe="paper")
+    report = repair_file(source, tmp_path / "out.ply", file, options)
+    assert report["counts"]["filled"] == 1
+    with pytest.raises(OptionError, match="learned for the recipe paper"):
+        repair_file(source, tmp_path / "out.ply", file)
