@@ -201,9 +201,12 @@ def _read_atoms(path: Path) -> FloatArray:
             is_sized = len(shape) == 2 and 1 <= shape[0] <= MAX_RESOLUTION**2 and 1 <= shape[1] <= MAX_ATOMS
             if not is_sized or dtype not in ("F32", "F64"):
                 raise ModelError(f"atoms must be a float matrix of sane size; got {dtype} {shape}")
-            atoms = file.get_tensor("atoms").astype(np.float64)
+            stored = file.get_tensor("atoms")
     except (SafetensorError, OSError) as error:
         raise ModelError(f"{path.name} is no safetensors file: {error}") from error
+    # Before any arithmetic: damaged bytes hold values that overflow, and NaNs that can't even be converted in silence.
+    is_sane = np.isfinite(stored).all() and (np.abs(stored) <= 1.0 + FILE_NORM_TOLERANCE).all()
+    atoms = stored.astype(np.float64) if is_sane else np.zeros_like(stored, np.float64)
     norms = np.linalg.norm(atoms, axis=0)
     if not (np.abs(norms - 1.0) <= FILE_NORM_TOLERANCE).all():
         raise ModelError(f"atoms of {path.name} are not finite columns of unit norm")

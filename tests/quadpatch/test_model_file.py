@@ -135,6 +135,21 @@ def test_a_damaged_file_loads_as_a_dictionary_or_is_refused(
     assert np.isfinite(model.dictionary.atoms).all()
 
 
+@pytest.mark.parametrize("bits", ["7fa00000", "ffa00000", "7f800000"])
+def test_a_flipped_bit_that_makes_a_nan_is_refused_without_a_warning(tmp_path: Path, bits: str) -> None:
+    """Signalling NaNs raise the processor's flag as soon as they are converted."""
+    content = bytearray(write(tmp_path / "a.safetensors").read_bytes())
+    content[-4:] = bytes.fromhex(bits)[::-1]
+    (tmp_path / "a.safetensors").write_bytes(bytes(content))
+    with pytest.raises(ModelError, match="unit norm"):
+        load_model(tmp_path / "a.safetensors")
+
+
+def test_atoms_whose_squares_overflow_are_refused_without_a_warning(tmp_path: Path) -> None:
+    with pytest.raises(ModelError, match="unit norm"):
+        load_model(write(tmp_path / "a.safetensors", some_atoms() * 1e200))
+
+
 def test_a_missing_file_and_a_foreign_suffix_are_refused(tmp_path: Path) -> None:
     with pytest.raises(ModelError, match="no model file"):
         load_model(tmp_path / "nothing.safetensors")
