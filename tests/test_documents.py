@@ -164,8 +164,10 @@ def test_make_targets_that_are_named_exist() -> None:
 
 def test_commands_that_are_named_exist() -> None:
     for path in DOCUMENTS:
-        for module, command in re.findall(r"python -m (\w+)(?: ([a-z]+)\b)?", path.read_text("utf-8")):
-            assert (ROOT / module / "__main__.py").is_file() or module == "venv", f"{path.name}: {module}"
+        for module, command in re.findall(r"python -m ([\w.]+)(?: ([a-z]+)\b)?", path.read_text("utf-8")):
+            file = ROOT / module.replace(".", "/")
+            is_there = (file / "__main__.py").is_file() or file.with_suffix(".py").is_file()
+            assert is_there or module == "venv", f"{path.name}: {module}"
             apps = {"quadpatch": "quadpatch.cli", "client": "client.cli", "training": "training.__main__"}
             apps["onebox"] = "onebox.__main__"
             if command and module in apps:

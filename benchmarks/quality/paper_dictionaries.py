@@ -3,6 +3,7 @@
 They are learned from meshes that are for measuring only, so they stay in the output folder and are never published.
 """
 
+import hashlib
 import json
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -51,12 +52,12 @@ class Learner:
         edges = [mean_edge_length(self.bench.read(shape.truth)) for shape in shapes] if length is None else [1.0]
         return paper_scale([diameter], float(np.median(edges)), PatchOptions(length=length))
 
-    def local(self, shape: Shape, scale: PatchScale, n_atoms: int = LOCAL_ATOMS) -> Method:
-        """Learn from the undamaged mesh itself."""
+    def local(self, shape: Shape, scale: PatchScale, n_atoms: int = LOCAL_ATOMS) -> Method | None:
+        """Learn from the undamaged mesh itself; None where it has too few patches of this scale."""
         return self._method(f"local-{shape.name}", [shape], scale, n_atoms)
 
-    def many(self, name: str, shapes: Sequence[Shape], scale: PatchScale, n_atoms: int = GLOBAL_ATOMS) -> Method:
-        """Learn from many undamaged meshes."""
+    def many(self, name: str, shapes: Sequence[Shape], scale: PatchScale, n_atoms: int = GLOBAL_ATOMS) -> Method | None:
+        """Learn from many undamaged meshes; None where they have too few patches of this scale."""
         return self._method(name, shapes, scale, n_atoms)
 
     def self_similar(self, scale: PatchScale) -> Method:
@@ -78,12 +79,12 @@ class Learner:
 
         return float(self.results.get("reconstructions", key, compute)["error"])
 
-    def _method(self, name: str, shapes: Sequence[Shape], scale: PatchScale, n_atoms: int) -> Method:
+    def _method(self, name: str, shapes: Sequence[Shape], scale: PatchScale, n_atoms: int) -> Method | None:
         label = f"paper-{name}_{n_atoms}_{scale.length:.4g}"
         sources = {shape.name: shape.sha256 for shape in shapes}
         key: Key = {"name": label, "sources_sha256": json.dumps(sources), "seed": SEED}
         found = self.results.get("models", key, lambda: self._learn(label, key, shapes, (scale, n_atoms)))
-        return Method(label, str(self.folder / found["file"]), _options(scale))
+        return Method(label, str(self.folder / found["file"]), _options(scale)) if found["file"] else None
 
     def _learn(self, label: str, key: Key, shapes: Sequence[Shape], how: tuple[PatchScale, int]) -> dict[str, Any]:
         scale, n_atoms = how
@@ -95,9 +96,10 @@ class Learner:
             np.random.default_rng(SEED),
         )
         if learned is None:
-            raise BenchError(f"too few patches of length {scale.length:.3g} on {', '.join(s.name for s in shapes)}")
+            return {"file": None}
         self.folder.mkdir(parents=True, exist_ok=True)
-        file = f"{label}.safetensors"
+        # Many sets of shapes go by one label.
+        file = f"{label}_{hashlib.sha256(json.dumps(dict(key)).encode()).hexdigest()[:10]}.safetensors"
         card = {"name": label, "learned_from": dict(key), "use": "measuring only, not for publication"}
         save_dictionary(self.folder / file, learned.dictionary, card, HEIGHTS)
         return {"file": file, "n_patches": sum(len(heights) for heights, _ in cut)}

@@ -27,6 +27,9 @@ N_DICTIONARIES = 4
 # Starts the order in which shapes are added to those learned from.
 ORDER_SEED = 0
 
+# A figure for each place on the axis; None where nothing could be measured.
+Series = dict[str, list[float | None]]
+
 FAIR = "fair"
 MESHLAB = "meshlab_refine"
 
@@ -40,8 +43,15 @@ class Paper:
     learner: Learner
     progress: Progress
 
-    def error(self, case: Case, method: Method) -> float:
-        """Repair and measure, or take what was kept."""
+    def to_fair(self, case: Case, method: Method | None) -> float | None:
+        """Error over that of `fair`."""
+        return ratio(self.error(case, method), float(case.peers[FAIR]["error"]))
+
+    def error(self, case: Case, method: Method | None) -> float | None:
+        """Repair and measure, or take what was kept; None without a method."""
+        if method is None:
+            self.progress.step(f"{case.shape.name} {case.radius}: too few patches to learn from")
+            return None
         found = float(measure(self.bench, case, method, self.results)["error"])
         to_fair = figure(ratio(found, case.peers.get(FAIR, {}).get("error")))
         self.progress.step(f"{case.shape.name} {case.radius} {method.name}: {to_fair} of {FAIR}")
@@ -80,7 +90,7 @@ def dictionaries_experiment(
     return Outcome("dictionaries", tables, {"rows": data}, plots)
 
 
-def _row(paper: Paper, case: Case, every: Sequence[Shape], ours: Sequence[Method]) -> dict[str, float]:
+def _row(paper: Paper, case: Case, every: Sequence[Shape], ours: Sequence[Method]) -> dict[str, float | None]:
     learner, shape = paper.learner, case.shape
     scale = learner.scale(every, case.radius)
     others = [other for other in every if other.name != shape.name]
@@ -96,46 +106,46 @@ def _row(paper: Paper, case: Case, every: Sequence[Shape], ours: Sequence[Method
 
 def atoms_experiment(paper: Paper, cases: Sequence[Case], every: Sequence[Shape]) -> Outcome:
     """Measure filling and plain coding against the number of atoms of a local dictionary."""
-    filled: dict[str, list[float]] = {}
-    coded: dict[str, list[float]] = {}
+    filled: Series = {case.shape.name: [] for case in cases}
+    coded: Series = {case.shape.name: [] for case in cases}
     for case in cases:
         scale = paper.learner.scale(every, case.radius)
-        filled[case.shape.name], coded[case.shape.name] = [], []
         for n_atoms in ATOMS:
             method = paper.learner.local(case.shape, scale, n_atoms)
-            filled[case.shape.name].append(paper.error(case, method))
-            coded[case.shape.name].append(paper.learner.reconstruction_error(case.shape, scale, method))
-    fair = {case.shape.name: float(case.peers[FAIR]["error"]) for case in cases}
-    to_fair = {mesh: [error / fair[mesh] for error in errors] for mesh, errors in filled.items()}
+            filled[case.shape.name].append(paper.to_fair(case, method))
+            coding = paper.learner.reconstruction_error(case.shape, scale, method) if method else None
+            coded[case.shape.name].append(coding)
     radius = cases[0].radius
     tables = [
-        _curve_table(f"error / {FAIR} by atoms, local dictionary, hole radius {radius}", ATOMS, to_fair, figure),
+        _curve_table(f"error / {FAIR} by atoms, local dictionary, hole radius {radius}", ATOMS, filled, figure),
         _curve_table("error of coding whole patches by atoms, millionths", ATOMS, coded, scientific),
     ]
     plots = {
-        "filling": curve_plot(tables[0].title, ("atoms", f"error / {FAIR}"), _points(ATOMS, to_fair)),
-        "coding": curve_plot(tables[1].title, ("atoms", "error"), _points(ATOMS, coded)),
+        "filling": curve_plot(tables[0].title, ("atoms", f"error / {FAIR}"), ATOMS, filled),
+        "coding": curve_plot(tables[1].title, ("atoms", "error"), ATOMS, coded),
     }
     return Outcome("atoms", tables, {"atoms": list(ATOMS), "filling": filled, "coding": coded}, plots)
 
 
 def patch_length_experiment(paper: Paper, cases: Sequence[Case], ours: Sequence[Method]) -> Outcome:
     """Measure against the ratio of hole to patch: local dictionaries of the paper, our methods with set patches."""
-    series: dict[str, list[float]] = {}
+    by_name: dict[str, Series] = {}
     for case in cases:
-        fair = float(case.peers[FAIR]["error"])
         for share in HOLE_TO_PATCH:
             scale = paper.learner.scale([case.shape], case.radius, share)
-            methods = {"paper local": paper.learner.local(case.shape, scale)}
+            methods: dict[str, Method | None] = {"paper local": paper.learner.local(case.shape, scale)}
             for method in ours:
                 options = {"patches": {"length": scale.length}}
-                methods[method.name] = Method(f"{method.name}_{scale.length:.4g}", method.model, options)
-            for name, method in methods.items():
-                series.setdefault(f"{case.shape.name}, {name}", []).append(paper.error(case, method) / fair)
-    title = f"error / {FAIR} by hole diameter / patch length, hole radius {cases[0].radius}"
-    table = _curve_table(title, HOLE_TO_PATCH, series, figure)
-    plot = curve_plot(title, ("hole diameter / patch length", f"error / {FAIR}"), _points(HOLE_TO_PATCH, series))
-    return Outcome("patch_length", [table], {"hole_to_patch": list(HOLE_TO_PATCH), "ratios": series}, {"curve": plot})
+                methods[f"ours {method.name}"] = Method(f"{method.name}_{scale.length:.4g}", method.model, options)
+            for name, chosen in methods.items():
+                by_name.setdefault(name, {}).setdefault(case.shape.name, []).append(paper.to_fair(case, chosen))
+    tables, plots = [], {}
+    for name, series in by_name.items():
+        title = f"{name}: error / {FAIR} by hole diameter / patch length, hole radius {cases[0].radius}"
+        tables.append(_curve_table(title, HOLE_TO_PATCH, series, figure))
+        labels = "hole diameter / patch length", f"error / {FAIR}"
+        plots[name.replace(" ", "_")] = curve_plot(title, labels, HOLE_TO_PATCH, series)
+    return Outcome("patch_length", tables, {"hole_to_patch": list(HOLE_TO_PATCH), "ratios": by_name}, plots)
 
 
 def shapes_experiment(paper: Paper, cases: Sequence[Case], every: Sequence[Shape]) -> Outcome:
@@ -144,27 +154,21 @@ def shapes_experiment(paper: Paper, cases: Sequence[Case], every: Sequence[Shape
     rest = [shape for shape in every if shape.name not in tested]
     order = np.random.default_rng(ORDER_SEED).permutation(len(rest)).tolist()
     counts = sorted({min(count, len(rest)) for count in N_SHAPES})
-    series: dict[str, list[float]] = {case.shape.name: [] for case in cases}
+    series: Series = {case.shape.name: [] for case in cases}
     for count in counts:
         sources = [rest[i] for i in order[:count]]
         scale = paper.learner.scale(every, cases[0].radius)
-        method = paper.learner.many(f"of-{'-'.join(shape.name for shape in sources)}"[:60], sources, scale)
+        method = paper.learner.many(f"of-{count}-shapes", sources, scale)
         for case in cases:
-            series[case.shape.name].append(paper.error(case, method) / float(case.peers[FAIR]["error"]))
+            series[case.shape.name].append(paper.to_fair(case, method))
     title = f"error / {FAIR} by number of training shapes, hole radius {cases[0].radius}"
     table = _curve_table(title, counts, series, figure)
-    plot = curve_plot(title, ("training shapes", f"error / {FAIR}"), _points(counts, series))
+    plot = curve_plot(title, ("training shapes", f"error / {FAIR}"), counts, series)
     data = {"shapes": counts, "order": [rest[i].name for i in order], "ratios": series}
     return Outcome("shapes", [table], data, {"curve": plot})
 
 
-def _curve_table(
-    title: str, x: Sequence[float], series: dict[str, list[float]], write: Callable[[float | None], str]
-) -> Table:
+def _curve_table(title: str, x: Sequence[float], series: Series, write: Callable[[float | None], str]) -> Table:
     body = [[name, *(write(value) for value in values)] for name, values in series.items()]
     mean = ["geometric mean", *(write(geometric_mean(values)) for values in zip(*series.values(), strict=True))]
     return Table(title, ["", *(f"{value:g}" for value in x)], [*body, mean], 1)
-
-
-def _points(x: Sequence[float], series: dict[str, list[float]]) -> dict[str, tuple[Sequence[float], Sequence[float]]]:
-    return {name: (x, y) for name, y in series.items()}

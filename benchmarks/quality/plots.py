@@ -7,6 +7,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 _WIDTH, _HEIGHT = 9.0, 4.6
+_MOST_RATIO = 2.5
 
 
 def ratio_plot(title: str, meshes: Sequence[str], series: Mapping[str, Sequence[float | None]]) -> Figure:
@@ -20,10 +21,10 @@ def ratio_plot(title: str, meshes: Sequence[str], series: Mapping[str, Sequence[
         axes.bar(places + (k + 0.5) * width - 0.4, heights, width, label=name)
     axes.axhline(1.0, color="black", linewidth=0.8)
     axes.set_xticks(places, meshes, rotation=30, ha="right")
-    # Beyond twice the reference it is enough to know that a bar leaves the picture.
-    axes.set_ylim(0, 2)
+    # Beyond that it is enough to know that a bar leaves the picture.
+    axes.set_ylim(0, _MOST_RATIO)
     axes.set_title(title)
-    axes.legend(ncols=4, fontsize="small")
+    figure.legend(loc="outside lower center", ncols=5, fontsize="small")
     return figure
 
 
@@ -47,13 +48,14 @@ def calibration_plot(holes: Mapping[str, Sequence[dict[str, Any]]]) -> Figure:
 
 
 def curve_plot(
-    title: str, labels: tuple[str, str], series: Mapping[str, tuple[Sequence[float], Sequence[float]]]
+    title: str, labels: tuple[str, str], x: Sequence[float], series: Mapping[str, Sequence[float | None]]
 ) -> Figure:
-    """Draw one line for each name through its points (x, y); `labels` are those of the axes."""
+    """Draw one line for each name through its values at x, with gaps for None; `labels` are those of the axes."""
     figure = Figure(figsize=(_WIDTH, _HEIGHT), layout="constrained")
     axes = figure.add_subplot()
-    for name, (x, y) in series.items():
-        axes.plot(x, y, marker="o", markersize=3, label=name)
+    for name, values in series.items():
+        heights = [np.nan if value is None else value for value in values]
+        axes.plot(list(x), heights, marker="o", markersize=3, label=name)
     axes.set_xlabel(labels[0])
     axes.set_ylabel(labels[1])
     axes.set_title(title)
