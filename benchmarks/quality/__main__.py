@@ -19,7 +19,7 @@ from pathlib import Path
 from benchmarks.quality.bench import RADII, Bench, BenchError
 from benchmarks.quality.measurement import Method
 from benchmarks.quality.own_meshes import own_shapes
-from benchmarks.quality.results import Results
+from benchmarks.quality.results import ALL_KINDS, OF_THE_METHOD, Results
 from benchmarks.quality.session import EXPERIMENTS, REPAIR, Session
 from quadpatch.errors import QuadpatchError
 
@@ -52,7 +52,8 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--radius", action="append", help=f"hole radius; repeat for more, or all: {', '.join(RADII)}")
     parser.add_argument("--model", action="append", help="smooth, self, or a model; repeat for more")
     parser.add_argument("--output", type=Path, default=Path("var/quality"), help="folder for meshes and results")
-    parser.add_argument("--fresh", action="store_true", help="take no result of an earlier run")
+    parser.add_argument("--fresh", action="store_true", help="measure again; keep the paper's dictionaries and peers")
+    parser.add_argument("--fresh-all", action="store_true", help="learn the dictionaries and run the peers again, too")
     parser.add_argument("--no-pictures", action="store_true", help="draw no worst and best holes")
     return parser
 
@@ -60,9 +61,10 @@ def _parser() -> argparse.ArgumentParser:
 def _open(arguments: argparse.Namespace) -> Session:
     bench = Bench.open(arguments.bench)
     radii = arguments.radius or [DEFAULT_RADIUS]
+    fresh = ALL_KINDS if arguments.fresh_all else OF_THE_METHOD if arguments.fresh else ()
     return Session(
         bench=bench,
-        results=Results(arguments.output / "results", arguments.fresh),
+        results=Results(arguments.output / "results", fresh),
         every=own_shapes(bench, arguments.meshes, arguments.output) if arguments.meshes else bench.shapes(),
         names=arguments.mesh or [],
         radii=RADII if ALL in radii else radii,

@@ -11,7 +11,7 @@ import trimesh
 from scipy.spatial import cKDTree
 
 from benchmarks.quality.bench import Bench, Case, file_sha256
-from benchmarks.quality.results import Results
+from benchmarks.quality.results import REPAIRS, Results
 from quadpatch.mesh.distance import distance_to_mesh
 from quadpatch.model_file import shipped_model
 from quadpatch.options import RepairOptions
@@ -61,7 +61,7 @@ def measure(bench: Bench, case: Case, method: Method, results: Results) -> dict[
         error, and centre of each punched hole that got new vertices.
     """
     key = {"mesh": case.shape.name, "radius": case.radius, "sha256": case.shape.sha256, **method.key()}
-    return results.get("repairs", key, lambda: _repair(bench, case, method))
+    return results.get(REPAIRS, key, lambda: _repair(bench, case, method))
 
 
 def repaired_path(case: Case, method: Method) -> Path:

@@ -14,7 +14,7 @@ import numpy as np
 
 from benchmarks.quality.bench import Bench, BenchError, Shape
 from benchmarks.quality.measurement import Method
-from benchmarks.quality.results import Key, Results
+from benchmarks.quality.results import CODINGS, MODELS, Key, Results
 from quadpatch.inpainters.heights import GLOBAL_ATOMS, LOCAL_ATOMS, learn_heights
 from quadpatch.mesh.measures import mean_edge_length
 from quadpatch.model_file import load_model, save_dictionary
@@ -64,7 +64,7 @@ class Learner:
         """Learn from the punched mesh, at the time of the repair."""
         return Method(f"paper-self_{scale.length:.4g}", SELF, _options(scale))
 
-    def reconstruction_error(self, shape: Shape, scale: PatchScale, method: Method) -> float:
+    def coding_error(self, shape: Shape, scale: PatchScale, method: Method) -> float:
         """Mean distance along z between the patches of an undamaged mesh and what their codes say, mesh units."""
         key = {"mesh": shape.name, "sha256": shape.sha256, **method.key()}
 
@@ -77,13 +77,13 @@ class Learner:
             some = slice(None, None, -(-len(heights) // MOST_CODED) or 1)
             return {"error": _coding_error(heights[some], known[some], dictionary)}
 
-        return float(self.results.get("reconstructions", key, compute)["error"])
+        return float(self.results.get(CODINGS, key, compute)["error"])
 
     def _method(self, name: str, shapes: Sequence[Shape], scale: PatchScale, n_atoms: int) -> Method | None:
         label = f"paper-{name}_{n_atoms}_{scale.length:.4g}"
         sources = {shape.name: shape.sha256 for shape in shapes}
         key: Key = {"name": label, "sources_sha256": json.dumps(sources), "seed": SEED}
-        found = self.results.get("models", key, lambda: self._learn(label, key, shapes, (scale, n_atoms)))
+        found = self.results.get(MODELS, key, lambda: self._learn(label, key, shapes, (scale, n_atoms)))
         return Method(label, str(self.folder / found["file"]), _options(scale)) if found["file"] else None
 
     def _learn(self, label: str, key: Key, shapes: Sequence[Shape], how: tuple[PatchScale, int]) -> dict[str, Any]:

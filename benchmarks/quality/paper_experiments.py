@@ -113,7 +113,7 @@ def atoms_experiment(paper: Paper, cases: Sequence[Case], every: Sequence[Shape]
         for n_atoms in ATOMS:
             method = paper.learner.local(case.shape, scale, n_atoms)
             filled[case.shape.name].append(paper.to_fair(case, method))
-            coding = paper.learner.reconstruction_error(case.shape, scale, method) if method else None
+            coding = paper.learner.coding_error(case.shape, scale, method) if method else None
             coded[case.shape.name].append(coding)
     radius = cases[0].radius
     tables = [

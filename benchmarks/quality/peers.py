@@ -12,7 +12,7 @@ import numpy as np
 import pymeshlab
 
 from benchmarks.quality.bench import Bench, Case, Shape
-from benchmarks.quality.results import Results
+from benchmarks.quality.results import PEERS, Results
 from quadpatch.filling.fairing import THIN_PLATE, fair, triangles_around
 from quadpatch.mesh.boundary import boundary_loops
 from quadpatch.mesh.measures import mean_edge_length
@@ -31,7 +31,7 @@ def with_peers(bench: Bench, case: Case, results: Results) -> Case:
     if case.peers:
         return case
     key = {"mesh": case.shape.name, "radius": case.radius, "sha256": case.shape.sha256}
-    found = results.get("peers", key, lambda: _measure(bench, case))
+    found = results.get(PEERS, key, lambda: _measure(bench, case))
     peers = {**case.shape.peers, case.radius: found}
     return Case(Shape(case.shape.name, case.shape.truth, peers), case.radius, case.folder)
 

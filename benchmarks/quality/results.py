@@ -7,20 +7,25 @@ change of the code, ask for fresh results.
 import hashlib
 import json
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
+
+REPAIRS, CODINGS, MODELS, PEERS = "repairs", "codings", "models", "peers"
+# What a change of the method makes stale, and what only a change of the paper's recipe or of the peers does.
+OF_THE_METHOD = (REPAIRS, CODINGS)
+ALL_KINDS = (*OF_THE_METHOD, MODELS, PEERS)
 
 Key = Mapping[str, str | int | float]
 
 
 @dataclass
 class Results:
-    """A folder of results; with `fresh`, those of earlier runs don't count."""
+    """A folder of results; of the kinds that are `fresh`, those of earlier runs don't count."""
 
     folder: Path
-    fresh: bool = False
+    fresh: Collection[str] = ()
     _made: set[Path] = field(default_factory=set)
 
     def get(self, kind: str, key: Key, compute: Callable[[], dict[str, Any]]) -> dict[str, Any]:
@@ -29,14 +34,14 @@ class Results:
         Parameters
         ----------
         kind : str
-            Of measurement: a folder.
+            One of `ALL_KINDS`: a folder.
         key : mapping of str to str or number
             Everything that the result depends on, but the code.
         compute : callable
             Gives the result, JSON-ready.
         """
         path = self.folder / kind / f"{_name(key)}.json"
-        if path.is_file() and (not self.fresh or path in self._made):
+        if path.is_file() and (kind not in self.fresh or path in self._made):
             kept: dict[str, Any] = json.loads(path.read_text())
             return dict(kept["result"])
         result = compute()

@@ -40,7 +40,7 @@ def test_more_atoms_code_the_mesh_that_they_were_learned_from_better(learner: Le
     for n_atoms in (2, 8, 24):
         method = learner.local(hills, scale, n_atoms)
         assert method is not None
-        errors.append(learner.reconstruction_error(hills, scale, method))
+        errors.append(learner.coding_error(hills, scale, method))
     assert errors[0] > 1.5 * errors[1] > 2 * errors[2] > 0
 
 

@@ -21,9 +21,15 @@ def test_another_key_or_kind_is_another_result(tmp_path: Path) -> None:
 
 def test_a_fresh_run_computes_again_but_just_once(tmp_path: Path) -> None:
     Results(tmp_path).get("repairs", KEY, lambda: {"error": 0.5})
-    fresh = Results(tmp_path, fresh=True)
+    fresh = Results(tmp_path, fresh=["repairs"])
     assert fresh.get("repairs", KEY, lambda: {"error": 0.6}) == {"error": 0.6}
     assert fresh.get("repairs", KEY, lambda: {"error": 0.7}) == {"error": 0.6}
+
+
+def test_only_the_kinds_that_are_named_are_fresh(tmp_path: Path) -> None:
+    Results(tmp_path).get("peers", KEY, lambda: {"error": 0.5})
+    fresh = Results(tmp_path, fresh=["repairs"])
+    assert fresh.get("peers", KEY, lambda: {"error": 0.6}) == {"error": 0.5}
 
 
 def test_a_computation_that_fails_leaves_nothing_behind(tmp_path: Path) -> None:
