@@ -22,11 +22,15 @@ from quadpatch.stages import Stages
 from quadpatch.types import TriangleMesh
 
 # From rough to smooth: a noisy or sharp-edged surface is continued best by the first, a smooth one by the last.
-ENERGIES = (THIN_PLATE, *(Energy(plate=1.0, variation=weight) for weight in (0.2, 1.0, 20.0)))
+ENERGIES = (
+    Energy(membrane=0.3, plate=1.0),
+    THIN_PLATE,
+    *(Energy(plate=1.0, variation=weight) for weight in (0.4, 2.0, 40.0)),
+)
 
 # Where the surface has no room for practice: an energy for surfaces neither rough nor smooth, and a mean error as large
 # as the gap.
-UNTRIED_ENERGY = ENERGIES[2]
+UNTRIED_ENERGY = ENERGIES[3]
 ERROR_PER_GAP = 1.0
 
 

@@ -28,6 +28,9 @@ _ENOUGH = 24
 # Surface left between a practice hole and any other rim, in mean edge lengths: what the fairing reads.
 _MARGIN_EDGES = 4.0
 
+# The rim of a cut lies so much outside the disk of vertices that it takes, in mean edge lengths.
+_RIM_EDGES = 0.7
+
 # Shares of the predicted displacement that are tried, and what a share must gain over none to be believed.
 SHARES = (0.0, 0.25, 0.5, 0.75, 1.0)
 _LEAST_GAIN = 0.02
@@ -77,7 +80,8 @@ def practise(mesh: TriangleMesh, diameter: float, edge_length: float, rng: np.ra
     """
     best: tuple[BoolArray, list[IntArray], float] | None = None
     for size in _SIZES:
-        gone = _punch(mesh, size * diameter / 2, _MARGIN_EDGES * edge_length, rng)
+        radius = max(size * diameter / 2 - _RIM_EDGES * edge_length, 0.5 * edge_length)
+        gone = _punch(mesh, radius, _MARGIN_EDGES * edge_length, rng)
         loops = _new_loops(mesh, mesh.triangles[~gone[mesh.triangles].any(axis=1)])
         if len(loops) >= MIN_HOLES and (best is None or len(loops) > len(best[1])):
             best = gone, loops, size * diameter

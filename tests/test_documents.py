@@ -115,7 +115,7 @@ def test_the_numbers_of_the_method_are_those_of_the_code() -> None:
         f"{dictionary.SELF_ATOMS} atoms with {dictionary.SELF_NONZERO} non-zeros "
         f"in {dictionary.SELF_ITERATIONS} rounds",
         f"fewer than {dictionary.MIN_TRAINING_PATCHES} usable patches",
-        "b/a = " + ", ".join(f"{energy.variation / energy.plate:g}" for energy in pipeline.ENERGIES[:-1]),
+        "b/a = " + ", ".join(f"{energy.variation / energy.plate:g}" for energy in pipeline.ENERGIES[1:-1]),
         f"fewer than {practice.MIN_HOLES} practice holes",
         f"{practice.MAX_HOLES} holes of the median diameter",
         "one of " + ", ".join(f"{share:g}" for share in practice.SHARES[:-1]) + f" and {practice.SHARES[-1]:g}",

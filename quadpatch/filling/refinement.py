@@ -14,8 +14,9 @@ from quadpatch.mesh.normals import cross, length, vertex_normals
 from quadpatch.mesh.smoothing import neighbour_average
 from quadpatch.types import BoolArray, FloatArray, IntArray, Triangles, Vertices
 
-# Liepa's density factor: larger gives more vertices. With sqrt(2) the fill has about as many vertices as were lost.
-DENSITY = np.sqrt(2.0)
+# Liepa's density factor: larger gives more vertices. With his sqrt(2) a fill has fewer vertices than were lost (0.55 to
+# 0.8 of them on scans) and an error 1 to 6 % higher; with 2 it has 1.2 to 1.7 times as many. Beyond, little changes.
+DENSITY = 2.0
 
 _MAX_ROUNDS = 24
 _MAX_FLIP_PASSES = 40

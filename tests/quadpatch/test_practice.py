@@ -65,7 +65,7 @@ def test_practice_holes_are_about_as_wide_as_the_real_ones_and_apart() -> None:
     loops = [np.array(loop) for loop in loops_of(practice.closed.mesh) - loops_of(SHEET)]
     widths = [np.ptp(SHEET.vertices[loop, 0]) for loop in loops]
     assert practice.diameter <= DIAMETER
-    assert practice.diameter < np.median(widths) < practice.diameter + 4 * mean_edge_length(SHEET)
+    assert abs(np.median(widths) - practice.diameter) < mean_edge_length(SHEET)
     corners = np.concatenate(loops)
     assert len(np.unique(corners)) == len(corners)
 
@@ -100,10 +100,11 @@ def test_a_smooth_surface_is_continued_by_a_smooth_energy() -> None:
     assert choose_energy(some_practice(sphere(5), diameter=0.5), ENERGIES) != THIN_PLATE
 
 
-def test_a_noisy_surface_is_continued_by_the_thin_plate() -> None:
+def test_a_noisy_surface_is_continued_by_an_energy_that_carries_no_curvature_on() -> None:
     mesh = open_grid(100, 2.0)
     noise = np.random.default_rng(0).normal(0, 0.01, mesh.vertices.shape) * [0, 0, 1]
-    assert choose_energy(some_practice(TriangleMesh(mesh.vertices + noise, mesh.triangles)), ENERGIES) == THIN_PLATE
+    chosen = choose_energy(some_practice(TriangleMesh(mesh.vertices + noise, mesh.triangles)), ENERGIES)
+    assert chosen.variation == 0
 
 
 def test_a_flat_surface_is_filled_without_error() -> None:

