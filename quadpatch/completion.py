@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from quadpatch.expectation import Expectation
 from quadpatch.filling.fill import FilledMesh
 from quadpatch.inpainters.dictionary import learn_from_patches
 from quadpatch.inpainters.inpainter import Inpainter
@@ -12,14 +13,12 @@ from quadpatch.mesh.smoothing import laplacian_smooth
 from quadpatch.options import RepairOptions
 from quadpatch.patches.folding import is_unfolded
 from quadpatch.patches.layout import lay_out, patchify, pick, seeds_near, take
-from quadpatch.patches.scale import PatchScale, choose_scale
+from quadpatch.patches.scale import PatchScale, choose_scale, outline_iterations
 from quadpatch.patches.seeds import Seeds
-from quadpatch.practice import Practice, believed_share, error_per_gap
+from quadpatch.practice import Practice, believed_share, expect
 from quadpatch.reconstruction.displacement import displace, join_at_rim, rim_vertices
 from quadpatch.stages import Stages
-from quadpatch.types import BoolArray, FloatArray, Patches
-
-SMOOTHING_ITERATIONS = 30
+from quadpatch.types import BoolArray, FloatArray, Patches, TriangleMesh
 
 # Believed of a model's displacement where the mesh has no room for practice.
 UNTRIED_SHARE = 0.0
@@ -40,8 +39,8 @@ class Completion:
         Holes that were displaced.
     believed : float
         Share of the displacement that was applied, 0..1, as practice on this mesh advised.
-    error_per_gap : float or None
-        Mean error of practice holes in units of their gap (see `FilledMesh`); None without practice.
+    expectation : Expectation or None
+        How large an error to expect, as practice holes taught; None without practice.
     scale : PatchScale
     n_patches : int
     """
@@ -50,7 +49,7 @@ class Completion:
     evidence: Evidence
     trust: BoolArray
     believed: float
-    error_per_gap: float | None
+    expectation: Expectation | None
     scale: PatchScale
     n_patches: int
 
@@ -115,21 +114,23 @@ def complete(
     model_resolution = inpainter.resolution if inpainter else None
     scale = choose_scale(problem.diameters, problem.edge_length, options.patches, model_resolution)
     with stages.stage("smooth"):
-        outline = laplacian_smooth(filled.mesh, SMOOTHING_ITERATIONS)
+        outline = _outline(filled, scale, problem.edge_length)
     with stages.stage("quadrangulate"):
         seeds = lay_out(outline, scale)
     with stages.stage("patchify"):
         near = seeds_near(seeds, filled.mesh.vertices[filled.n_measured_vertices :], scale.length)
-        wanted = near if inpainter else near | _some(len(near), rng)
+        wanted = near | _some(len(near), rng)
         everywhere = patchify(filled, outline, take(seeds, wanted), scale)
         sampled = pick(everywhere, near[wanted] & is_unfolded(everywhere.patches))
     with stages.stage("learn"):
+        lesson = _without_practice(everywhere.patches, problem)
         if inpainter is None:
-            lesson = _without_practice(everywhere.patches, problem)
-            inpainter = learn_from_patches(lesson, everywhere.outline, rng, stages.progress)
+            inpainter = learn_from_patches(lesson, everywhere.outline)
+        else:
+            inpainter = inpainter.fitted_to(lesson, everywhere.outline)
         if inpainter is None:
             return None
-        believed, per_gap = _rehearse(problem, _Model(inpainter, seeds, scale))
+        believed, expectation = _rehearse(problem, _Model(inpainter, seeds, scale))
     with stages.stage("inpaint"):
         predicted = inpainter.predict(sampled.patches, sampled.outline)
     with stages.stage("reconstruct"):
@@ -137,7 +138,11 @@ def complete(
         trust = trusted(evidence) & (believed > 0)
         new = filled.mesh.vertices[filled.n_measured_vertices :]
         moved = new + believed * np.where(trust[filled.vertex_hole][:, None], joined, 0.0)
-    return Completion(filled.with_vertices(moved), evidence, trust, believed, per_gap, scale, len(sampled.patches))
+    return Completion(filled.with_vertices(moved), evidence, trust, believed, expectation, scale, len(sampled.patches))
+
+
+def _outline(filled: FilledMesh, scale: PatchScale, edge_length: float) -> TriangleMesh:
+    return laplacian_smooth(filled.mesh, outline_iterations(scale.length, edge_length))
 
 
 def _without_practice(patches: Patches, problem: Problem) -> Patches:
@@ -157,12 +162,12 @@ def _some(count: int, rng: np.random.Generator) -> BoolArray:
     return chosen
 
 
-def _rehearse(problem: Problem, model: _Model) -> tuple[float, float | None]:
-    """Complete the practice holes: the share of the displacement to believe, and the error per gap that is left."""
+def _rehearse(problem: Problem, model: _Model) -> tuple[float, Expectation | None]:
+    """Complete the practice holes: the share of the displacement to believe, and the error to expect."""
     filled = problem.practice_filled
     if problem.practice is None or filled is None:
         return UNTRIED_SHARE, None
-    outline = laplacian_smooth(filled.mesh, SMOOTHING_ITERATIONS)
+    outline = _outline(filled, model.scale, problem.edge_length)
     new = filled.mesh.vertices[filled.n_measured_vertices :]
     near = take(model.seeds, seeds_near(model.seeds, new, model.scale.length))
     sampled = patchify(filled, outline, near, model.scale)
@@ -171,7 +176,7 @@ def _rehearse(problem: Problem, model: _Model) -> tuple[float, float | None]:
     joined, evidence = _displacements(filled, sampled.patches, predicted)
     joined = np.where(trusted(evidence)[filled.vertex_hole][:, None], joined, 0.0)
     share = believed_share(problem.practice, filled, joined)
-    return share, error_per_gap(problem.practice, filled.with_vertices(new + share * joined))
+    return share, expect(problem.practice, filled.with_vertices(new + share * joined))
 
 
 def _displacements(filled: FilledMesh, patches: Patches, predicted: FloatArray) -> tuple[FloatArray, Evidence]:

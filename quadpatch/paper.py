@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from quadpatch.completion import SMOOTHING_ITERATIONS, Completion
+from quadpatch.completion import Completion
 from quadpatch.errors import NoQuadsError, OptionError, StageError
 from quadpatch.filling.fairing import Energy
 from quadpatch.filling.fill import FilledMesh, close_flat
@@ -39,6 +39,7 @@ from quadpatch.types import BoolArray, FloatArray, IntArray, Patches, Progress, 
 HOLES_PER_LENGTH = 1.8
 RESOLUTION = 24
 OVERLAP = 2
+SMOOTHING_ITERATIONS = 30
 # Bins much finer than the mesh show its triangles.
 LEAST_EDGES_PER_BIN = 0.5
 

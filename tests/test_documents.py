@@ -18,12 +18,13 @@ from client.exits import MEANINGS
 from jobkit.schema import JobState
 from jobkit.schema.jobs import STAGES
 from jobkit.settings import settings_table
-from quadpatch import completion, judge, paper, pipeline, practice
+from quadpatch import judge, paper, pipeline, practice
 from quadpatch.filling import triangulation
 from quadpatch.inpainters import dictionary, heights
 from quadpatch.mesh import holes
 from quadpatch.patches import scale, sighting
 from quadpatch.report import VERDICTS
+from quadpatch.sparse import gaussian
 from service.problems import to_problem_error
 
 E = TypeVar("E", bound=Exception)
@@ -112,8 +113,8 @@ def test_the_numbers_of_the_method_are_those_of_the_code() -> None:
         f"{scale.RESOLUTION_RANGE[0]} ",
         "r / ({} e), between {} and {} ".format(scale.EDGES_PER_BIN, *scale.RESOLUTION_RANGE),
         f"| overlap k | {scale.OVERLAP}: nine patches",
-        f"{dictionary.SELF_ATOMS} atoms with {dictionary.SELF_NONZERO} non-zeros "
-        f"in {dictionary.SELF_ITERATIONS} rounds",
+        f"the {dictionary.SELF_ATOMS} principal directions",
+        f"σ² = {gaussian.NOISE}",
         f"fewer than {dictionary.MIN_TRAINING_PATCHES} usable patches",
         "b/a = " + ", ".join(f"{energy.variation / energy.plate:g}" for energy in pipeline.ENERGIES[1:-1]),
         f"fewer than {practice.MIN_HOLES} practice holes",
@@ -122,7 +123,9 @@ def test_the_numbers_of_the_method_are_those_of_the_code() -> None:
         f"{100 * judge.LEAST_COVERAGE:g} % of its new vertices",
         f"differ by no more than {judge.MOST_DISAGREEMENT} times",
         f"over {triangulation.MAX_TABLE_SIZE} vertices",
-        f"{completion.SMOOTHING_ITERATIONS} uniform Laplacian iterations",
+        f"2 ({scale.OUTLINE_SHARE} r / e)² uniform Laplacian iterations, "
+        f"between {scale.OUTLINE_ITERATIONS_RANGE[0]} and {scale.OUTLINE_ITERATIONS_RANGE[1]}",
+        f"{paper.SMOOTHING_ITERATIONS} uniform Laplacian iterations",
         f"normal · z > {sighting.LEAST_FACING}",
         f"at the rim over {holes.OUTWARD}",
         f"length {paper.HOLES_PER_LENGTH} d, but at least {paper.LEAST_EDGES_PER_BIN} e · {paper.RESOLUTION} ",

@@ -16,7 +16,7 @@ INTENDED_USE = (
 )
 
 _SIGNALS = {
-    NORMALISATION: "heights over the outline (30 Laplacian iterations), mean removed, divided by their spread",
+    NORMALISATION: "heights over the outline (smooth as patches are wide), mean removed, divided by their spread",
     HEIGHTS: "heights over the plane of the patch, mean removed: the paper's own recipe",
 }
 

@@ -10,7 +10,6 @@ from pathlib import Path
 
 import numpy as np
 
-from quadpatch.completion import SMOOTHING_ITERATIONS
 from quadpatch.errors import NoQuadsError
 from quadpatch.formats.reading import read_scan
 from quadpatch.mesh.measures import mean_edge_length
@@ -18,7 +17,7 @@ from quadpatch.mesh.smoothing import laplacian_smooth
 from quadpatch.mesh.weld import weld
 from quadpatch.patches.folding import is_height_map
 from quadpatch.patches.height_map import sample_height_maps
-from quadpatch.patches.scale import EDGES_PER_BIN
+from quadpatch.patches.scale import EDGES_PER_BIN, outline_iterations
 from quadpatch.patches.seeds import Seeds, seed_points
 from quadpatch.quads.frames import quad_frames
 from quadpatch.quads.mesher import quadrangulate
@@ -122,9 +121,10 @@ def cut_patches(mesh: TriangleMesh, recipe: PatchRecipe, rng: np.random.Generato
     TrainingPatches
         None where the mesh is too small to carry one.
     """
-    outline = laplacian_smooth(mesh, SMOOTHING_ITERATIONS)
-    length = recipe.length or EDGES_PER_BIN * recipe.resolution * mean_edge_length(mesh)
+    edge_length = mean_edge_length(mesh)
+    length = recipe.length or EDGES_PER_BIN * recipe.resolution * edge_length
     try:
+        outline = laplacian_smooth(mesh, outline_iterations(length, edge_length))
         quad_mesh = quadrangulate(outline, length / QUADS_PER_LENGTH)
     except NoQuadsError:
         return TrainingPatches.joined([], recipe.resolution)
@@ -133,12 +133,13 @@ def cut_patches(mesh: TriangleMesh, recipe: PatchRecipe, rng: np.random.Generato
         chosen = np.sort(rng.choice(len(seeds), recipe.max_seeds, replace=False))
         seeds = Seeds(seeds.origins[chosen], seeds.frames[chosen], seeds.quad[chosen])
     cut = []
-    scenes = RayScene(mesh), RayScene(outline)
     nothing_invented = np.zeros(len(mesh.triangles), dtype=np.bool_)
-    for scale in recipe.scales:
+    for side in (scale * length for scale in recipe.scales):
+        # As in a repair, wider patches lie over a smoother outline.
+        outline = laplacian_smooth(mesh, outline_iterations(side, edge_length))
         surface, smooth = (
-            sample_height_maps(scene, m, nothing_invented, seeds, scale * length, recipe.resolution)
-            for scene, m in zip(scenes, (mesh, outline), strict=True)
+            sample_height_maps(RayScene(m), m, nothing_invented, seeds, side, recipe.resolution)
+            for m in (mesh, outline)
         )
         cut.append(_worth_learning(surface, smooth if recipe.with_outline else None))
     return TrainingPatches.joined(cut, recipe.resolution)

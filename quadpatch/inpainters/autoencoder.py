@@ -80,6 +80,10 @@ class AutoencoderInpainter:
         _check_shapes(session, 1 if recipe == "paper" else 2, resolution, path.name)
         return cls(session, resolution, recipe, scale, card)
 
+    def fitted_to(self, patches: Patches, outline: FloatArray) -> "AutoencoderInpainter":
+        """See `Inpainter`; a network stays as it was trained."""
+        return self
+
     def predict(self, patches: Patches, outline: FloatArray) -> FloatArray:
         """See `Inpainter`."""
         if self.scale is not None:

@@ -1,81 +1,96 @@
-"""Completion of patches by sparse coding (section 4 of the paper).
+"""Completion of patches by a dictionary of atoms (section 4 of the paper).
 
-A patch is coded with few atoms, chosen and weighted by its known bins alone (masked orthogonal matching pursuit); the
-code then gives every bin. What is coded is the detail over the smoothed surface, not the height itself: the
-smoothed surface carries the shape, and the atoms are spent on what is worth learning.
+A patch is coded by its known bins alone; the code then gives every bin. What is coded is the detail over the smoothed
+surface, not the height itself: the smoothed surface carries the shape, and the atoms are spent on what is worth
+learning. Atoms come from a model file or are learned from the mesh itself; how much each is used is always learned
+from the mesh, and tells the code how free it is to use it (see `quadpatch.sparse.gaussian`).
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from quadpatch.sparse.dictionary import Dictionary
-from quadpatch.sparse.ksvd import KsvdOptions, masked_ksvd
+from quadpatch.sparse.gaussian import gaussian_codes, principal_atoms
 from quadpatch.sparse.omp import masked_omp
 from quadpatch.sparse.signals import from_signals, to_signals
-from quadpatch.types import FloatArray, Patches, Progress
+from quadpatch.types import BoolArray, FloatArray, Patches
 
-# Self-similar dictionaries: enough atoms for a scan's own texture, few enough to be learned in seconds.
-SELF_ATOMS = 192
-SELF_NONZERO = 12
-SELF_ITERATIONS = 8
-MAX_TRAINING_PATCHES = 2000
+# Self-similar dictionaries.
+SELF_ATOMS = 200
 MIN_TRAINING_PATCHES = 24
 
 # Patches with less known surface than this say nothing about the shape they came from.
 LEAST_KNOWN = 0.5
 
+# Least use of an atom, in standard deviations: one that the mesh hardly uses is not forbidden.
+_LEAST_DEVIATION = 1e-3
+
 
 @dataclass(frozen=True)
 class DictionaryInpainter:
-    """Sparse codes over one dictionary."""
+    """Codes over one dictionary.
+
+    Attributes
+    ----------
+    dictionary : Dictionary
+    deviations : (n_atoms,) float64 or None
+        How much the mesh at hand uses each atom, as a standard deviation over its signals; None where it is not known:
+        then sparse codes are used, which need no such thing.
+    """
 
     dictionary: Dictionary
+    deviations: FloatArray | None = None
 
     @property
     def resolution(self) -> int:
         """Bins along one side of its patches."""
         return self.dictionary.resolution
 
+    def fitted_to(self, patches: Patches, outline: FloatArray) -> "DictionaryInpainter":
+        """See `Inpainter`: learn how much this mesh uses each atom, from sparse codes of its patches."""
+        signals, known = _lessons(patches, outline)
+        if len(signals) < MIN_TRAINING_PATCHES:
+            return self
+        codes = masked_omp(signals, known, self.dictionary.atoms, self.dictionary.n_nonzero)
+        return replace(self, deviations=np.maximum(np.sqrt((codes**2).mean(axis=0)), _LEAST_DEVIATION))
+
     def predict(self, patches: Patches, outline: FloatArray) -> FloatArray:
         """See `Inpainter`."""
         signals, scaling = to_signals(patches.heights - outline, patches.known)
         known = patches.known.reshape(signals.shape)
-        codes = masked_omp(signals, known, self.dictionary.atoms, self.dictionary.n_nonzero)
-        return outline + from_signals(codes @ self.dictionary.atoms.T, scaling)
+        atoms = self.dictionary.atoms
+        if self.deviations is None:
+            completed = masked_omp(signals, known, atoms, self.dictionary.n_nonzero) @ atoms.T
+        else:
+            scaled = atoms * self.deviations
+            completed = gaussian_codes(signals, known, scaled) @ scaled.T
+        return outline + from_signals(completed, scaling)
 
 
-def learn_from_patches(
-    patches: Patches, outline: FloatArray, rng: np.random.Generator, progress: Progress
-) -> DictionaryInpainter | None:
+def learn_from_patches(patches: Patches, outline: FloatArray) -> DictionaryInpainter | None:
     """Learn a dictionary from the known bins of a mesh's own patches.
 
     Parameters
     ----------
     patches : Patches
     outline : (n_patches, N, N) float64
-    rng : numpy.random.Generator
-    progress : callable
 
     Returns
     -------
     DictionaryInpainter or None
         None where too few patches show enough surface to learn anything.
     """
-    usable = np.flatnonzero(patches.known.mean(axis=(1, 2)) >= LEAST_KNOWN)
-    if len(usable) > MAX_TRAINING_PATCHES:
-        usable = np.sort(rng.choice(usable, MAX_TRAINING_PATCHES, replace=False))
-    known = patches.known[usable]
-    signals, scaling = to_signals(patches.heights[usable] - outline[usable], known)
-    textured = scaling.spread > 0
-    if textured.sum() < MIN_TRAINING_PATCHES:
+    signals, known = _lessons(patches, outline)
+    if len(signals) < MIN_TRAINING_PATCHES:
         return None
-    n_atoms = min(SELF_ATOMS, int(textured.sum()) // 3)
-    atoms, _ = masked_ksvd(
-        signals[textured],
-        known.reshape(signals.shape)[textured],
-        KsvdOptions(n_atoms, min(SELF_NONZERO, n_atoms), SELF_ITERATIONS),
-        rng,
-        lambda i, _: progress("learn", (i + 1) / SELF_ITERATIONS),
-    )
-    return DictionaryInpainter(Dictionary(atoms, patches.resolution, min(SELF_NONZERO, n_atoms)))
+    atoms, deviations = principal_atoms(signals, known, SELF_ATOMS)
+    return DictionaryInpainter(Dictionary(atoms, patches.resolution, len(deviations)), deviations)
+
+
+def _lessons(patches: Patches, outline: FloatArray) -> tuple[FloatArray, BoolArray]:
+    """Signals of the patches that show enough surface, and some texture; and their known bins."""
+    usable = patches.known.mean(axis=(1, 2)) >= LEAST_KNOWN
+    signals, scaling = to_signals(patches.heights[usable] - outline[usable], patches.known[usable])
+    textured = scaling.spread > 0
+    return signals[textured], patches.known[usable].reshape(signals.shape)[textured]

@@ -42,6 +42,10 @@ class HeightsInpainter:
         """Bins along one side of its patches."""
         return self.dictionary.resolution
 
+    def fitted_to(self, patches: Patches, outline: FloatArray) -> "HeightsInpainter":
+        """See `Inpainter`; the paper fits nothing."""
+        return self
+
     def predict(self, patches: Patches, outline: FloatArray | None = None) -> FloatArray:
         """Predict every bin from the known ones of its patch; see `Inpainter`. The outline is not looked at."""
         del outline

@@ -13,6 +13,17 @@ class Inpainter(Protocol):
         """Bins along one side of its patches."""
         ...
 
+    def fitted_to(self, patches: Patches, outline: FloatArray) -> "Inpainter":
+        """Fit the model to the mesh at hand, by undamaged surface of it; itself where there is nothing to fit.
+
+        Parameters
+        ----------
+        patches : Patches
+        outline : (n_patches, N, N) float64
+            As for `predict`.
+        """
+        ...
+
     def predict(self, patches: Patches, outline: FloatArray) -> FloatArray:
         """Predict every bin, the known ones too: how well it does there says how far to trust it elsewhere.
 

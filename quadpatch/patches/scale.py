@@ -18,6 +18,12 @@ RESOLUTION_RANGE = (16, 32)
 OVERLAP = 2
 
 
+# The outline carries what is too wide for a patch to show: each of its points is a mean over about this share of the
+# patch length (one standard deviation).
+OUTLINE_SHARE = 0.37
+OUTLINE_ITERATIONS_RANGE = (30, 300)
+
+
 @dataclass(frozen=True)
 class PatchScale:
     """Side of a patch in mesh units, bins along it, and the count k of offsets along each direction."""
@@ -51,3 +57,10 @@ def choose_scale(
     resolution = model_resolution or options.resolution or min(max(wanted, low), high)
     overlap = OVERLAP if options.overlap is None else options.overlap
     return PatchScale(float(length), int(resolution), overlap)
+
+
+def outline_iterations(length: float, edge_length: float) -> int:
+    """Laplacian iterations for the outline under patches of a length; one spreads a point by an edge over sqrt(2)."""
+    wanted = round(2 * (OUTLINE_SHARE * length / edge_length) ** 2)
+    low, high = OUTLINE_ITERATIONS_RANGE
+    return min(max(wanted, low), high)
