@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from quadpatch.expectation import Expectation
 from quadpatch.filling.fill import FilledMesh
 from quadpatch.mesh.holes import Hole, Selection
 from quadpatch.reconstruction.displacement import Displacement
@@ -95,15 +96,17 @@ def trusted(evidence: Evidence) -> BoolArray:
 
 
 def judge(
-    holes: list[Hole], selection: Selection, filled: FilledMesh, completion: "Completion | None", per_gap: float
+    holes: list[Hole],
+    selection: Selection,
+    filled: FilledMesh,
+    completion: "Completion | None",
+    expectation: Expectation,
 ) -> list[HoleResult]:
-    """Say of every hole what became of it, in the order of their ids.
-
-    `per_gap` is the mean error of a fill in units of its gap to the thin plate.
-    """
+    """Say of every hole what became of it, in the order of their ids."""
     position = {hole.id: i for i, hole in enumerate(selection.chosen)}
     n_vertices = np.bincount(filled.vertex_hole, minlength=len(position))
     n_triangles = np.bincount(filled.triangle_hole, minlength=len(position))
+    expected_errors = expectation.errors(filled, [hole.diameter for hole in selection.chosen])
     results = []
     for hole in holes:
         if hole.id in selection.skipped:
@@ -114,7 +117,7 @@ def judge(
             why = "every triangulation of the rim would give an existing edge a third face"
             results.append(HoleResult(hole, "refused", "no_triangulation", why))
             continue
-        expected = float(per_gap * filled.gap[i])
+        expected = float(expected_errors[i])
         verdict, code, reason = _verdict(i, int(n_vertices[i]), completion)
         results.append(
             HoleResult(
@@ -140,7 +143,7 @@ def _verdict(i: int, n_new_vertices: int, completion: "Completion | None") -> tu
     coverage = completion.evidence.coverage[i]
     reasons = (
         (not n_new_vertices, "no_new_vertex", "so small that its rim alone spans it: there is nothing to displace"),
-        (completion.error_per_gap is None, "no_practice", "too little undamaged surface to try the model on"),
+        (completion.expectation is None, "no_practice", "too little undamaged surface to try the model on"),
         (completion.believed == 0, "no_gain", "practice on this mesh showed no gain over the geometric fill"),
         (
             coverage < LEAST_COVERAGE,
@@ -153,7 +156,7 @@ def _verdict(i: int, n_new_vertices: int, completion: "Completion | None") -> tu
 
 
 def _measures(i: int, filled: FilledMesh, completion: "Completion | None") -> dict[str, float]:
-    measures = {"gap": float(filled.gap[i])}
+    measures = {"gap": float(filled.gap[i]), "rim_turn": float(filled.rim_turn[i])}
     if completion is not None:
         evidence = completion.evidence
         for name in ("coverage", "spread", "departure", "rim_misfit"):

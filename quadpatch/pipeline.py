@@ -10,6 +10,7 @@ import numpy as np
 
 from quadpatch.completion import Completion, Problem, complete
 from quadpatch.errors import NoQuadsError
+from quadpatch.expectation import UNTRIED, Expectation
 from quadpatch.filling.fairing import THIN_PLATE, Energy
 from quadpatch.filling.fill import FilledMesh, close_holes, fair_holes
 from quadpatch.inpainters.inpainter import Inpainter
@@ -17,7 +18,7 @@ from quadpatch.judge import HoleResult, judge
 from quadpatch.mesh.holes import Hole, find_holes, select_holes
 from quadpatch.mesh.measures import diagonal, mean_edge_length
 from quadpatch.options import RepairOptions
-from quadpatch.practice import choose_energy, error_per_gap, practise
+from quadpatch.practice import choose_energy, expect, practise
 from quadpatch.stages import Stages
 from quadpatch.types import TriangleMesh
 
@@ -28,10 +29,8 @@ ENERGIES = (
     *(Energy(plate=1.0, variation=weight) for weight in (0.4, 2.0, 40.0)),
 )
 
-# Where the surface has no room for practice: an energy for surfaces neither rough nor smooth, and a mean error as large
-# as the gap.
+# Where the surface has no room for practice: an energy for surfaces neither rough nor smooth.
 UNTRIED_ENERGY = ENERGIES[3]
-ERROR_PER_GAP = 1.0
 
 
 @dataclass(frozen=True)
@@ -97,7 +96,7 @@ def inpaint(
         holes = find_holes(mesh)
         selection = select_holes(holes, options.holes, diagonal(mesh))
     with stages.stage("fill"):
-        problem, energy, per_gap = _fill(mesh, selection.chosen, rng)
+        problem, energy, expectation = _fill(mesh, selection.chosen, rng)
     completion, warnings = None, []
     if (inpainter is not None or learn) and len(problem.filled.vertex_hole):
         try:
@@ -107,22 +106,22 @@ def inpaint(
         except NoQuadsError as error:
             warnings.append(f"{error}; the holes were filled by geometry alone")
     with stages.stage("judge"):
-        if completion and completion.error_per_gap is not None:
-            per_gap = completion.error_per_gap
-        results = judge(holes, selection, problem.filled, completion, per_gap)
+        if completion and completion.expectation is not None:
+            expectation = completion.expectation
+        results = judge(holes, selection, problem.filled, completion, expectation)
     filled = completion.filled if completion else problem.filled
     return Repair(filled, selection.chosen, results, energy, completion, warnings)
 
 
-def _fill(mesh: TriangleMesh, chosen: list[Hole], rng: np.random.Generator) -> tuple[Problem, Energy, float]:
-    """Fill the holes by the energy that suits this surface; also that energy and its mean error per gap."""
+def _fill(mesh: TriangleMesh, chosen: list[Hole], rng: np.random.Generator) -> tuple[Problem, Energy, Expectation]:
+    """Fill the holes by the energy that suits this surface; also that energy and the error to expect of it."""
     edge = mean_edge_length(mesh)
     diameters = [hole.diameter for hole in chosen]
-    energy, per_gap, filled_again = UNTRIED_ENERGY, ERROR_PER_GAP, None
+    energy, expectation, filled_again = UNTRIED_ENERGY, UNTRIED, None
     practice = practise(mesh, float(np.median(diameters)), edge, rng) if chosen else None
     if practice is not None:
         energy = choose_energy(practice, ENERGIES)
         filled_again = fair_holes(practice.closed, energy)
-        per_gap = error_per_gap(practice, filled_again)
+        expectation = expect(practice, filled_again)
     filled = fair_holes(close_holes(mesh, [hole.loop for hole in chosen]), energy)
-    return Problem(filled, diameters, edge, practice, filled_again), energy, per_gap
+    return Problem(filled, diameters, edge, practice, filled_again), energy, expectation

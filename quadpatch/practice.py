@@ -11,10 +11,12 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
+from quadpatch.expectation import Expectation, learn_expectation
 from quadpatch.filling.fairing import Energy, triangles_around
 from quadpatch.filling.fill import ClosedMesh, FilledMesh, close_holes, fair_holes
 from quadpatch.mesh.boundary import boundary_edge_mask, boundary_loops, directed_edges
 from quadpatch.mesh.distance import distance_to_mesh
+from quadpatch.mesh.holes import loop_diameter
 from quadpatch.mesh.normals import vertex_normals
 from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Triangles, Vertices
 
@@ -50,7 +52,9 @@ class Practice:
         Triangles of the mesh that practice holes took.
     closed : ClosedMesh
     diameter : float
-        Of the practice holes, in mesh units.
+        That the practice holes were meant to have, in mesh units.
+    diameters : (n_holes,) float64
+        That their rims have.
     """
 
     truth: TriangleMesh
@@ -58,6 +62,7 @@ class Practice:
     cut_away: BoolArray
     closed: ClosedMesh
     diameter: float
+    diameters: FloatArray
 
 
 def practise(mesh: TriangleMesh, diameter: float, edge_length: float, rng: np.random.Generator) -> Practice | None:
@@ -94,7 +99,8 @@ def practise(mesh: TriangleMesh, diameter: float, edge_length: float, rng: np.ra
     around = triangles_around(mesh.triangles, np.flatnonzero(gone), len(mesh.vertices), 2)
     truth = TriangleMesh(mesh.vertices, mesh.triangles[around])
     punched = TriangleMesh(mesh.vertices, mesh.triangles[~cut_away])
-    return Practice(truth, mesh.vertices[gone], cut_away, close_holes(punched, loops), used)
+    diameters = np.array([loop_diameter(mesh.vertices[loop]) for loop in loops])
+    return Practice(truth, mesh.vertices[gone], cut_away, close_holes(punched, loops), used, diameters)
 
 
 def choose_energy(practice: Practice, energies: Sequence[Energy]) -> Energy:
@@ -124,23 +130,27 @@ def error_per_hole(practice: Practice, filled: FilledMesh) -> FloatArray:
     (n_holes,) float64
         Mean distance, in mesh units.
     """
-    n_holes = len(filled.gap)
+    vertices = filled.mesh.vertices
+    new = filled.mesh.triangles[filled.n_measured_triangles :]
+    # Every removed vertex belongs to the hole whose new surface is nearest.
+    centroids = vertices[new].mean(axis=1)
+    nearest = filled.triangle_hole[cKDTree(centroids).query(practice.removed)[1]]
+    back = _mean_by(nearest, distance_to_mesh(practice.removed, TriangleMesh(vertices, new)), len(filled.gap))
+    return 0.5 * (distance_per_hole(practice, filled) + back)
+
+
+def distance_per_hole(practice: Practice, filled: FilledMesh) -> FloatArray:
+    """Mean distance (n_holes,) of each practice hole's new vertices and triangle centroids to the true surface."""
     vertices = filled.mesh.vertices
     new = filled.mesh.triangles[filled.n_measured_triangles :]
     points = np.concatenate([vertices[filled.n_measured_vertices :], vertices[new].mean(axis=1)])
     hole = np.concatenate([filled.vertex_hole, filled.triangle_hole])
-    there = _mean_by(hole, distance_to_mesh(points, practice.truth), n_holes)
-    # Every removed vertex belongs to the hole whose new surface is nearest.
-    centroids = vertices[new].mean(axis=1)
-    nearest = filled.triangle_hole[cKDTree(centroids).query(practice.removed)[1]]
-    back = _mean_by(nearest, distance_to_mesh(practice.removed, TriangleMesh(vertices, new)), n_holes)
-    return 0.5 * (there + back)
+    return _mean_by(hole, distance_to_mesh(points, practice.truth), len(filled.gap))
 
 
-def error_per_gap(practice: Practice, filled: FilledMesh) -> float:
-    """Mean error of the practice holes in units of their gap (see `FilledMesh`)."""
-    total = float(filled.gap.sum())
-    return float(error_per_hole(practice, filled).sum()) / total if total > 0 else 0.0
+def expect(practice: Practice, filled: FilledMesh) -> Expectation:
+    """Learn from the practice holes, filled like the real ones, how large an error to expect."""
+    return learn_expectation(filled, practice.diameters, distance_per_hole(practice, filled))
 
 
 def _mean_by(group: IntArray, values: FloatArray, n_groups: int) -> FloatArray:

@@ -11,13 +11,16 @@ from quadpatch.filling.fairing import THIN_PLATE, Energy, fair, triangles_around
 from quadpatch.filling.refinement import Refined, refine, relax
 from quadpatch.filling.triangulation import EdgeSet, triangulate_loops
 from quadpatch.mesh.boundary import directed_edges
-from quadpatch.mesh.normals import triangle_normals
+from quadpatch.mesh.normals import triangle_normals, vertex_normals
 from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Triangles
 
 # The minimum variation surface asks for the Laplacian at the rim and at one ring of vertices outside it, and that for
 # all triangles around these.
 _RINGS = 2
 
+
+# What the thin plate is compared with to see how far two sensible answers lie apart.
+SECOND_OPINION = Energy(plate=1.0, variation=0.4)
 
 # Fill and thin plate of one hole further apart than this share of its width: something ran away.
 RUNAWAY_SHARE = 0.2
@@ -34,9 +37,8 @@ class FilledMesh:
     triangle_hole : (n_invented_triangles,) int64
         Position in the list of loops of every invented triangle's hole.
     vertex_hole : (n_invented_vertices,) int64
-    gap : (n_loops,) float64
-        Mean distance between this fill and the thin plate through the same rim, in mesh units: how far two
-        sensible answers lie apart is how uncertain the hole is.
+    gap, rim_turn : (n_loops,) float64
+        See `ClosedMesh`.
     unfilled : list of int
         Positions of loops that could not be closed without giving an edge a third face.
     """
@@ -47,6 +49,7 @@ class FilledMesh:
     triangle_hole: IntArray
     vertex_hole: IntArray
     gap: FloatArray
+    rim_turn: FloatArray
     unfilled: list[int]
 
     @property
@@ -81,7 +84,12 @@ class ClosedMesh:
         Input triangles next to a hole, in local vertices.
     plate : Refined
         The thin plate, in local vertices and coordinates.
-    n_holes : int
+    gap : (n_holes,) float64
+        Mean distance between the plate and a slightly smoother surface, in mesh units: how far two sensible answers lie
+        apart says how uncertain a hole is.
+    rim_turn : (n_holes,) float64
+        Mean length of the difference between the unit normals of neighbouring rim vertices: how rough or bent the
+        surface is there.
     unfilled : list of int
     """
 
@@ -90,8 +98,14 @@ class ClosedMesh:
     centre: FloatArray
     around: Triangles
     plate: Refined
-    n_holes: int
+    gap: FloatArray
+    rim_turn: FloatArray
     unfilled: list[int]
+
+    @property
+    def n_holes(self) -> int:
+        """Number of loops."""
+        return len(self.gap)
 
 
 def close_holes(mesh: TriangleMesh, loops: list[IntArray]) -> ClosedMesh:
@@ -109,7 +123,9 @@ def close_holes(mesh: TriangleMesh, loops: list[IntArray]) -> ClosedMesh:
     patch = _faired(patch, near.around, THIN_PLATE, uniform=True)
     patch = relax(refine(patch, near.taken), near.around, near.taken)
     plate = _faired(patch, near.around, THIN_PLATE)
-    return ClosedMesh(mesh, near.used, near.centre, near.around, plate, len(loops), unfilled)
+    apart = _apart(_faired(plate, near.around, SECOND_OPINION), plate)
+    gap = _mean_by_hole(plate, apart, len(loops))
+    return ClosedMesh(mesh, near.used, near.centre, near.around, plate, gap, _rim_turn(near), unfilled)
 
 
 def close_flat(mesh: TriangleMesh, loops: list[IntArray]) -> FilledMesh:
@@ -126,12 +142,12 @@ def close_flat(mesh: TriangleMesh, loops: list[IntArray]) -> FilledMesh:
     Returns
     -------
     FilledMesh
-        Its gap is NaN: there is no plate to be apart from.
+        Its gap and rim turn are NaN: nothing is known of its error.
     """
     near = _surroundings(mesh, loops)
     patch, unfilled = _close(near.vertices, near.around, near.loops, near.taken)
-    closed = ClosedMesh(mesh, near.used, near.centre, near.around, patch, len(loops), unfilled)
-    return _appended(closed, patch, np.full(len(loops), np.nan))
+    unknown = np.full(len(loops), np.nan)
+    return _appended(ClosedMesh(mesh, near.used, near.centre, near.around, patch, unknown, unknown, unfilled), patch)
 
 
 def fair_holes(closed: ClosedMesh, energy: Energy) -> FilledMesh:
@@ -142,8 +158,7 @@ def fair_holes(closed: ClosedMesh, energy: Energy) -> FilledMesh:
     FilledMesh
         The input's vertices and triangles are its bit-exact prefix.
     """
-    patch, gap = _fair_patch(closed.plate, closed.around, energy, closed.n_holes)
-    return _appended(closed, patch, gap)
+    return _appended(closed, _fair_patch(closed, energy))
 
 
 @dataclass(frozen=True)
@@ -171,7 +186,7 @@ def _surroundings(mesh: TriangleMesh, loops: list[IntArray]) -> _Surroundings:
     )
 
 
-def _appended(closed: ClosedMesh, patch: Refined, gap: FloatArray) -> FilledMesh:
+def _appended(closed: ClosedMesh, patch: Refined) -> FilledMesh:
     """Put a fill in local vertices behind the mesh's own."""
     mesh, n_local = closed.mesh, len(closed.used)
     n_input = len(mesh.vertices)
@@ -186,7 +201,8 @@ def _appended(closed: ClosedMesh, patch: Refined, gap: FloatArray) -> FilledMesh
         len(mesh.triangles),
         patch.hole,
         vertex_hole[n_local:],
-        gap,
+        closed.gap,
+        closed.rim_turn,
         closed.unfilled,
     )
 
@@ -218,23 +234,45 @@ def _rim_normals(vertices: FloatArray, around: Triangles, loops: list[IntArray])
     return found
 
 
-def _fair_patch(plate: Refined, around: Triangles, energy: Energy, n_holes: int) -> tuple[Refined, FloatArray]:
-    """Fair twice, since the weights depend on the shape; give back the gap to the plate as well."""
+def _rim_turn(near: _Surroundings) -> FloatArray:
+    normals = vertex_normals(near.vertices, near.around)
+    turns = [np.linalg.norm(normals[loop] - normals[np.roll(loop, -1)], axis=1).mean() for loop in near.loops]
+    return np.array(turns, np.float64)
+
+
+def _fair_patch(closed: ClosedMesh, energy: Energy) -> Refined:
+    """Fair twice, since the weights depend on the shape."""
+    plate, around, n_holes = closed.plate, closed.around, closed.n_holes
     faired = _faired(_faired(plate, around, energy), around, energy)
-    apart = np.linalg.norm(faired.vertices - plate.vertices, axis=1)
-    hole = np.full(len(plate.vertices), -1)
-    hole[plate.triangles] = plate.hole[:, None]
-    hole[: plate.n_measured] = -1
+    hole = _hole_of_new(plate)
     new = hole >= 0
     furthest = np.zeros(n_holes)
-    np.maximum.at(furthest, hole[new], apart[new])
+    np.maximum.at(furthest, hole[new], _apart(faired, plate)[new])
     # Curvature carried on from a ragged rim can run away; such a hole takes the thin plate.
     runaway = furthest > RUNAWAY_SHARE * _hole_widths(plate, n_holes)
     vertices = np.where((new & runaway[hole])[:, None], plate.vertices, faired.vertices)
-    gap = np.bincount(hole[new], apart[new], minlength=n_holes) / np.maximum(
-        np.bincount(hole[new], minlength=n_holes), 1
-    )
-    return replace(faired, vertices=vertices), gap
+    return replace(faired, vertices=vertices)
+
+
+def _apart(one: Refined, other: Refined) -> FloatArray:
+    """Distance (n,) between the places of every vertex."""
+    return np.asarray(np.linalg.norm(one.vertices - other.vertices, axis=1))
+
+
+def _hole_of_new(patch: Refined) -> IntArray:
+    """Hole (n,) of every new vertex, -1 for measured ones."""
+    hole = np.full(len(patch.vertices), -1)
+    hole[patch.triangles] = patch.hole[:, None]
+    hole[: patch.n_measured] = -1
+    return hole
+
+
+def _mean_by_hole(patch: Refined, values: FloatArray, n_holes: int) -> FloatArray:
+    """Mean (n_holes,) of values (n,) over the new vertices of each hole; 0 without any."""
+    hole = _hole_of_new(patch)
+    new = hole >= 0
+    total = np.bincount(hole[new], values[new], minlength=n_holes)
+    return np.asarray(total / np.maximum(np.bincount(hole[new], minlength=n_holes), 1))
 
 
 def _hole_widths(patch: Refined, n_holes: int) -> FloatArray:

@@ -110,7 +110,7 @@ def find_holes(mesh: TriangleMesh) -> list[Hole]:
     measured.sort(key=lambda item: -item[0])
     holes, seen = [], set()
     for i, (perimeter, loop, points, is_manifold) in enumerate(measured):
-        diameter, its_piece = _diameter(points), int(piece[loop[0]])
+        diameter, its_piece = loop_diameter(points), int(piece[loop[0]])
         is_border = its_piece not in seen and diameter > BORDER_SHARE * piece_diagonals[its_piece]
         is_border |= _outwardness(points, normals[loop].mean(axis=0)) > OUTWARD
         seen.add(its_piece)
@@ -183,7 +183,8 @@ def _too_many(hole: Hole) -> str:
     return f"a fill as dense as its rim takes about {hole.n_expected_vertices} new vertices, over {MAX_NEW_VERTICES}"
 
 
-def _diameter(points: Vertices) -> float:
+def loop_diameter(points: Vertices) -> float:
+    """Measure the largest distance between two of the points (n, 3)."""
     if len(points) > _SMALL_LOOP:
         points = _extremes(points)
     # In pieces: a loop on a ball has every vertex on its hull, and all pairs of a long one would fill the memory.

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from quadpatch.completion import Completion
+from quadpatch.expectation import Expectation
 from quadpatch.filling.fairing import THIN_PLATE
 from quadpatch.filling.fill import FilledMesh, close_holes, fair_holes
 from quadpatch.judge import LEAST_COVERAGE, MOST_DISAGREEMENT, Evidence, confidence, gather, judge, trusted
@@ -34,10 +35,13 @@ class Says:
         return Evidence(*(np.array(getattr(self, name)) for name in ("coverage", "spread", "departure", "rim_misfit")))
 
 
-def completion(says: Says, believed: float = 1.0, error_per_gap: float | None = 0.5) -> Completion:
+EXPECTATION = Expectation(0.3, 0.7)
+
+
+def completion(says: Says, believed: float = 1.0, expectation: Expectation | None = EXPECTATION) -> Completion:
     evidence = says.evidence()
     trust = trusted(evidence) & (believed > 0)
-    return Completion(FILLED, evidence, trust, believed, error_per_gap, PatchScale(0.5, 24, 2), 100)
+    return Completion(FILLED, evidence, trust, believed, expectation, PatchScale(0.5, 24, 2), 100)
 
 
 @pytest.mark.parametrize(
@@ -60,13 +64,13 @@ def test_a_model_may_complete_what_its_patches_cover_and_agree_about(says: Says,
         (None, ["geometry"] * 3),
         (completion(Says()), ["", "", ""]),
         (completion(Says(), believed=0.0), ["no_gain"] * 3),
-        (completion(Says(), believed=0.0, error_per_gap=None), ["no_practice"] * 3),
+        (completion(Says(), believed=0.0, expectation=None), ["no_practice"] * 3),
         (completion(Says(coverage=(1.0, 0.2, 1.0))), ["", "no_height_map", ""]),
         (completion(Says(spread=(1.0, 0.0, 0.0))), ["patches_disagree", "", ""]),
     ],
 )
 def test_every_hole_says_why_it_was_not_filled_by_the_model(done: Completion | None, expected: list[str]) -> None:
-    results = judge(HOLES, SELECTION, FILLED, done, 0.5)
+    results = judge(HOLES, SELECTION, FILLED, done, EXPECTATION)
     assert [result.hole.id for result in results] == [0, 1, 2, 3]
     assert (results[0].verdict, results[0].code) == ("skipped", "border")
     assert [result.code for result in results[1:]] == expected
@@ -76,27 +80,28 @@ def test_every_hole_says_why_it_was_not_filled_by_the_model(done: Completion | N
 
 
 def test_the_share_that_patches_see_is_told() -> None:
-    results = judge(HOLES, SELECTION, FILLED, completion(Says(coverage=(0.254, 1.0, 1.0))), 0.5)
+    results = judge(HOLES, SELECTION, FILLED, completion(Says(coverage=(0.254, 1.0, 1.0))), EXPECTATION)
     assert "only 25 %" in results[1].reason
 
 
-def test_expected_errors_follow_the_gap_and_confidence_the_error() -> None:
-    results = judge(HOLES, SELECTION, FILLED, None, 0.3)
-    for i, result in enumerate(results[1:]):
-        assert result.expected_error == pytest.approx(0.3 * FILLED.gap[i])
-        assert result.confidence == pytest.approx(np.exp(-10 * 0.3 * FILLED.gap[i] / result.hole.diameter))
-        assert result.measures["gap"] == FILLED.gap[i]
+def test_expected_errors_are_those_of_the_expectation_and_confidence_follows_them() -> None:
+    errors = EXPECTATION.errors(FILLED, [hole.diameter for hole in SELECTION.chosen])
+    assert (errors > 0).all()
+    for i, result in enumerate(judge(HOLES, SELECTION, FILLED, None, EXPECTATION)[1:]):
+        assert result.expected_error == errors[i]
+        assert result.confidence == pytest.approx(np.exp(-10 * errors[i] / result.hole.diameter))
+        assert (result.measures["gap"], result.measures["rim_turn"]) == (FILLED.gap[i], FILLED.rim_turn[i])
 
 
 def test_new_vertices_and_triangles_are_counted_by_hole() -> None:
-    results = judge(HOLES, SELECTION, FILLED, None, 1.0)
+    results = judge(HOLES, SELECTION, FILLED, None, EXPECTATION)
     assert [result.n_new_vertices for result in results] == [0, *np.bincount(FILLED.vertex_hole).tolist()]
     assert [result.n_new_triangles for result in results] == [0, *np.bincount(FILLED.triangle_hole).tolist()]
 
 
 def test_a_hole_that_could_not_be_closed_is_refused() -> None:
     values: dict[str, Any] = {**FILLED.__dict__, "unfilled": [1]}
-    results = judge(HOLES, SELECTION, FilledMesh(**values), None, 1.0)
+    results = judge(HOLES, SELECTION, FilledMesh(**values), None, EXPECTATION)
     assert [result.verdict for result in results] == ["skipped", "filled_smooth", "refused", "filled_smooth"]
     refused = results[2]
     assert refused.code == "no_triangulation"
@@ -107,7 +112,7 @@ def test_a_hole_that_could_not_be_closed_is_refused() -> None:
 def test_nothing_chosen_is_judged_too() -> None:
     nothing = fair_holes(close_holes(MESH, []), THIN_PLATE)
     selection = Selection([], {hole.id: ("not_chosen", "not among the chosen ids") for hole in HOLES})
-    assert {result.verdict for result in judge(HOLES, selection, nothing, None, 1.0)} == {"skipped"}
+    assert {result.verdict for result in judge(HOLES, selection, nothing, None, EXPECTATION)} == {"skipped"}
 
 
 @pytest.mark.parametrize(

@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -12,8 +14,9 @@ from quadpatch.practice import (
     Practice,
     believed_share,
     choose_energy,
-    error_per_gap,
+    distance_per_hole,
     error_per_hole,
+    expect,
     practise,
 )
 from quadpatch.raycast import RayScene
@@ -128,11 +131,31 @@ def test_the_error_is_the_distance_to_what_was_cut_away() -> None:
     assert np.delete(errors, 3).max() < 1e-9
 
 
-def test_the_error_per_gap_says_how_far_a_fill_is_off_in_units_of_its_uncertainty() -> None:
+def test_the_distance_of_a_fill_looks_one_way_only() -> None:
+    practice = some_practice(FLAT)
+    filled = fair_holes(practice.closed, THIN_PLATE)
+    lift = 0.001 * (filled.vertex_hole == 3)[:, None] * np.array([0, 0, 1])
+    lifted = filled.with_vertices(new_vertices(filled) + lift)
+    distance = distance_per_hole(practice, lifted)
+    assert 0.0007 < distance[3] <= 0.001 + 1e-9
+    assert np.delete(distance, 3).max() < 1e-9
+    elsewhere = replace(practice, removed=practice.removed + np.array([0.0, 0, 1]))
+    assert (distance_per_hole(elsewhere, lifted) == distance).all()
+    assert error_per_hole(elsewhere, lifted).min() > 0.4
+
+
+def test_every_practice_hole_is_as_wide_as_its_rim() -> None:
+    practice = some_practice(SHEET)
+    loops = [np.array(loop) for loop in loops_of(practice.closed.mesh) - loops_of(SHEET)]
+    widths = [np.linalg.norm(SHEET.vertices[loop][:, None] - SHEET.vertices[loop], axis=2).max() for loop in loops]
+    np.testing.assert_allclose(np.sort(practice.diameters), np.sort(widths))
+
+
+def test_what_is_expected_of_the_practice_holes_is_their_mean_distance() -> None:
     practice = some_practice(RELIEF)
     filled = fair_holes(practice.closed, ENERGIES[1])
-    expected = error_per_hole(practice, filled).sum() / filled.gap.sum()
-    assert error_per_gap(practice, filled) == pytest.approx(expected)
+    expected = expect(practice, filled).errors(filled, practice.diameters)
+    assert expected.sum() == pytest.approx(distance_per_hole(practice, filled).sum())
 
 
 @pytest.fixture(scope="module")

@@ -3,8 +3,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from quadpatch.filling.fairing import THIN_PLATE, Energy
-from quadpatch.filling.fill import FilledMesh, close_flat, close_holes, fair_holes
+from quadpatch.filling.fairing import THIN_PLATE, Energy, fair
+from quadpatch.filling.fill import SECOND_OPINION, FilledMesh, close_flat, close_holes, fair_holes
 from quadpatch.mesh.boundary import boundary_loops
 from quadpatch.types import FloatArray, IntArray, TriangleMesh, Triangles
 from tests.quadpatch.shapes import (
@@ -229,15 +229,43 @@ def test_the_missing_cap_of_a_sphere_comes_back() -> None:
     assert smooth.mean() < 0.25 * plate.mean()
 
 
-def test_the_gap_is_the_mean_distance_to_the_thin_plate() -> None:
+def test_the_gap_is_the_mean_distance_between_the_thin_plate_and_a_second_opinion_whatever_was_chosen() -> None:
     mesh = CLOSED["sphere"]
     closed = close_holes(mesh, all_loops(mesh))
-    smooth = fair_holes(closed, SMOOTH)
-    plate = closed.plate.vertices[len(closed.used) :] + closed.centre
-    apart = np.linalg.norm(smooth.mesh.vertices[smooth.n_measured_vertices :] - plate, axis=1)
-    expected = [apart[smooth.vertex_hole == i].mean() for i in range(3)]
-    np.testing.assert_allclose(smooth.gap, expected, rtol=1e-9)
-    assert (smooth.gap > 0).all()
+    plate = closed.plate
+    second = fair(plate.vertices, np.concatenate([closed.around, plate.triangles]), plate.is_new, SECOND_OPINION)
+    apart = np.linalg.norm(second - plate.vertices, axis=1)[len(closed.used) :]
+    for energy in (SMOOTH, THIN_PLATE):
+        result = fair_holes(closed, energy)
+        expected = [apart[result.vertex_hole == i].mean() for i in range(3)]
+        np.testing.assert_allclose(result.gap, expected, rtol=1e-9)
+        assert (result.gap > 0).all()
+
+
+def test_the_rim_turns_by_the_angle_between_neighbouring_normals() -> None:
+    ball = CLOSED["sphere"]
+    loops = all_loops(ball)
+    turn = filled(ball, loops, THIN_PLATE).rim_turn
+    for found, loop in zip(turn, loops, strict=True):
+        # On a unit sphere normals are as far apart as the vertices themselves.
+        rim = ball.vertices[loop]
+        assert found == pytest.approx(np.linalg.norm(rim - np.roll(rim, 1, axis=0), axis=1).mean(), rel=0.2)
+    flat = punched(open_grid(21, 2.0), (0, 0, 0), radius=0.3)
+    assert filled(flat, short_loops(flat), THIN_PLATE).rim_turn.max() < 1e-12
+
+
+def test_a_rough_rim_shows_in_the_signs_of_its_own_hole_only() -> None:
+    mesh = punched(bumpy_plate(40, 2.0), (0, 0, 0), (0.6, 0.6, 0), radius=0.2)
+    loops = short_loops(mesh)
+    rough = mesh.vertices.copy()
+    near = np.linalg.norm(rough - mesh.vertices[loops[0]].mean(axis=0), axis=1) < 0.3
+    rough[near, 2] += np.random.default_rng(0).normal(0, 0.01, int(near.sum()))
+    calm, ragged = (filled(one, loops, THIN_PLATE) for one in (mesh, TriangleMesh(rough, mesh.triangles)))
+    assert ragged.rim_turn[0] > 2 * calm.rim_turn[0]
+    assert ragged.gap[0] > 2 * calm.gap[0]
+    assert ragged.rim_turn[1] == calm.rim_turn[1]
+    # Energies have no unit: their weights go by the mean area of all new vertices.
+    assert ragged.gap[1] == pytest.approx(calm.gap[1], rel=0.01)
 
 
 def test_a_fill_that_runs_away_from_a_ragged_rim_is_held_by_the_thin_plate() -> None:
@@ -254,7 +282,6 @@ def test_a_fill_that_runs_away_from_a_ragged_rim_is_held_by_the_thin_plate() -> 
     is_plate = (result.mesh.vertices[result.n_measured_vertices :] == plate).all(axis=1)
     assert is_plate[result.vertex_hole == 0].all()
     assert not is_plate[result.vertex_hole == 1].any()
-    # What it would have been stays visible as the uncertainty of the hole.
     assert result.gap[0] > 10 * result.gap[1]
 
 
@@ -339,6 +366,7 @@ def test_a_flat_closing_leaves_new_vertices_on_the_triangles_that_span_the_rim()
     assert new[:, 2].max() <= rim[:, 2].max()
     assert new[:, 2].min() >= rim[:, 2].min()
     assert np.isnan(result.gap).all()
+    assert np.isnan(result.rim_turn).all()
 
 
 def test_a_flat_closing_of_a_flat_hole_is_flat_and_as_dense_as_what_was_lost() -> None:

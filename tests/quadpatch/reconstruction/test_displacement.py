@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -132,15 +134,7 @@ def test_displacements_turn_with_the_mesh() -> None:
     here = fair_holes(close_holes(plate, [loop]), THIN_PLATE)
     rotation = random_rotation(np.random.default_rng(3))
     turned = TriangleMesh(here.mesh.vertices @ rotation.T, here.mesh.triangles)
-    there = FilledMesh(
-        turned,
-        here.n_measured_vertices,
-        here.n_measured_triangles,
-        here.triangle_hole,
-        here.vertex_hole,
-        here.gap,
-        here.unfilled,
-    )
+    there = replace(here, mesh=turned)
     seeds = places(0.3)
     patches = patches_over(here, seeds)
     moved = patches_over(there, seeds @ rotation.T, np.tile(rotation.T, (len(seeds), 1, 1)))
