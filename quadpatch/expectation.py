@@ -20,7 +20,7 @@ _LEAST = 1e-9
 # The slope on 22 scans and reliefs outside the benchmark, and what it weighs against practice holes whose ln u scatter
 # by as large a sum of squares: the variance of errors around their power law over that of the slope between meshes.
 USUAL_SLOPE = 0.9
-_WEIGHT = 1.6
+WEIGHT = 1.6
 
 
 @dataclass(frozen=True)
@@ -60,7 +60,7 @@ def learn_expectation(filled: FilledMesh, diameters: FloatArray, errors: FloatAr
     log_u = np.log(_uncertainty(filled, diameters))
     log_error = np.log(np.maximum(errors / diameters, _LEAST))
     scatter = log_u - log_u.mean()
-    slope = (scatter @ log_error + _WEIGHT * USUAL_SLOPE) / (scatter @ scatter + _WEIGHT)
+    slope = (scatter @ log_error + WEIGHT * USUAL_SLOPE) / (scatter @ scatter + WEIGHT)
     shape = Expectation(1.0, float(np.clip(slope, 0.0, 1.0)))
     return Expectation(float(errors.sum() / shape.errors(filled, diameters).sum()), shape.slope)
 

@@ -24,7 +24,7 @@ LEAST_COVERAGE = 0.6
 # Patches of a hole that differ by more than this share of what they say contradict each other.
 MOST_DISAGREEMENT = 1.5
 
-_FALL_PER_ERROR = 10.0
+FALL_PER_ERROR = 10.0
 
 
 @dataclass(frozen=True)
@@ -166,7 +166,7 @@ def _measures(i: int, filled: FilledMesh, completion: "Completion | None") -> di
 
 def confidence(expected_error: float, diameter: float) -> float:
     """See the module's head."""
-    return float(np.exp(-_FALL_PER_ERROR * expected_error / diameter)) if diameter > 0 else 0.0
+    return float(np.exp(-FALL_PER_ERROR * expected_error / diameter)) if diameter > 0 else 0.0
 
 
 def _mean_by(group: IntArray, values: FloatArray, n_groups: int) -> FloatArray:

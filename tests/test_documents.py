@@ -18,8 +18,8 @@ from client.exits import MEANINGS
 from jobkit.schema import JobState
 from jobkit.schema.jobs import STAGES
 from jobkit.settings import settings_table
-from quadpatch import judge, paper, pipeline, practice
-from quadpatch.filling import triangulation
+from quadpatch import expectation, judge, paper, pipeline, practice
+from quadpatch.filling import fill, triangulation
 from quadpatch.inpainters import dictionary, heights
 from quadpatch.mesh import holes
 from quadpatch.patches import scale, sighting
@@ -120,6 +120,11 @@ def test_the_numbers_of_the_method_are_those_of_the_code() -> None:
         f"fewer than {practice.MIN_HOLES} practice holes",
         f"{practice.MAX_HOLES} holes of the median diameter",
         "one of " + ", ".join(f"{share:g}" for share in practice.SHARES[:-1]) + f" and {practice.SHARES[-1]:g}",
+        f"the thin plate and the blend b/a = {fill.SECOND_OPINION.variation / fill.SECOND_OPINION.plate:g} through",
+        f"b is pulled to {expectation.USUAL_SLOPE}",
+        f"a scatter of {expectation.WEIGHT} in ln u",
+        f"Without practice b = {expectation.UNTRIED.slope} and A = {expectation.UNTRIED.factor}",
+        f"exp(−{judge.FALL_PER_ERROR:g} · expected error / diameter)",
         f"{100 * judge.LEAST_COVERAGE:g} % of its new vertices",
         f"differ by no more than {judge.MOST_DISAGREEMENT} times",
         f"over {triangulation.MAX_TABLE_SIZE} vertices",
