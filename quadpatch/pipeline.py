@@ -29,8 +29,8 @@ ENERGIES = (
     *(Energy(plate=1.0, variation=weight) for weight in (0.4, 2.0, 40.0)),
 )
 
-# Where the surface has no room for practice: an energy for surfaces neither rough nor smooth.
-UNTRIED_ENERGY = ENERGIES[3]
+# For surfaces neither rough nor smooth, and for those that don't show which they are.
+USUAL_ENERGY = ENERGIES[2]
 
 
 @dataclass(frozen=True)
@@ -117,10 +117,10 @@ def _fill(mesh: TriangleMesh, chosen: list[Hole], rng: np.random.Generator) -> t
     """Fill the holes by the energy that suits this surface; also that energy and the error to expect of it."""
     edge = mean_edge_length(mesh)
     diameters = [hole.diameter for hole in chosen]
-    energy, expectation, filled_again = UNTRIED_ENERGY, UNTRIED, None
+    energy, expectation, filled_again = USUAL_ENERGY, UNTRIED, None
     practice = practise(mesh, float(np.median(diameters)), edge, rng) if chosen else None
     if practice is not None:
-        energy = choose_energy(practice, ENERGIES)
+        energy = choose_energy(practice, ENERGIES, USUAL_ENERGY)
         filled_again = fair_holes(practice.closed, energy)
         expectation = expect(practice, filled_again)
     filled = fair_holes(close_holes(mesh, [hole.loop for hole in chosen]), energy)

@@ -30,6 +30,9 @@ _ENOUGH = 24
 # Surface left between a practice hole and any other rim, in mean edge lengths: what the fairing reads.
 _MARGIN_EDGES = 4.0
 
+# Errors that differ by less than this share of a hole's diameter are the same.
+_ROUNDING = 1e-9
+
 # The rim of a cut lies so much outside the disk of vertices that it takes, in mean edge lengths.
 _RIM_EDGES = 0.7
 
@@ -103,10 +106,17 @@ def practise(mesh: TriangleMesh, diameter: float, edge_length: float, rng: np.ra
     return Practice(truth, mesh.vertices[gone], cut_away, close_holes(punched, loops), used, diameters)
 
 
-def choose_energy(practice: Practice, energies: Sequence[Energy]) -> Energy:
-    """Choose the energy that leaves the practice holes closest to the truth."""
-    errors = [float(error_per_hole(practice, fair_holes(practice.closed, energy)).mean()) for energy in energies]
-    return energies[int(np.argmin(errors))]
+def choose_energy(practice: Practice, energies: Sequence[Energy], usual: Energy) -> Energy:
+    """Choose the energy that leaves the practice holes closest to the truth.
+
+    The usual one stays unless the best is better by more than a standard error: a few dozen holes can't tell more
+    (L. Breiman et al., "Classification and Regression Trees", 1984, the rule of one standard error).
+    """
+    errors = np.array([error_per_hole(practice, fair_holes(practice.closed, energy)) for energy in energies])
+    best = int(errors.mean(axis=1).argmin())
+    lost = errors[energies.index(usual)] - errors[best]
+    is_tie = float(lost.mean()) <= float(lost.std()) / np.sqrt(len(lost)) + _ROUNDING * practice.diameter
+    return usual if is_tie else energies[best]
 
 
 def believed_share(practice: Practice, filled: FilledMesh, displacement: FloatArray) -> float:

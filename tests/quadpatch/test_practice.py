@@ -7,7 +7,7 @@ from quadpatch.filling.fairing import THIN_PLATE
 from quadpatch.filling.fill import FilledMesh, fair_holes
 from quadpatch.mesh.boundary import boundary_loops
 from quadpatch.mesh.measures import mean_edge_length
-from quadpatch.pipeline import ENERGIES
+from quadpatch.pipeline import ENERGIES, USUAL_ENERGY
 from quadpatch.practice import (
     MAX_HOLES,
     MIN_HOLES,
@@ -100,14 +100,20 @@ def test_smaller_holes_are_tried_where_there_is_no_room_for_large_ones() -> None
 
 
 def test_a_smooth_surface_is_continued_by_a_smooth_energy() -> None:
-    assert choose_energy(some_practice(sphere(5), diameter=0.5), ENERGIES) != THIN_PLATE
+    assert choose_energy(some_practice(sphere(5), diameter=0.5), ENERGIES, USUAL_ENERGY) == ENERGIES[-1]
 
 
 def test_a_noisy_surface_is_continued_by_an_energy_that_carries_no_curvature_on() -> None:
     mesh = open_grid(100, 2.0)
     noise = np.random.default_rng(0).normal(0, 0.01, mesh.vertices.shape) * [0, 0, 1]
-    chosen = choose_energy(some_practice(TriangleMesh(mesh.vertices + noise, mesh.triangles)), ENERGIES)
+    practice = some_practice(TriangleMesh(mesh.vertices + noise, mesh.triangles))
+    chosen = choose_energy(practice, ENERGIES, USUAL_ENERGY)
     assert chosen.variation == 0
+
+
+def test_the_usual_energy_stays_where_practice_can_not_tell() -> None:
+    for usual in ENERGIES:
+        assert choose_energy(some_practice(FLAT), ENERGIES, usual) == usual
 
 
 def test_a_flat_surface_is_filled_without_error() -> None:
