@@ -29,8 +29,11 @@ ENERGIES = (
     *(Energy(plate=1.0, variation=weight) for weight in (0.4, 2.0, 40.0)),
 )
 
-# For surfaces neither rough nor smooth, and for those that don't show which they are.
+# For surfaces on which practice can't tell the energies apart.
 USUAL_ENERGY = ENERGIES[2]
+# For surfaces without room for practice: they are coarse for their holes, and a rim of few edges shows no curvature to
+# carry on.
+UNTRIED_ENERGY = THIN_PLATE
 
 
 @dataclass(frozen=True)
@@ -117,7 +120,7 @@ def _fill(mesh: TriangleMesh, chosen: list[Hole], rng: np.random.Generator) -> t
     """Fill the holes by the energy that suits this surface; also that energy and the error to expect of it."""
     edge = mean_edge_length(mesh)
     diameters = [hole.diameter for hole in chosen]
-    energy, expectation, filled_again = USUAL_ENERGY, UNTRIED, None
+    energy, expectation, filled_again = UNTRIED_ENERGY, UNTRIED, None
     practice = practise(mesh, float(np.median(diameters)), edge, rng) if chosen else None
     if practice is not None:
         energy = choose_energy(practice, ENERGIES, USUAL_ENERGY)
