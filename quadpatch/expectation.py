@@ -57,9 +57,11 @@ def learn_expectation(filled: FilledMesh, diameters: FloatArray, errors: FloatAr
     diameters, errors : (n_holes,) float64
         In mesh units.
     """
-    log_u = np.log(_uncertainty(filled, diameters))
-    log_error = np.log(np.maximum(errors / diameters, _LEAST))
-    scatter = log_u - log_u.mean()
+    # Holes so small that they got no vertex have no gap: they say nothing, and as outliers would say it loudest.
+    telling = filled.gap > 0
+    log_u = np.log(_uncertainty(filled, diameters))[telling]
+    log_error = np.log(np.maximum(errors / diameters, _LEAST))[telling]
+    scatter = log_u - log_u.sum() / max(len(log_u), 1)
     slope = (scatter @ log_error + WEIGHT * USUAL_SLOPE) / (scatter @ scatter + WEIGHT)
     shape = Expectation(1.0, float(np.clip(slope, 0.0, 1.0)))
     return Expectation(float(errors.sum() / shape.errors(filled, diameters).sum()), shape.slope)

@@ -140,22 +140,23 @@ def error_per_hole(practice: Practice, filled: FilledMesh) -> FloatArray:
     (n_holes,) float64
         Mean distance, in mesh units.
     """
-    vertices = filled.mesh.vertices
-    new = filled.mesh.triangles[filled.n_measured_triangles :]
-    # Every removed vertex belongs to the hole whose new surface is nearest.
-    centroids = vertices[new].mean(axis=1)
-    nearest = filled.triangle_hole[cKDTree(centroids).query(practice.removed)[1]]
-    back = _mean_by(nearest, distance_to_mesh(practice.removed, TriangleMesh(vertices, new)), len(filled.gap))
-    return 0.5 * (distance_per_hole(practice, filled) + back)
-
-
-def distance_per_hole(practice: Practice, filled: FilledMesh) -> FloatArray:
-    """Mean distance (n_holes,) of each practice hole's new vertices and triangle centroids to the true surface."""
+    n_holes = len(filled.gap)
     vertices = filled.mesh.vertices
     new = filled.mesh.triangles[filled.n_measured_triangles :]
     points = np.concatenate([vertices[filled.n_measured_vertices :], vertices[new].mean(axis=1)])
     hole = np.concatenate([filled.vertex_hole, filled.triangle_hole])
-    return _mean_by(hole, distance_to_mesh(points, practice.truth), len(filled.gap))
+    there = _mean_by(hole, distance_to_mesh(points, practice.truth), n_holes)
+    # Every removed vertex belongs to the hole whose new surface is nearest.
+    centroids = vertices[new].mean(axis=1)
+    nearest = filled.triangle_hole[cKDTree(centroids).query(practice.removed)[1]]
+    back = _mean_by(nearest, distance_to_mesh(practice.removed, TriangleMesh(vertices, new)), n_holes)
+    return 0.5 * (there + back)
+
+
+def distance_per_hole(practice: Practice, filled: FilledMesh) -> FloatArray:
+    """Mean distance (n_holes,) of each practice hole's new vertices to the true surface; 0 without any."""
+    new = filled.mesh.vertices[filled.n_measured_vertices :]
+    return _mean_by(filled.vertex_hole, distance_to_mesh(new, practice.truth), len(filled.gap))
 
 
 def expect(practice: Practice, filled: FilledMesh) -> Expectation:

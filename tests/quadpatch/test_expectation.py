@@ -81,6 +81,18 @@ def test_practice_holes_that_are_all_alike_leave_the_usual_slope() -> None:
     assert learn_expectation(alike, diameters, errors).slope == pytest.approx(USUAL_SLOPE)
 
 
+def test_holes_without_a_new_vertex_teach_nothing() -> None:
+    filled, diameters = some_holes(0)
+    errors = Expectation(0.1, 0.5).errors(filled, diameters)
+    empty = np.arange(N_HOLES) % 4 == 0
+    some = replace(filled, gap=np.where(empty, 0.0, filled.gap))
+    without = replace(filled, gap=filled.gap[~empty], rim_turn=filled.rim_turn[~empty])
+    expected = learn_expectation(without, diameters[~empty], errors[~empty]).slope
+    assert learn_expectation(some, diameters, errors).slope == pytest.approx(expected)
+    nothing = replace(filled, gap=np.zeros(N_HOLES))
+    assert learn_expectation(nothing, diameters, errors).slope == USUAL_SLOPE
+
+
 def test_flat_holes_without_error_expect_none() -> None:
     filled, diameters = some_holes(0)
     flat = replace(filled, gap=np.zeros(N_HOLES), rim_turn=np.zeros(N_HOLES))
