@@ -44,8 +44,8 @@ class Expectation:
         return expected
 
 
-# What holds on these (the factor within 30 %), for surfaces that have no room for practice.
-UNTRIED = Expectation(0.26, USUAL_SLOPE)
+# What holds on these (the factor within a third), for surfaces that have no room for practice.
+UNTRIED = Expectation(0.3, USUAL_SLOPE)
 
 
 def learn_expectation(filled: FilledMesh, diameters: FloatArray, errors: FloatArray) -> Expectation:
