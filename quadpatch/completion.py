@@ -34,7 +34,8 @@ class Completion:
     Attributes
     ----------
     filled : FilledMesh
-    evidence : Evidence
+    evidence : Evidence or None
+        None where practice believed nothing of what the model says, and it was not asked.
     trust : (n_holes,) bool
         Holes that were displaced.
     believed : float
@@ -46,7 +47,7 @@ class Completion:
     """
 
     filled: FilledMesh
-    evidence: Evidence
+    evidence: Evidence | None
     trust: BoolArray
     believed: float
     expectation: Expectation | None
@@ -132,13 +133,19 @@ def complete(
             return None
         believed, expectation = _rehearse(problem, _Model(inpainter, seeds, scale))
     with stages.stage("inpaint"):
-        predicted = inpainter.predict(sampled.patches, sampled.outline)
+        # What practice does not believe need not be said.
+        predicted = inpainter.predict(sampled.patches, sampled.outline) if believed else None
     with stages.stage("reconstruct"):
-        joined, evidence = _displacements(filled, sampled.patches, predicted)
-        trust = trusted(evidence) & (believed > 0)
-        new = filled.mesh.vertices[filled.n_measured_vertices :]
-        moved = new + believed * np.where(trust[filled.vertex_hole][:, None], joined, 0.0)
-    return Completion(filled.with_vertices(moved), evidence, trust, believed, expectation, scale, len(sampled.patches))
+        evidence, trust = None, np.zeros(len(filled.gap), bool)
+        if predicted is not None:
+            joined, evidence = _displacements(filled, sampled.patches, predicted)
+            trust = trusted(evidence)
+            filled = _moved(filled, believed * np.where(trust[filled.vertex_hole][:, None], joined, 0.0))
+    return Completion(filled, evidence, trust, believed, expectation, scale, len(sampled.patches))
+
+
+def _moved(filled: FilledMesh, displacement: FloatArray) -> FilledMesh:
+    return filled.with_vertices(filled.mesh.vertices[filled.n_measured_vertices :] + displacement)
 
 
 def _outline(filled: FilledMesh, scale: PatchScale, edge_length: float) -> TriangleMesh:

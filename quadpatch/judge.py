@@ -140,7 +140,7 @@ def _verdict(i: int, n_new_vertices: int, completion: "Completion | None") -> tu
         return "filled_smooth", "geometry", "no learned model took part"
     if completion.trust[i]:
         return "filled", "", ""
-    coverage = completion.evidence.coverage[i]
+    coverage = completion.evidence.coverage[i] if completion.evidence else 0.0
     reasons = (
         (not n_new_vertices, "no_new_vertex", "so small that its rim alone spans it: there is nothing to displace"),
         (completion.expectation is None, "no_practice", "too little undamaged surface to try the model on"),
@@ -157,10 +157,9 @@ def _verdict(i: int, n_new_vertices: int, completion: "Completion | None") -> tu
 
 def _measures(i: int, filled: FilledMesh, completion: "Completion | None") -> dict[str, float]:
     measures = {"gap": float(filled.gap[i]), "rim_turn": float(filled.rim_turn[i])}
-    if completion is not None:
-        evidence = completion.evidence
+    if completion is not None and completion.evidence is not None:
         for name in ("coverage", "spread", "departure", "rim_misfit"):
-            measures[name] = float(getattr(evidence, name)[i])
+            measures[name] = float(getattr(completion.evidence, name)[i])
     return measures
 
 

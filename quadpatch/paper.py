@@ -283,8 +283,7 @@ def _verdict(i: int, n_new_vertices: int, completion: Completion | None) -> tupl
 
 
 def _measures(i: int, completion: Completion | None) -> dict[str, float]:
-    if completion is None:
+    if completion is None or completion.evidence is None:
         return {}
-    evidence = completion.evidence
     names = ("coverage", "spread", "departure", "rim_misfit")
-    return {name: float(getattr(evidence, name)[i]) for name in names}
+    return {name: float(getattr(completion.evidence, name)[i]) for name in names}

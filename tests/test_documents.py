@@ -113,7 +113,7 @@ def test_the_numbers_of_the_method_are_those_of_the_code() -> None:
         f"{scale.RESOLUTION_RANGE[0]} ",
         "r / ({} e), between {} and {} ".format(scale.EDGES_PER_BIN, *scale.RESOLUTION_RANGE),
         f"| overlap k | {scale.OVERLAP}: nine patches",
-        f"the {dictionary.SELF_ATOMS} principal directions",
+        f"the {dictionary.PRINCIPAL_ATOMS} principal directions",
         f"σ² = {gaussian.NOISE}",
         f"fewer than {dictionary.MIN_TRAINING_PATCHES} usable patches",
         "b/a = " + ", ".join(f"{energy.variation / energy.plate:g}" for energy in pipeline.ENERGIES[1:-1]),

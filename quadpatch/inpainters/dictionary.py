@@ -6,25 +6,22 @@ learning. Atoms come from a model file or are learned from the mesh itself; how 
 from the mesh, and tells the code how free it is to use it (see `quadpatch.sparse.gaussian`).
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from quadpatch.sparse.dictionary import Dictionary
-from quadpatch.sparse.gaussian import gaussian_codes, principal_atoms
+from quadpatch.sparse.gaussian import gaussian_codes, known_covariance, principal_atoms
 from quadpatch.sparse.omp import masked_omp
 from quadpatch.sparse.signals import from_signals, to_signals
 from quadpatch.types import BoolArray, FloatArray, Patches
 
-# Self-similar dictionaries.
-SELF_ATOMS = 200
+# Principal directions that patches are coded with; what lies beyond them counts as noise.
+PRINCIPAL_ATOMS = 200
 MIN_TRAINING_PATCHES = 24
 
 # Patches with less known surface than this say nothing about the shape they came from.
 LEAST_KNOWN = 0.5
-
-# Least use of an atom, in standard deviations: one that the mesh hardly uses is not forbidden.
-_LEAST_DEVIATION = 1e-3
 
 
 @dataclass(frozen=True)
@@ -35,8 +32,8 @@ class DictionaryInpainter:
     ----------
     dictionary : Dictionary
     deviations : (n_atoms,) float64 or None
-        How much the mesh at hand uses each atom, as a standard deviation over its signals; None where it is not known:
-        then sparse codes are used, which need no such thing.
+        How much the mesh at hand uses each atom, as a standard deviation over its signals; None for a dictionary that
+        has seen no mesh yet: then sparse codes are used, which need no such thing.
     """
 
     dictionary: Dictionary
@@ -48,12 +45,16 @@ class DictionaryInpainter:
         return self.dictionary.resolution
 
     def fitted_to(self, patches: Patches, outline: FloatArray) -> "DictionaryInpainter":
-        """See `Inpainter`: learn how much this mesh uses each atom, from sparse codes of its patches."""
+        """See `Inpainter`: learn how much this mesh uses each atom, from sparse codes of its patches.
+
+        That makes a covariance of the bins, and its principal directions take the place of the atoms.
+        """
         signals, known = _lessons(patches, outline)
         if len(signals) < MIN_TRAINING_PATCHES:
             return self
         codes = masked_omp(signals, known, self.dictionary.atoms, self.dictionary.n_nonzero)
-        return replace(self, deviations=np.maximum(np.sqrt((codes**2).mean(axis=0)), _LEAST_DEVIATION))
+        used = self.dictionary.atoms * np.sqrt((codes**2).mean(axis=0))
+        return _principal(used @ used.T, self.resolution)
 
     def predict(self, patches: Patches, outline: FloatArray) -> FloatArray:
         """See `Inpainter`."""
@@ -84,8 +85,12 @@ def learn_from_patches(patches: Patches, outline: FloatArray) -> DictionaryInpai
     signals, known = _lessons(patches, outline)
     if len(signals) < MIN_TRAINING_PATCHES:
         return None
-    atoms, deviations = principal_atoms(signals, known, SELF_ATOMS)
-    return DictionaryInpainter(Dictionary(atoms, patches.resolution, len(deviations)), deviations)
+    return _principal(known_covariance(signals, known), patches.resolution)
+
+
+def _principal(covariance: FloatArray, resolution: int) -> DictionaryInpainter:
+    atoms, deviations = principal_atoms(covariance, PRINCIPAL_ATOMS)
+    return DictionaryInpainter(Dictionary(atoms, resolution, len(deviations)), deviations)
 
 
 def _lessons(patches: Patches, outline: FloatArray) -> tuple[FloatArray, BoolArray]:

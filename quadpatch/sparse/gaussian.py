@@ -61,30 +61,34 @@ def gaussian_codes(signals: FloatArray, known: BoolArray, scaled_atoms: FloatArr
     return codes
 
 
-def principal_atoms(signals: FloatArray, known: BoolArray, n_atoms: int) -> tuple[FloatArray, FloatArray]:
-    """Find the principal directions of signals with missing bins.
+def known_covariance(signals: FloatArray, known: BoolArray) -> FloatArray:
+    """Take the covariance (N * N, N * N) of signals with missing bins.
 
-    The covariance of two bins is that over the signals which know both. It is averaged over the eight turns and mirror
-    images of a patch, since the frame of a patch may point along any side of its quad: eight times as many signals.
+    That of two bins is taken over the signals which know both. All is averaged over the eight turns and mirror images
+    of a patch, since the frame of a patch may point along any side of its quad: eight times as many signals.
 
     Parameters
     ----------
     signals : (n, N * N) float64
         0 in unknown bins.
     known : (n, N * N) bool
-    n_atoms : int
-        At most so many.
+    """
+    counted = known.astype(np.float64)
+    with single_threaded_blas():
+        return _turned(signals.T @ signals / np.maximum(counted.T @ counted, 1.0))
+
+
+def principal_atoms(covariance: FloatArray, n_atoms: int) -> tuple[FloatArray, FloatArray]:
+    """Find the principal directions of signals by their covariance (n_bins, n_bins).
 
     Returns
     -------
-    atoms : (N * N, n_atoms) float64
+    atoms : (n_bins, at most n_atoms) float64
         Unit-norm columns, most common first.
     deviations : (n_atoms,) float64
         How much each is used, as a standard deviation over the signals.
     """
-    counted = known.astype(np.float64)
     with single_threaded_blas():
-        covariance = _turned(signals.T @ signals / np.maximum(counted.T @ counted, 1.0))
         variances, directions = np.linalg.eigh(covariance)
     variances, directions = variances[::-1][:n_atoms], directions[:, ::-1][:, :n_atoms]
     kept = variances > _LEAST_VARIANCE * variances[0]

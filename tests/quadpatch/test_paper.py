@@ -82,6 +82,7 @@ def test_true_heights_put_every_vertex_on_the_true_surface() -> None:
     repair = inpaint_as_paper(mesh, Truth(whole, 24), RepairOptions())
     assert repair.completion is not None
     evidence = repair.completion.evidence
+    assert evidence is not None
     assert (evidence.coverage == 1).all()
     error, before = (np.abs(np.linalg.norm(v, axis=1) - 1) for v in (new_vertices(repair), closed(repair, mesh)))
     assert error.mean() < before.mean() / 20
@@ -99,6 +100,7 @@ def test_nothing_is_faired_gated_or_joined() -> None:
     assert repair.completion.believed == 1.0
     assert verdicts(repair) == [("filled", "")]
     # Planes don't meet the rim of a hole in a sphere, and nobody makes them.
+    assert repair.completion.evidence is not None
     assert repair.completion.evidence.rim_misfit[0] > 0.01
 
 

@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from quadpatch.sparse.gaussian import NOISE, gaussian_codes, principal_atoms
+from quadpatch.sparse.gaussian import NOISE, gaussian_codes, known_covariance, principal_atoms
 from quadpatch.types import BoolArray, FloatArray
 
 SEEDS = st.integers(0, 2**32 - 1)
@@ -65,7 +65,7 @@ def test_atoms_span_the_signals_also_where_bins_are_missing() -> None:
     rng = np.random.default_rng(0)
     signals = spanned(rng, 4000)
     known = rng.random(signals.shape) < 0.8
-    atoms, deviations = principal_atoms(np.where(known, signals, 0.0), known, 24)
+    atoms, deviations = principal_atoms(known_covariance(np.where(known, signals, 0.0), known), 24)
     left = signals - (signals @ atoms) @ atoms.T
     assert (left**2).sum() < 0.03 * (signals**2).sum()
     assert (np.diff(deviations) <= 0).all()
@@ -75,7 +75,7 @@ def test_deviations_are_those_of_the_signals_along_the_atoms() -> None:
     signals = np.concatenate(
         [turn.ravel()[None] for image in spanned(np.random.default_rng(1), 300) for turn in turned(image.reshape(8, 8))]
     )
-    atoms, deviations = principal_atoms(signals, np.ones(signals.shape, bool), 24)
+    atoms, deviations = principal_atoms(known_covariance(signals, np.ones(signals.shape, bool)), 24)
     np.testing.assert_allclose(np.sqrt(((signals @ atoms) ** 2).mean(axis=0)), deviations, rtol=1e-9)
     np.testing.assert_allclose(atoms.T @ atoms, np.eye(atoms.shape[1]), atol=1e-12)
 
@@ -85,5 +85,5 @@ def test_turned_signals_give_the_same_deviations(k: int) -> None:
     signals = spanned(np.random.default_rng(2), 200)
     rotated = np.rot90(signals.reshape(-1, 8, 8), k, axes=(1, 2)).reshape(signals.shape)
     everything = np.ones(signals.shape, bool)
-    one, other = (principal_atoms(part, everything, 20)[1] for part in (signals, rotated))
+    one, other = (principal_atoms(known_covariance(part, everything), 20)[1] for part in (signals, rotated))
     np.testing.assert_allclose(one, other, rtol=1e-9)
