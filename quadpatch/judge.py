@@ -4,13 +4,14 @@ Confidence is ``exp(-10 e / d)`` with e the expected mean error of the fill and 
 hundredth of the hole's width has 0.9, one off by a tenth has 0.37.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from quadpatch.expectation import Expectation
 from quadpatch.filling.fill import FilledMesh
+from quadpatch.mesh.averages import mean_by
 from quadpatch.mesh.holes import Hole, Selection
 from quadpatch.reconstruction.displacement import Displacement
 from quadpatch.types import BoolArray, FloatArray, IntArray
@@ -81,10 +82,10 @@ def gather(
     hole, n_holes = filled.vertex_hole, len(filled.gap)
     covered = (inside.overlap > 0).astype(np.float64)
     return Evidence(
-        _mean_by(hole, covered, n_holes),
-        _mean_by(hole, inside.spread, n_holes),
-        _mean_by(hole, np.linalg.norm(joined, axis=1), n_holes),
-        _mean_by(rim_hole, np.linalg.norm(at_rim.mean, axis=1), n_holes),
+        mean_by(hole, covered, n_holes),
+        mean_by(hole, inside.spread, n_holes),
+        mean_by(hole, np.linalg.norm(joined, axis=1), n_holes),
+        mean_by(rim_hole, np.linalg.norm(at_rim.mean, axis=1), n_holes),
     )
 
 
@@ -103,36 +104,64 @@ def judge(
     expectation: Expectation,
 ) -> list[HoleResult]:
     """Say of every hole what became of it, in the order of their ids."""
-    position = {hole.id: i for i, hole in enumerate(selection.chosen)}
-    n_vertices = np.bincount(filled.vertex_hole, minlength=len(position))
-    n_triangles = np.bincount(filled.triangle_hole, minlength=len(position))
-    expected_errors = expectation.errors(filled, [hole.diameter for hole in selection.chosen])
-    results = []
-    for hole in holes:
-        if hole.id in selection.skipped:
-            results.append(HoleResult(hole, "skipped", *selection.skipped[hole.id]))
-            continue
-        i = position[hole.id]
-        if i in filled.unfilled:
-            why = "every triangulation of the rim would give an existing edge a third face"
-            results.append(HoleResult(hole, "refused", "no_triangulation", why))
-            continue
-        expected = float(expected_errors[i])
-        verdict, code, reason = _verdict(i, int(n_vertices[i]), completion)
-        results.append(
+    expected_errors = expectation.errors(filled, [hole.diameter for hole in selection.chosen]).tolist()
+    closed = []
+    for i, (hole, n_vertices, n_triangles) in enumerate(zip(selection.chosen, *count_new(filled), strict=True)):
+        verdict, code, reason = _verdict(i, n_vertices, completion)
+        closed.append(
             HoleResult(
                 hole,
                 verdict,
                 code,
                 reason,
-                confidence(expected, hole.diameter),
-                expected,
-                int(n_vertices[i]),
-                int(n_triangles[i]),
-                _measures(i, filled, completion),
+                confidence(expected_errors[i], hole.diameter),
+                expected_errors[i],
+                n_vertices,
+                n_triangles,
+                {"gap": float(filled.gap[i]), "rim_turn": float(filled.rim_turn[i]), **evidence_of(i, completion)},
             )
         )
-    return results
+    return with_open_holes(closed, holes, selection, filled)
+
+
+def with_open_holes(
+    closed: list[HoleResult], holes: list[Hole], selection: Selection, filled: FilledMesh
+) -> list[HoleResult]:
+    """Bring results into the order of all holes' ids, and say of those that stayed open why.
+
+    Parameters
+    ----------
+    closed : list of HoleResult
+        One for each chosen hole, as if all of them had been closed.
+    holes : list of Hole
+        All of them, by id.
+    selection : Selection
+    filled : FilledMesh
+        Knows the chosen holes that could not be closed.
+    """
+    results = {result.hole.id: result for result in closed}
+    for hole in (selection.chosen[i] for i in filled.unfilled):
+        why = "every triangulation of the rim would give an existing edge a third face"
+        results[hole.id] = HoleResult(hole, "refused", "no_triangulation", why)
+    for hole in (hole for hole in holes if hole.id in selection.skipped):
+        results[hole.id] = HoleResult(hole, "skipped", *selection.skipped[hole.id])
+    return [results[hole.id] for hole in holes]
+
+
+def count_new(filled: FilledMesh) -> tuple[list[int], list[int]]:
+    """Count the new vertices and the new triangles of every chosen hole."""
+    n_holes = len(filled.gap)
+    n_vertices, n_triangles = (
+        np.bincount(hole, minlength=n_holes).tolist() for hole in (filled.vertex_hole, filled.triangle_hole)
+    )
+    return n_vertices, n_triangles
+
+
+def evidence_of(i: int, completion: "Completion | None") -> dict[str, float]:
+    """Name what the patches said about one hole; nothing where none were asked."""
+    if completion is None or completion.evidence is None:
+        return {}
+    return {sign.name: float(getattr(completion.evidence, sign.name)[i]) for sign in fields(Evidence)}
 
 
 def _verdict(i: int, n_new_vertices: int, completion: "Completion | None") -> tuple[str, str, str]:
@@ -155,20 +184,6 @@ def _verdict(i: int, n_new_vertices: int, completion: "Completion | None") -> tu
     return next(("filled_smooth", code, reason) for applies, code, reason in reasons if applies)
 
 
-def _measures(i: int, filled: FilledMesh, completion: "Completion | None") -> dict[str, float]:
-    measures = {"gap": float(filled.gap[i]), "rim_turn": float(filled.rim_turn[i])}
-    if completion is not None and completion.evidence is not None:
-        for name in ("coverage", "spread", "departure", "rim_misfit"):
-            measures[name] = float(getattr(completion.evidence, name)[i])
-    return measures
-
-
 def confidence(expected_error: float, diameter: float) -> float:
     """See the module's head."""
     return float(np.exp(-FALL_PER_ERROR * expected_error / diameter)) if diameter > 0 else 0.0
-
-
-def _mean_by(group: IntArray, values: FloatArray, n_groups: int) -> FloatArray:
-    total = np.bincount(group, values, minlength=n_groups)
-    mean: FloatArray = total / np.maximum(np.bincount(group, minlength=n_groups), 1)
-    return mean

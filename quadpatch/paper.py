@@ -18,13 +18,13 @@ from quadpatch.filling.fairing import Energy
 from quadpatch.filling.fill import FilledMesh, close_flat
 from quadpatch.inpainters.heights import GLOBAL_ATOMS, HeightsInpainter, learn_heights
 from quadpatch.inpainters.inpainter import Inpainter
-from quadpatch.judge import Evidence, HoleResult
+from quadpatch.judge import HoleResult, count_new, evidence_of, gather, with_open_holes
 from quadpatch.mesh.holes import Hole, Selection, find_holes, select_holes
 from quadpatch.mesh.measures import diagonal, mean_edge_length
 from quadpatch.mesh.smoothing import laplacian_smooth
 from quadpatch.options import DictionaryOptions, PatchOptions, RepairOptions
 from quadpatch.patches.height_map import sample_height_maps
-from quadpatch.patches.layout import lay_out, seeds_near, take
+from quadpatch.patches.layout import lay_out, pick_patches, seeds_near, take
 from quadpatch.patches.scale import PatchScale
 from quadpatch.patches.seeds import Seeds
 from quadpatch.pipeline import Repair
@@ -32,7 +32,7 @@ from quadpatch.raycast import RayScene
 from quadpatch.reconstruction.displacement import rim_vertices
 from quadpatch.reconstruction.placement import place
 from quadpatch.stages import Stages
-from quadpatch.types import BoolArray, FloatArray, IntArray, Patches, Progress, TriangleMesh, no_progress
+from quadpatch.types import BoolArray, FloatArray, Patches, Progress, TriangleMesh, no_progress
 
 # The paper gives patch length, resolution and overlap for each of its objects. Where nobody does: patches nearly twice
 # as wide as the holes, bins as in the paper's networks, every vertex in about nine patches.
@@ -196,7 +196,7 @@ def _complete(
     near = seeds_near(laid.seeds, filled.mesh.vertices[filled.n_measured_vertices :], scale.length)
     with stages.stage("patchify"):
         patches = laid.patches(near)
-        patches = _pick(patches, np.asarray(patches.known.any(axis=(1, 2))))
+        patches = pick_patches(patches, np.asarray(patches.known.any(axis=(1, 2))))
     if inpainter is None:
         with stages.stage("learn"):
             everywhere = laid.patches(np.ones(len(laid.seeds), bool))
@@ -216,56 +216,21 @@ def _reconstruct(filled: FilledMesh, patches: Patches, predicted: FloatArray, sc
     rim, rim_hole = rim_vertices(filled)
     placed = place(filled, np.flatnonzero(filled.invented_vertices), patches, predicted)
     at_rim = place(filled, rim, patches, predicted)
-    hole, n_holes = filled.vertex_hole, len(filled.gap)
-    evidence = Evidence(
-        coverage=_mean_by(hole, (placed.overlap > 0).astype(np.float64), n_holes),
-        spread=_mean_by(hole, placed.spread, n_holes),
-        departure=_mean_by(hole, np.linalg.norm(placed.mean, axis=1), n_holes),
-        rim_misfit=_mean_by(rim_hole, np.linalg.norm(at_rim.mean, axis=1), n_holes),
-    )
+    evidence = gather(filled, placed, placed.mean, rim_hole, at_rim)
     moved = filled.with_vertices(new + placed.mean)
     return Completion(moved, evidence, evidence.coverage > 0, 1.0, None, scale, len(patches))
-
-
-def _pick(patches: Patches, which: BoolArray) -> Patches:
-    return Patches(
-        patches.origins[which],
-        patches.frames[which],
-        patches.length,
-        patches.heights[which],
-        patches.known[which],
-        patches.seen[which],
-        patches.triangle[which],
-    )
-
-
-def _mean_by(group: IntArray, values: FloatArray, n_groups: int) -> FloatArray:
-    total = np.bincount(group, values, minlength=n_groups)
-    mean: FloatArray = total / np.maximum(np.bincount(group, minlength=n_groups), 1)
-    return mean
 
 
 def _results(
     holes: list[Hole], selection: Selection, filled: FilledMesh, completion: Completion | None
 ) -> list[HoleResult]:
     """Say of every hole what became of it, in the order of their ids. Whatever patches say is taken."""
-    position = {hole.id: i for i, hole in enumerate(selection.chosen)}
-    n_vertices = np.bincount(filled.vertex_hole, minlength=len(position)).tolist()
-    n_triangles = np.bincount(filled.triangle_hole, minlength=len(position)).tolist()
-    results = []
-    for hole in holes:
-        if hole.id in selection.skipped:
-            results.append(HoleResult(hole, "skipped", *selection.skipped[hole.id]))
-            continue
-        i = position[hole.id]
-        if i in filled.unfilled:
-            why = "every triangulation of the rim would give an existing edge a third face"
-            results.append(HoleResult(hole, "refused", "no_triangulation", why))
-            continue
-        verdict = _verdict(i, n_vertices[i], completion)
-        counts = {"n_new_vertices": n_vertices[i], "n_new_triangles": n_triangles[i]}
-        results.append(HoleResult(hole, *verdict, **counts, measures=_measures(i, completion)))
-    return results
+    closed = []
+    for i, (hole, n_vertices, n_triangles) in enumerate(zip(selection.chosen, *count_new(filled), strict=True)):
+        verdict, code, reason = _verdict(i, n_vertices, completion)
+        evidence = evidence_of(i, completion)
+        closed.append(HoleResult(hole, verdict, code, reason, None, None, n_vertices, n_triangles, evidence))
+    return with_open_holes(closed, holes, selection, filled)
 
 
 def _verdict(i: int, n_new_vertices: int, completion: Completion | None) -> tuple[str, str, str]:
@@ -280,10 +245,3 @@ def _verdict(i: int, n_new_vertices: int, completion: Completion | None) -> tupl
             "no patch sees the hole: its new vertices lie where the closing put them",
         )
     return "filled", "", ""
-
-
-def _measures(i: int, completion: Completion | None) -> dict[str, float]:
-    if completion is None or completion.evidence is None:
-        return {}
-    names = ("coverage", "spread", "departure", "rim_misfit")
-    return {name: float(getattr(completion.evidence, name)[i]) for name in names}

@@ -14,6 +14,7 @@ from scipy.spatial import cKDTree
 from quadpatch.expectation import Expectation, learn_expectation
 from quadpatch.filling.fairing import Energy, triangles_around
 from quadpatch.filling.fill import ClosedMesh, FilledMesh, close_holes, fair_holes
+from quadpatch.mesh.averages import mean_by
 from quadpatch.mesh.boundary import boundary_edge_mask, boundary_loops, directed_edges
 from quadpatch.mesh.distance import distance_to_mesh
 from quadpatch.mesh.holes import loop_diameter
@@ -145,29 +146,23 @@ def error_per_hole(practice: Practice, filled: FilledMesh) -> FloatArray:
     new = filled.mesh.triangles[filled.n_measured_triangles :]
     points = np.concatenate([vertices[filled.n_measured_vertices :], vertices[new].mean(axis=1)])
     hole = np.concatenate([filled.vertex_hole, filled.triangle_hole])
-    there = _mean_by(hole, distance_to_mesh(points, practice.truth), n_holes)
+    there = mean_by(hole, distance_to_mesh(points, practice.truth), n_holes)
     # Every removed vertex belongs to the hole whose new surface is nearest.
     centroids = vertices[new].mean(axis=1)
     nearest = filled.triangle_hole[cKDTree(centroids).query(practice.removed)[1]]
-    back = _mean_by(nearest, distance_to_mesh(practice.removed, TriangleMesh(vertices, new)), n_holes)
+    back = mean_by(nearest, distance_to_mesh(practice.removed, TriangleMesh(vertices, new)), n_holes)
     return 0.5 * (there + back)
 
 
 def distance_per_hole(practice: Practice, filled: FilledMesh) -> FloatArray:
     """Mean distance (n_holes,) of each practice hole's new vertices to the true surface; 0 without any."""
     new = filled.mesh.vertices[filled.n_measured_vertices :]
-    return _mean_by(filled.vertex_hole, distance_to_mesh(new, practice.truth), len(filled.gap))
+    return mean_by(filled.vertex_hole, distance_to_mesh(new, practice.truth), len(filled.gap))
 
 
 def expect(practice: Practice, filled: FilledMesh) -> Expectation:
     """Learn from the practice holes, filled like the real ones, how large an error to expect."""
     return learn_expectation(filled, practice.diameters, distance_per_hole(practice, filled))
-
-
-def _mean_by(group: IntArray, values: FloatArray, n_groups: int) -> FloatArray:
-    total = np.bincount(group, values, minlength=n_groups)
-    mean: FloatArray = total / np.maximum(np.bincount(group, minlength=n_groups), 1)
-    return mean
 
 
 def _punch(mesh: TriangleMesh, radius: float, margin: float, rng: np.random.Generator) -> BoolArray:

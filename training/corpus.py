@@ -136,10 +136,9 @@ def cut_patches(mesh: TriangleMesh, recipe: PatchRecipe, rng: np.random.Generato
     nothing_invented = np.zeros(len(mesh.triangles), dtype=np.bool_)
     for side in (scale * length for scale in recipe.scales):
         # As in a repair, wider patches lie over a smoother outline.
-        outline = laplacian_smooth(mesh, outline_iterations(side, edge_length))
+        under = outline if side == length else laplacian_smooth(mesh, outline_iterations(side, edge_length))
         surface, smooth = (
-            sample_height_maps(RayScene(m), m, nothing_invented, seeds, side, recipe.resolution)
-            for m in (mesh, outline)
+            sample_height_maps(RayScene(m), m, nothing_invented, seeds, side, recipe.resolution) for m in (mesh, under)
         )
         cut.append(_worth_learning(surface, smooth if recipe.with_outline else None))
     return TrainingPatches.joined(cut, recipe.resolution)

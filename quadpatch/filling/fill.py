@@ -10,6 +10,7 @@ import numpy as np
 from quadpatch.filling.fairing import THIN_PLATE, Energy, fair, triangles_around
 from quadpatch.filling.refinement import Refined, refine, relax
 from quadpatch.filling.triangulation import EdgeSet, triangulate_loops
+from quadpatch.mesh.averages import mean_by
 from quadpatch.mesh.boundary import directed_edges
 from quadpatch.mesh.normals import triangle_normals, vertex_normals
 from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Triangles
@@ -271,8 +272,7 @@ def _mean_by_hole(patch: Refined, values: FloatArray, n_holes: int) -> FloatArra
     """Mean (n_holes,) of values (n,) over the new vertices of each hole; 0 without any."""
     hole = _hole_of_new(patch)
     new = hole >= 0
-    total = np.bincount(hole[new], values[new], minlength=n_holes)
-    return np.asarray(total / np.maximum(np.bincount(hole[new], minlength=n_holes), 1))
+    return mean_by(hole[new], values[new], n_holes)
 
 
 def _hole_widths(patch: Refined, n_holes: int) -> FloatArray:

@@ -80,9 +80,18 @@ def take(seeds: Seeds, which: BoolArray | IntArray) -> Seeds:
 
 
 def pick(sampled: Sampled, which: BoolArray) -> Sampled:
-    """Pick some of the patches."""
-    p = sampled.patches
-    patches = Patches(
-        p.origins[which], p.frames[which], p.length, p.heights[which], p.known[which], p.seen[which], p.triangle[which]
+    """Pick some of the patches, with their part of the outline."""
+    return Sampled(pick_patches(sampled.patches, which), sampled.outline[which])
+
+
+def pick_patches(patches: Patches, which: BoolArray) -> Patches:
+    """Pick some of the patches (n_patches,), without an outline."""
+    return Patches(
+        patches.origins[which],
+        patches.frames[which],
+        patches.length,
+        patches.heights[which],
+        patches.known[which],
+        patches.seen[which],
+        patches.triangle[which],
     )
-    return Sampled(patches, sampled.outline[which])

@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -68,3 +70,13 @@ def test_turning_moves_known_bins_with_their_detail_and_reaches_all_eight_turns(
     assert len(np.unique(turned.detail.reshape(200, 9), axis=0)) == 8
     np.testing.assert_array_equal(turned.known, turned.detail > 2.0)
     np.testing.assert_array_equal(np.sort(turned.detail.reshape(200, 9)), np.tile(np.arange(9.0), (200, 1)))
+
+
+def test_patches_of_a_size_are_the_same_whichever_other_sizes_are_cut_with_them(relief: TriangleMesh) -> None:
+    narrow, wide, both = (
+        cut_patches(relief, replace(RECIPE, scales=scales), np.random.default_rng(1))
+        for scales in ((1.0,), (1.5,), (1.0, 1.5))
+    )
+    assert len(narrow) > 0
+    assert len(wide) > 0
+    np.testing.assert_array_equal(both.detail, np.concatenate([narrow.detail, wide.detail]))

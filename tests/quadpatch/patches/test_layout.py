@@ -6,7 +6,7 @@ from quadpatch.filling.fairing import THIN_PLATE
 from quadpatch.filling.fill import FilledMesh, close_holes, fair_holes
 from quadpatch.mesh.boundary import boundary_loops
 from quadpatch.mesh.smoothing import laplacian_smooth
-from quadpatch.patches.layout import lay_out, patchify, pick, seeds_near, take
+from quadpatch.patches.layout import lay_out, patchify, pick, pick_patches, seeds_near, take
 from quadpatch.patches.scale import PatchScale
 from quadpatch.patches.seeds import Seeds
 from quadpatch.types import TriangleMesh
@@ -76,11 +76,11 @@ def test_picked_patches_keep_what_belongs_to_them(filled: FilledMesh, outline: T
     which = np.arange(len(sampled.patches)) % 3 == 1
     some = pick(sampled, which)
     assert len(some.patches) == which.sum()
-    assert (some.patches.heights == sampled.patches.heights[which]).all()
-    assert (some.patches.known == sampled.patches.known[which]).all()
-    assert (some.patches.triangle == sampled.patches.triangle[which]).all()
     assert (some.outline == sampled.outline[which]).all()
-    assert some.patches.length == SCALE.length
+    for picked in (some.patches, pick_patches(sampled.patches, which)):
+        for name in ("origins", "frames", "heights", "known", "seen", "triangle"):
+            np.testing.assert_array_equal(getattr(picked, name), getattr(sampled.patches, name)[which])
+        assert picked.length == SCALE.length
 
 
 def test_a_closed_surface_is_covered_all_over() -> None:
