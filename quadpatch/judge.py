@@ -1,7 +1,8 @@
 """Judging every hole: how much of it was learned, how sure that is, and what to call it.
 
-Confidence is ``exp(-10 e / d)`` with e the expected mean error of the fill and d the hole's diameter: a fill off by a
-hundredth of the hole's width has 0.9, one off by a tenth has 0.37.
+Confidence is ``exp(-e / (0.003 D))`` with e the expected mean error of the fill and D the diagonal of the bounding box
+of what was measured: a fill off by 0.03 % of the diagonal has 0.90, one off by 0.3 % has 0.37. It goes by the object's
+size, not the hole's, so that it tells which holes of a part to distrust.
 """
 
 from dataclasses import dataclass, field, fields
@@ -13,8 +14,9 @@ from quadpatch.expectation import Expectation
 from quadpatch.filling.fill import FilledMesh
 from quadpatch.mesh.averages import mean_by
 from quadpatch.mesh.holes import Hole, Selection
+from quadpatch.mesh.measures import diagonal
 from quadpatch.reconstruction.displacement import Displacement
-from quadpatch.types import BoolArray, FloatArray, IntArray
+from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh
 
 if TYPE_CHECKING:
     from quadpatch.completion import Completion
@@ -25,7 +27,8 @@ LEAST_COVERAGE = 0.6
 # Patches of a hole that differ by more than this share of what they say contradict each other.
 MOST_DISAGREEMENT = 1.5
 
-FALL_PER_ERROR = 10.0
+# An expected error of this share of the object's diagonal leaves a confidence of 0.37.
+DOUBTFUL_SHARE = 0.003
 
 
 @dataclass(frozen=True)
@@ -39,7 +42,7 @@ class HoleResult:
     code, reason : str
         Why, for programs and for people; empty for `filled`.
     confidence : float or None
-        0..1; None where nothing was filled.
+        0..1, by the expected error in relation to the object's size; None where nothing was filled.
     expected_error : float or None
         Expected mean distance of the fill to the true surface.
     measures : dict
@@ -105,6 +108,8 @@ def judge(
 ) -> list[HoleResult]:
     """Say of every hole what became of it, in the order of their ids."""
     expected_errors = expectation.errors(filled, [hole.diameter for hole in selection.chosen]).tolist()
+    measured = TriangleMesh(filled.mesh.vertices, filled.mesh.triangles[: filled.n_measured_triangles])
+    size = diagonal(measured)
     closed = []
     for i, (hole, n_vertices, n_triangles) in enumerate(zip(selection.chosen, *count_new(filled), strict=True)):
         verdict, code, reason = _verdict(i, n_vertices, completion)
@@ -114,7 +119,7 @@ def judge(
                 verdict,
                 code,
                 reason,
-                confidence(expected_errors[i], hole.diameter),
+                confidence(expected_errors[i], size),
                 expected_errors[i],
                 n_vertices,
                 n_triangles,
@@ -184,6 +189,14 @@ def _verdict(i: int, n_new_vertices: int, completion: "Completion | None") -> tu
     return next(("filled_smooth", code, reason) for applies, code, reason in reasons if applies)
 
 
-def confidence(expected_error: float, diameter: float) -> float:
-    """See the module's head."""
-    return float(np.exp(-FALL_PER_ERROR * expected_error / diameter)) if diameter > 0 else 0.0
+def confidence(expected_error: float, size: float) -> float:
+    """Turn an expected error into a confidence, 0..1, as the module's head says.
+
+    Parameters
+    ----------
+    expected_error : float
+        In mesh units.
+    size : float
+        Diagonal of the object's bounding box, in mesh units; 0 gives no confidence.
+    """
+    return float(np.exp(-expected_error / (DOUBTFUL_SHARE * size))) if size > 0 else 0.0

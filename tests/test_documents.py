@@ -124,7 +124,10 @@ def test_the_numbers_of_the_method_are_those_of_the_code() -> None:
         f"b is pulled to {expectation.USUAL_SLOPE}",
         f"a scatter of {expectation.WEIGHT} in ln u",
         f"Without practice b = {expectation.UNTRIED.slope} and A = {expectation.UNTRIED.factor}",
-        f"exp(−{judge.FALL_PER_ERROR:g} · expected error / diameter)",
+        f"exp(−expected error / ({judge.DOUBTFUL_SHARE:g} D))",
+        f"{judge.confidence(0.1 * judge.DOUBTFUL_SHARE, 1.0):.2f} where the fill is expected to be off by "
+        f"{10 * judge.DOUBTFUL_SHARE:g} % of the diagonal, {judge.confidence(judge.DOUBTFUL_SHARE, 1.0):.2f} at "
+        f"{100 * judge.DOUBTFUL_SHARE:g} %",
         f"{100 * judge.LEAST_COVERAGE:g} % of its new vertices",
         f"differ by no more than {judge.MOST_DISAGREEMENT} times",
         f"over {triangulation.MAX_TABLE_SIZE} vertices",

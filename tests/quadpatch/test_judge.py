@@ -10,10 +10,11 @@ from quadpatch.filling.fairing import THIN_PLATE
 from quadpatch.filling.fill import FilledMesh, close_holes, fair_holes
 from quadpatch.judge import LEAST_COVERAGE, MOST_DISAGREEMENT, Evidence, confidence, gather, judge, trusted
 from quadpatch.mesh.holes import Selection, find_holes, select_holes
+from quadpatch.mesh.measures import diagonal
 from quadpatch.options import HoleOptions
 from quadpatch.patches.scale import PatchScale
 from quadpatch.reconstruction.displacement import Displacement, rim_vertices
-from quadpatch.types import BoolArray, FloatArray
+from quadpatch.types import BoolArray, FloatArray, TriangleMesh
 from tests.quadpatch.shapes import bumpy_plate, punched
 
 MESH = punched(bumpy_plate(60, 2.0), (-0.5, -0.5, 0), (0.5, 0.5, 0), (0.5, -0.5, 0), radius=0.2)
@@ -89,7 +90,7 @@ def test_expected_errors_are_those_of_the_expectation_and_confidence_follows_the
     assert (errors > 0).all()
     for i, result in enumerate(judge(HOLES, SELECTION, FILLED, None, EXPECTATION)[1:]):
         assert result.expected_error == errors[i]
-        assert result.confidence == pytest.approx(np.exp(-10 * errors[i] / result.hole.diameter))
+        assert result.confidence == pytest.approx(np.exp(-errors[i] / (0.003 * diagonal(MESH))))
         assert (result.measures["gap"], result.measures["rim_turn"]) == (FILLED.gap[i], FILLED.rim_turn[i])
 
 
@@ -116,12 +117,58 @@ def test_nothing_chosen_is_judged_too() -> None:
 
 
 @pytest.mark.parametrize(
-    ("error", "diameter", "expected"), [(0.0, 1.0, 1.0), (0.01, 1.0, 0.905), (0.2, 2.0, 0.368), (1.0, 0.0, 0.0)]
+    ("error", "size", "expected"), [(0.0, 1.0, 1.0), (0.0003, 1.0, 0.905), (0.6, 200.0, 0.368), (1.0, 0.0, 0.0)]
 )
-def test_confidence_is_one_without_error_and_falls_by_e_for_a_tenth_of_the_width(
-    error: float, diameter: float, expected: float
+def test_confidence_is_one_without_error_and_falls_by_e_for_three_thousandths_of_the_diagonal(
+    error: float, size: float, expected: float
 ) -> None:
-    assert confidence(error, diameter) == pytest.approx(expected, abs=1e-3)
+    assert confidence(error, size) == pytest.approx(expected, abs=1e-3)
+
+
+def test_of_two_holes_of_a_part_the_one_with_the_larger_error_is_less_sure_however_wide_it_is() -> None:
+    # Bumps that grow from left to right: a wide hole in the calm half, a narrow one in the rough half.
+    sheet = bumpy_plate(60, 2.0)
+    bumps = sheet.vertices[:, 2] * np.exp(2 * sheet.vertices[:, 0])
+    sheet = TriangleMesh(np.column_stack([sheet.vertices[:, :2], bumps]), sheet.triangles)
+    mesh = punched(punched(sheet, (0.5, 0.5, 0), radius=0.15), (-0.5, 0.4, 0), radius=0.3)
+    holes = find_holes(mesh)
+    selection = select_holes(holes, HoleOptions(), 3.0)
+    filled = fair_holes(close_holes(mesh, [hole.loop for hole in selection.chosen]), THIN_PLATE)
+    _, wide, narrow = judge(holes, selection, filled, None, EXPECTATION)
+    assert wide.expected_error is not None
+    assert wide.confidence is not None
+    assert narrow.expected_error is not None
+    assert narrow.confidence is not None
+    assert wide.expected_error > narrow.expected_error
+    assert wide.confidence < narrow.confidence
+    # In relation to their own widths the narrow one is the worse.
+    assert wide.expected_error / wide.hole.diameter < 0.6 * narrow.expected_error / narrow.hole.diameter
+
+
+def test_a_part_has_the_size_of_what_was_measured_whatever_was_invented() -> None:
+    far = FILLED.with_vertices(np.full((len(FILLED.vertex_hole), 3), 1e3))
+    lonely = np.array([[1e3, 0.0, 0.0]])
+    first = np.arange(len(FILLED.mesh.vertices)) < FILLED.n_measured_vertices
+    vertices = np.concatenate([FILLED.mesh.vertices[first], lonely, FILLED.mesh.vertices[~first]])
+    triangles = FILLED.mesh.triangles + (FILLED.mesh.triangles >= FILLED.n_measured_vertices)
+    values: dict[str, Any] = {
+        **FILLED.__dict__,
+        "mesh": TriangleMesh(vertices, triangles),
+        "n_measured_vertices": FILLED.n_measured_vertices + 1,
+    }
+    expected = [result.confidence for result in judge(HOLES, SELECTION, FILLED, None, EXPECTATION)]
+    for other in (far, FilledMesh(**values)):
+        assert [result.confidence for result in judge(HOLES, SELECTION, other, None, EXPECTATION)] == expected
+
+
+def test_the_same_part_in_another_unit_has_the_same_confidences() -> None:
+    scaled = TriangleMesh(1024.0 * MESH.vertices, MESH.triangles)
+    holes = find_holes(scaled)
+    selection = select_holes(holes, HoleOptions(), 3.0 * 1024)
+    filled = fair_holes(close_holes(scaled, [hole.loop for hole in selection.chosen]), THIN_PLATE)
+    here, there = judge(HOLES, SELECTION, FILLED, None, EXPECTATION), judge(holes, selection, filled, None, EXPECTATION)
+    for one, other in zip(here[1:], there[1:], strict=True):
+        assert other.confidence == pytest.approx(one.confidence, rel=1e-9)
 
 
 def test_evidence_is_averaged_over_the_vertices_of_each_hole() -> None:

@@ -98,6 +98,7 @@ def test_the_report_is_plain_json_and_its_counts_add_up(repaired: tuple[str, Pat
 
 def test_every_hole_is_measured_judged_and_explained(repaired: tuple[str, Path, dict[str, Any]]) -> None:
     _, _, report = repaired
+    size = math.dist(*report["source"]["bounding_box"].values())
     assert [hole["id"] for hole in report["holes"]] == list(range(5))
     for hole in report["holes"]:
         for name in ("edges", "perimeter", "diameter", "area"):
@@ -113,7 +114,7 @@ def test_every_hole_is_measured_judged_and_explained(repaired: tuple[str, Path, 
             assert hole["new_vertices"] == hole["new_triangles"] == 0
         else:
             assert 0 <= hole["confidence"] <= 1
-            assert hole["confidence"] == pytest.approx(math.exp(-10 * hole["expected_error"] / hole["diameter"]))
+            assert hole["confidence"] == pytest.approx(math.exp(-hole["expected_error"] / (0.003 * size)))
             assert hole["measures"]["gap"] >= 0
 
 
