@@ -15,11 +15,10 @@ from quadpatch.expectation import Expectation, learn_expectation
 from quadpatch.filling.fairing import Energy, triangles_around
 from quadpatch.filling.fill import ClosedMesh, FilledMesh, close_holes, fair_holes
 from quadpatch.mesh.averages import mean_by
-from quadpatch.mesh.boundary import boundary_edge_mask, boundary_loops, directed_edges
 from quadpatch.mesh.distance import distance_to_mesh
 from quadpatch.mesh.holes import loop_diameter
-from quadpatch.mesh.normals import vertex_normals
-from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Triangles, Vertices
+from quadpatch.punching import Punched, Spacing, punch
+from quadpatch.types import BoolArray, FloatArray, TriangleMesh, Vertices
 
 MAX_HOLES = 64
 # Fewer holes than this decide nothing.
@@ -33,9 +32,6 @@ _MARGIN_EDGES = 4.0
 
 # Errors that differ by less than this share of a hole's diameter are the same.
 _ROUNDING = 1e-9
-
-# The rim of a cut lies so much outside the disk of vertices that it takes, in mean edge lengths.
-_RIM_EDGES = 0.7
 
 # Shares of the predicted displacement that are tried, and what a share must gain over none to be believed.
 SHARES = (0.0, 0.25, 0.5, 0.75, 1.0)
@@ -87,24 +83,22 @@ def practise(mesh: TriangleMesh, diameter: float, edge_length: float, rng: np.ra
     Practice or None
         None where the undamaged surface has no room for enough holes.
     """
-    best: tuple[BoolArray, list[IntArray], float] | None = None
+    best: tuple[Punched, float] | None = None
+    spacing = Spacing(edge_length, _MARGIN_EDGES * edge_length, MAX_HOLES)
     for size in _SIZES:
-        radius = max(size * diameter / 2 - _RIM_EDGES * edge_length, 0.5 * edge_length)
-        gone = _punch(mesh, radius, _MARGIN_EDGES * edge_length, rng)
-        loops = _new_loops(mesh, mesh.triangles[~gone[mesh.triangles].any(axis=1)])
-        if len(loops) >= MIN_HOLES and (best is None or len(loops) > len(best[1])):
-            best = gone, loops, size * diameter
-        if len(loops) >= _ENOUGH:
+        punched = punch(mesh, size * diameter, spacing, rng)
+        if len(punched.loops) >= MIN_HOLES and (best is None or len(punched.loops) > len(best[0].loops)):
+            best = punched, size * diameter
+        if len(punched.loops) >= _ENOUGH:
             break
     if best is None:
         return None
-    gone, loops, used = best
-    cut_away = np.asarray(gone[mesh.triangles].any(axis=1))
-    around = triangles_around(mesh.triangles, np.flatnonzero(gone), len(mesh.vertices), 2)
+    punched, used = best
+    around = triangles_around(mesh.triangles, np.flatnonzero(punched.gone), len(mesh.vertices), 2)
     truth = TriangleMesh(mesh.vertices, mesh.triangles[around])
-    punched = TriangleMesh(mesh.vertices, mesh.triangles[~cut_away])
-    diameters = np.array([loop_diameter(mesh.vertices[loop]) for loop in loops])
-    return Practice(truth, mesh.vertices[gone], cut_away, close_holes(punched, loops), used, diameters)
+    diameters = np.array([loop_diameter(mesh.vertices[loop]) for loop in punched.loops])
+    closed = close_holes(punched.mesh, punched.loops)
+    return Practice(truth, mesh.vertices[punched.gone], punched.cut_away, closed, used, diameters)
 
 
 def choose_energy(practice: Practice, energies: Sequence[Energy], usual: Energy) -> Energy:
@@ -163,46 +157,3 @@ def distance_per_hole(practice: Practice, filled: FilledMesh) -> FloatArray:
 def expect(practice: Practice, filled: FilledMesh) -> Expectation:
     """Learn from the practice holes, filled like the real ones, how large an error to expect."""
     return learn_expectation(filled, practice.diameters, distance_per_hole(practice, filled))
-
-
-def _punch(mesh: TriangleMesh, radius: float, margin: float, rng: np.random.Generator) -> BoolArray:
-    """Choose disks of surface that keep clear of every boundary and of each other: their vertices (n,) bool."""
-    normals = vertex_normals(mesh.vertices, mesh.triangles)
-    tree = cKDTree(mesh.vertices)
-    clear = _far_from_boundary(mesh, tree, radius + margin)
-    gone = np.zeros(len(mesh.vertices), bool)
-    count = 0
-    for centre in rng.permutation(np.flatnonzero(clear)).tolist():
-        if not clear[centre]:
-            continue
-        around = np.array(tree.query_ball_point(mesh.vertices[centre], 2 * (radius + margin)))
-        distance = np.linalg.norm(mesh.vertices[around] - mesh.vertices[centre], axis=1)
-        gone[around[(distance < radius) & (normals[around] @ normals[centre] > 0)]] = True
-        clear[around] = False
-        count += 1
-        if count == MAX_HOLES:
-            break
-    return gone
-
-
-def _far_from_boundary(mesh: TriangleMesh, tree: "cKDTree[None]", distance: float) -> BoolArray:
-    """Vertices (n,) that a triangle uses and that keep a distance from every boundary edge."""
-    far = np.zeros(len(mesh.vertices), bool)
-    far[mesh.triangles] = True
-    rim = _boundary_vertices(mesh)
-    if len(rim):
-        nearest, _ = cKDTree(mesh.vertices[rim]).query(mesh.vertices, distance_upper_bound=distance)
-        far &= nearest > distance
-    return far
-
-
-def _new_loops(mesh: TriangleMesh, left: Triangles) -> list[IntArray]:
-    old = np.zeros(len(mesh.vertices), bool)
-    old[_boundary_vertices(mesh)] = True
-    boundary = boundary_loops(left)
-    pairs = zip(boundary.loops, boundary.is_manifold, strict=True)
-    return [loop for loop, is_manifold in pairs if is_manifold and not old[loop].any()]
-
-
-def _boundary_vertices(mesh: TriangleMesh) -> IntArray:
-    return np.unique(directed_edges(mesh.triangles)[boundary_edge_mask(mesh.triangles)])

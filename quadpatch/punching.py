@@ -1,0 +1,115 @@
+"""Holes cut into undamaged surface, where it is known what belongs into them."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from quadpatch.mesh.boundary import boundary_edge_mask, boundary_loops, directed_edges
+from quadpatch.mesh.normals import vertex_normals
+from quadpatch.types import BoolArray, IntArray, TriangleMesh, Triangles
+
+# The rim of a cut lies so much outside the disk of vertices that it takes, in mean edge lengths.
+_RIM_EDGES = 0.7
+
+
+@dataclass(frozen=True)
+class Punched:
+    """What holes took from a mesh.
+
+    Attributes
+    ----------
+    mesh : TriangleMesh
+        All vertices, and the triangles that are left.
+    gone : (n_vertices,) bool
+    cut_away : (n_triangles,) bool
+        Triangles of the whole mesh that were taken.
+    loops : list of (n_loop,) int64
+        Rims of the holes.
+    """
+
+    mesh: TriangleMesh
+    gone: BoolArray
+    cut_away: BoolArray
+    loops: list[IntArray]
+
+
+@dataclass(frozen=True)
+class Spacing:
+    """Lengths that cuts go by, in mesh units.
+
+    Attributes
+    ----------
+    edge_length : float
+        Mean of the mesh.
+    margin : float
+        Surface left between a hole and any other rim.
+    most : int or None
+        At most so many holes.
+    """
+
+    edge_length: float
+    margin: float
+    most: int | None = None
+
+
+def punch(mesh: TriangleMesh, diameter: float, spacing: Spacing, rng: np.random.Generator) -> Punched:
+    """Cut disks of surface out of a mesh wherever they keep clear of every boundary and of each other.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+    diameter : float
+        Of the rims, in mesh units.
+    spacing : Spacing
+    rng : numpy.random.Generator
+        Picks the places.
+    """
+    radius = max(diameter / 2 - _RIM_EDGES * spacing.edge_length, 0.5 * spacing.edge_length)
+    gone = _disks(mesh, radius, spacing, rng)
+    cut_away = np.asarray(gone[mesh.triangles].any(axis=1))
+    left = TriangleMesh(mesh.vertices, mesh.triangles[~cut_away])
+    return Punched(left, gone, cut_away, _new_loops(mesh, left.triangles))
+
+
+def _disks(mesh: TriangleMesh, radius: float, spacing: Spacing, rng: np.random.Generator) -> BoolArray:
+    """Choose the vertices (n,) to take."""
+    normals = vertex_normals(mesh.vertices, mesh.triangles)
+    tree = cKDTree(mesh.vertices)
+    clear = _far_from_boundary(mesh, radius + spacing.margin)
+    gone = np.zeros(len(mesh.vertices), bool)
+    count = 0
+    for centre in rng.permutation(np.flatnonzero(clear)).tolist():
+        if not clear[centre]:
+            continue
+        around = np.array(tree.query_ball_point(mesh.vertices[centre], 2 * (radius + spacing.margin)))
+        distance = np.linalg.norm(mesh.vertices[around] - mesh.vertices[centre], axis=1)
+        gone[around[(distance < radius) & (normals[around] @ normals[centre] > 0)]] = True
+        clear[around] = False
+        count += 1
+        if count == spacing.most:
+            break
+    return gone
+
+
+def _far_from_boundary(mesh: TriangleMesh, distance: float) -> BoolArray:
+    """Vertices (n,) that a triangle uses and that keep a distance from every boundary edge."""
+    far = np.zeros(len(mesh.vertices), bool)
+    far[mesh.triangles] = True
+    rim = _boundary_vertices(mesh)
+    if len(rim):
+        nearest, _ = cKDTree(mesh.vertices[rim]).query(mesh.vertices, distance_upper_bound=distance)
+        far &= nearest > distance
+    return far
+
+
+def _new_loops(mesh: TriangleMesh, left: Triangles) -> list[IntArray]:
+    old = np.zeros(len(mesh.vertices), bool)
+    old[_boundary_vertices(mesh)] = True
+    boundary = boundary_loops(left)
+    pairs = zip(boundary.loops, boundary.is_manifold, strict=True)
+    return [loop for loop, is_manifold in pairs if is_manifold and not old[loop].any()]
+
+
+def _boundary_vertices(mesh: TriangleMesh) -> IntArray:
+    return np.unique(directed_edges(mesh.triangles)[boundary_edge_mask(mesh.triangles)])
