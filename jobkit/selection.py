@@ -22,6 +22,8 @@ def resolve_method(registry: Registry, method: Method) -> ResolvedModel:
     """
     if isinstance(method, SmoothMethod):
         return ResolvedModel(requested=method.method, kind="none")
+    if method.model == SELF:
+        return ResolvedModel(requested=SELF, kind="self_network" if isinstance(method, CnnMethod) else "self")
     if isinstance(method, CnnMethod):
         if not registry.has_kind("autoencoder"):
             raise NoNetworkError(
@@ -29,8 +31,6 @@ def resolve_method(registry: Registry, method: Method) -> ResolvedModel:
                 "or use the method 'dictionary' or 'smooth'"
             )
         return _pinned(method.model, _of_kind(registry, method.model, "autoencoder"))
-    if method.model == SELF:
-        return ResolvedModel(requested=SELF, kind="self")
     version = _of_kind(registry, method.model, "dictionary")
     _check_recipe(version, method.recipe)
     return _pinned(method.model, version)

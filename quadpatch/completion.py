@@ -5,10 +5,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from quadpatch.expectation import Expectation
+from quadpatch.filling.fairing import Energy
 from quadpatch.filling.fill import FilledMesh
 from quadpatch.inpainters.dictionary import learn_from_patches
-from quadpatch.inpainters.inpainter import Inpainter
+from quadpatch.inpainters.inpainter import Inpainter, Surroundings
 from quadpatch.judge import Evidence, gather, trusted
+from quadpatch.lessons import Ground
 from quadpatch.mesh.smoothing import laplacian_smooth
 from quadpatch.options import RepairOptions
 from quadpatch.patches.folding import is_unfolded
@@ -62,6 +64,8 @@ class Problem:
     Attributes
     ----------
     filled : FilledMesh
+    energy : Energy
+        That it was faired by.
     diameters : list of float
         Of the filled holes, in mesh units.
     edge_length : float
@@ -72,6 +76,7 @@ class Problem:
     """
 
     filled: FilledMesh
+    energy: Energy
     diameters: list[float]
     edge_length: float
     practice: Practice | None
@@ -128,7 +133,8 @@ def complete(
         if inpainter is None:
             inpainter = learn_from_patches(lesson, everywhere.outline)
         else:
-            inpainter = inpainter.fitted_to(lesson, everywhere.outline)
+            ground = _ground(problem, seeds, scale)
+            inpainter = inpainter.fitted_to(Surroundings(lesson, everywhere.outline, ground))
         if inpainter is None:
             return None
         believed, expectation = _rehearse(problem, _Model(inpainter, seeds, scale))
@@ -160,6 +166,15 @@ def _without_practice(patches: Patches, problem: Problem) -> Patches:
     cut_away[: len(problem.practice.cut_away)] = problem.practice.cut_away
     hidden = (patches.triangle >= 0) & cut_away[patches.triangle]
     return replace(patches, known=patches.known & ~hidden)
+
+
+def _ground(problem: Problem, seeds: Seeds, scale: PatchScale) -> Ground:
+    """Measured surface, without what practice holes took."""
+    filled, practice = problem.filled, problem.practice
+    measured = filled.mesh.triangles[: filled.n_measured_triangles]
+    triangles = measured if practice is None else measured[~practice.cut_away]
+    mesh = TriangleMesh(filled.mesh.vertices[: filled.n_measured_vertices], triangles)
+    return Ground(mesh, seeds, scale, problem.energy, np.array(problem.diameters), problem.edge_length)
 
 
 def _some(count: int, rng: np.random.Generator) -> BoolArray:

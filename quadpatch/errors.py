@@ -12,6 +12,7 @@
     │   └── TooLargeError       mesh_too_large        over a limit of the reader
     ├── OptionError             invalid_option        an option outside its range, an unknown hole id
     ├── ModelError              unusable_model        a model file that is broken or of the wrong kind
+    ├── TorchMissingError       torch_missing         a network is to be fitted, and torch is not installed
     └── StageError              stage_failed          a stage could not do its work on this mesh
         └── NoQuadsError        no_quads              the outline is too small or too thin for one quad
 """
@@ -75,6 +76,12 @@ class ModelError(QuadpatchError):
     """A model file that is broken, or of the wrong kind."""
 
     code = "unusable_model"
+
+
+class TorchMissingError(QuadpatchError):
+    """A network is to be fitted, and torch is not installed."""
+
+    code = "torch_missing"
 
 
 class StageError(QuadpatchError):

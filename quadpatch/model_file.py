@@ -22,6 +22,7 @@ from quadpatch.sparse.signals import HEIGHTS, NORMALISATION
 from quadpatch.types import FloatArray
 
 SHIPPED_MODELS = Path(__file__).parent / "shipped_models"
+SUFFIXES = (".safetensors", ".onnx")
 MAX_FILE_BYTES = 256 * 1024**2
 MAX_HEADER_BYTES = 1024**2
 MAX_RESOLUTION = 128
@@ -167,7 +168,8 @@ def shipped_model(name: str) -> Path:
     ModelError
         If there is none; the message lists those there are.
     """
-    shipped = {path.stem: path for path in sorted(SHIPPED_MODELS.glob("*@*.safetensors"))}
+    files = sorted(path for path in SHIPPED_MODELS.glob("*@*.*") if path.suffix in SUFFIXES)
+    shipped = {path.stem: path for path in files}
     versions = {key: int(key.rpartition("@")[2]) for key in shipped if key.rpartition("@")[2].isdecimal()}
     matching = [key for key in versions if name in (key, key.rpartition("@")[0])]
     if not matching:

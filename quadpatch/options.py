@@ -11,6 +11,10 @@ RESOLUTION_RANGE = (8, 128)
 OVERLAP_RANGE = (0, 8)
 ATOMS_RANGE = (2, 4096)
 NONZERO_RANGE = (1, 256)
+STEPS_RANGE = (1, 100_000)
+
+# Options that are groups of their own.
+_NESTED = ("holes", "patches", "dictionary", "network")
 
 # How a model's patches become surface: `default` is this project's own way, `paper` that of the paper, step by step.
 Recipe = Literal["default", "paper"]
@@ -92,6 +96,27 @@ class DictionaryOptions:
 
 
 @dataclass(frozen=True)
+class NetworkOptions:
+    """How long a network is fitted to the mesh itself.
+
+    Attributes
+    ----------
+    steps : int
+        At most so many, of 64 patches each.
+    seconds : float
+        At most so long, lessons included. Where it ends before the steps do, another run may give other bytes.
+    """
+
+    steps: int = 1000
+    seconds: float = 600.0
+
+    def __post_init__(self) -> None:
+        _check_range("network.steps", self.steps, STEPS_RANGE)
+        if not (self.seconds > 0 and math.isfinite(self.seconds)):
+            raise OptionError(f"network.seconds must be finite and greater than 0; it is {self.seconds}")
+
+
+@dataclass(frozen=True)
 class RepairOptions:
     """Everything that a repair can be told.
 
@@ -104,6 +129,8 @@ class RepairOptions:
     recipe : str
         `default` or `paper`.
     dictionary : DictionaryOptions
+    network : NetworkOptions
+        Read where a network is fitted to the mesh.
     """
 
     holes: HoleOptions = field(default_factory=HoleOptions)
@@ -111,6 +138,7 @@ class RepairOptions:
     seed: int = 0
     recipe: Recipe = "default"
     dictionary: DictionaryOptions = field(default_factory=DictionaryOptions)
+    network: NetworkOptions = field(default_factory=NetworkOptions)
 
     def __post_init__(self) -> None:
         if self.recipe not in get_args(Recipe):
@@ -129,8 +157,9 @@ class RepairOptions:
                 holes["ids"] = tuple(int(i) for i in holes["ids"])
             patches = dict(values.get("patches") or {})
             dictionary = DictionaryOptions(**(values.get("dictionary") or {}))
-            rest = {name: value for name, value in values.items() if name not in ("holes", "patches", "dictionary")}
-            return cls(HoleOptions(**holes), PatchOptions(**patches), dictionary=dictionary, **rest)
+            network = NetworkOptions(**(values.get("network") or {}))
+            rest = {name: value for name, value in values.items() if name not in _NESTED}
+            return cls(HoleOptions(**holes), PatchOptions(**patches), dictionary=dictionary, network=network, **rest)
         except (TypeError, ValueError) as error:
             raise OptionError(f"options don't fit: {error}") from error
 

@@ -18,7 +18,7 @@ from quadpatch.judge import HoleResult, judge
 from quadpatch.mesh.holes import Hole, find_holes, select_holes
 from quadpatch.mesh.measures import diagonal, mean_edge_length
 from quadpatch.options import RepairOptions
-from quadpatch.practice import choose_energy, expect, practise
+from quadpatch.practice import Practice, choose_energy, expect, practise
 from quadpatch.stages import Stages
 from quadpatch.types import TriangleMesh
 
@@ -99,7 +99,7 @@ def inpaint(
         holes = find_holes(mesh)
         selection = select_holes(holes, options.holes, diagonal(mesh))
     with stages.stage("fill"):
-        problem, energy, expectation = _fill(mesh, selection.chosen, rng)
+        problem, expectation = _fill(mesh, selection.chosen, rng)
     completion, warnings = None, []
     if (inpainter is not None or learn) and len(problem.filled.vertex_hole):
         try:
@@ -113,18 +113,23 @@ def inpaint(
             expectation = completion.expectation
         results = judge(holes, selection, problem.filled, completion, expectation)
     filled = completion.filled if completion else problem.filled
-    return Repair(filled, selection.chosen, results, energy, completion, warnings)
+    return Repair(filled, selection.chosen, results, problem.energy, completion, warnings)
 
 
-def _fill(mesh: TriangleMesh, chosen: list[Hole], rng: np.random.Generator) -> tuple[Problem, Energy, Expectation]:
-    """Fill the holes by the energy that suits this surface; also that energy and the error to expect of it."""
+def _fill(mesh: TriangleMesh, chosen: list[Hole], rng: np.random.Generator) -> tuple[Problem, Expectation]:
+    """Fill the holes by the energy that suits this surface; also the error to expect of that."""
     edge = mean_edge_length(mesh)
     diameters = [hole.diameter for hole in chosen]
-    energy, expectation, filled_again = UNTRIED_ENERGY, UNTRIED, None
+    expectation, filled_again = UNTRIED, None
     practice = practise(mesh, float(np.median(diameters)), edge, rng) if chosen else None
+    energy = suitable_energy(practice)
     if practice is not None:
-        energy = choose_energy(practice, ENERGIES, USUAL_ENERGY)
         filled_again = fair_holes(practice.closed, energy)
         expectation = expect(practice, filled_again)
     filled = fair_holes(close_holes(mesh, [hole.loop for hole in chosen]), energy)
-    return Problem(filled, diameters, edge, practice, filled_again), energy, expectation
+    return Problem(filled, energy, diameters, edge, practice, filled_again), expectation
+
+
+def suitable_energy(practice: Practice | None) -> Energy:
+    """Choose the energy that continues a surface best, as far as practice on it can tell."""
+    return UNTRIED_ENERGY if practice is None else choose_energy(practice, ENERGIES, USUAL_ENERGY)

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from quadpatch.errors import EmptyMeshError, OptionError
+from quadpatch.errors import EmptyMeshError, OptionError, TorchMissingError
 from quadpatch.formats.reading import read_scan
 from quadpatch.formats.scan import Fill, Scan
 from quadpatch.formats.writing import check_suffix, write_scan
@@ -27,6 +27,10 @@ from quadpatch.types import Progress, TriangleMesh, no_progress
 
 SMOOTH = "smooth"
 SELF = "self"
+SELF_NETWORK = "self-network"
+
+# The network that is fitted to a mesh where `SELF_NETWORK` is asked for.
+BASE_NETWORK = "general-residual"
 
 # Formats whose lengths have a unit by definition, or by the default that our writer leaves standing.
 IMPLIED_UNITS = {".glb": "meter", ".gltf": "meter", ".3mf": "millimeter"}
@@ -49,8 +53,8 @@ def repair_file(
     source, output : Path
         The output's suffix says its format.
     model : str or Path
-        `smooth` (no learning), `self` (learn from the mesh itself), the name of a shipped model (`name` or
-        `name@version`), or a model file.
+        `smooth` (no learning), `self` (learn a dictionary from the mesh itself), `self-network` (fit the shipped
+        network to the mesh itself), the name of a shipped model (`name` or `name@version`), or a model file.
     options : RepairOptions, optional
     progress : callable
 
@@ -67,7 +71,7 @@ def repair_file(
     options = options or RepairOptions()
     check_suffix(output)
     stages = Stages(progress)
-    inpainter, card = _resolve(model, options)
+    inpainter, card = _resolve(model, options, progress)
     with stages.stage("read"):
         scan, welded = _read(source)
     by_recipe = inpaint_as_paper if options.recipe == "paper" else inpaint
@@ -116,12 +120,14 @@ def _unit_warnings(scan: Scan, output: Path) -> list[str]:
     return [f"the scan states no length unit, and {output.suffix} always means {implied}: the numbers are unchanged"]
 
 
-def _resolve(model: str | Path, options: RepairOptions) -> tuple[Inpainter | None, dict[str, Any]]:
+def _resolve(model: str | Path, options: RepairOptions, progress: Progress) -> tuple[Inpainter | None, dict[str, Any]]:
     """Turn a model's name or path into its inpainter, and what the report says of it."""
     if model == SMOOTH and options.recipe == "paper":
         raise OptionError(NOTHING_TO_DO)
     if model in (SMOOTH, SELF):
         return None, {"name": str(model)}
+    if model == SELF_NETWORK:
+        return _network_to_fit(options, progress)
     path = Path(model)
     if not path.is_file():
         path = shipped_model(str(model))
@@ -135,6 +141,25 @@ def _resolve(model: str | Path, options: RepairOptions) -> tuple[Inpainter | Non
         return AutoencoderInpainter.load(path), facts
     inpainter = HeightsInpainter if loaded.recipe == "paper" else DictionaryInpainter
     return inpainter(loaded.dictionary), facts
+
+
+def _network_to_fit(options: RepairOptions, progress: Progress) -> tuple[Inpainter, dict[str, Any]]:
+    """Open the shipped network for training."""
+    if options.recipe == "paper":
+        raise OptionError(f"the recipe paper goes with dictionaries; {SELF_NETWORK} has a recipe of its own")
+    path = shipped_model(BASE_NETWORK)
+    try:
+        from quadpatch.networks.fitting import FittingInpainter  # noqa: PLC0415  an extra, and slow to load
+        from quadpatch.networks.weights import load_residual  # noqa: PLC0415
+    except ModuleNotFoundError as error:
+        raise TorchMissingError(
+            "fitting a network to a mesh needs torch, which is not installed here: install quadpatch[networks], "
+            f"or take a model that is ready, such as {BASE_NETWORK}"
+        ) from error
+    return FittingInpainter(load_residual(path), options.network, options.seed, progress), {
+        "name": SELF_NETWORK,
+        "fitted_from": path.stem,
+    }
 
 
 def _check_recipe(model: Model, options: RepairOptions) -> None:

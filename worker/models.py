@@ -11,8 +11,8 @@ from jobkit.schema import ResolvedModel
 from jobkit.store import CHUNK_BYTES, ObjectStore
 from worker.failures import EngineFailedError, Failure
 
-# What `quadpatch.repair.repair_file` calls the two ways to fill a hole without a model file.
-_WITHOUT_FILE = {"none": "smooth", "self": "self"}
+# What `quadpatch.repair.repair_file` calls the ways to fill a hole without a model file.
+_WITHOUT_FILE = {"none": "smooth", "self": "self", "self_network": "self-network"}
 
 
 def model_argument(model: ResolvedModel, registry: Registry, store: ObjectStore, cache: Path) -> str:

@@ -4,7 +4,7 @@ from pathlib import PurePath
 from typing import Any, get_args
 
 from jobkit.meshes import MeshSource
-from jobkit.schema import DictionaryMethod, Format, JobSpec, OutputFormat, SmoothMethod
+from jobkit.schema import CnnMethod, DictionaryMethod, Format, JobSpec, OutputFormat, SmoothMethod
 from worker.limits import EngineLimits
 from worker.request import MESH_FOLDER, EngineRequest
 
@@ -65,7 +65,10 @@ def method_options(spec: JobSpec) -> dict[str, Any]:
     """Return the options as `quadpatch.options.RepairOptions.from_dict` reads them."""
     patches = {} if isinstance(spec.method, SmoothMethod) else spec.method.patches.model_dump()
     recipe = spec.method.recipe if isinstance(spec.method, DictionaryMethod) else "default"
-    return {"holes": spec.holes.model_dump(), "patches": patches, "seed": spec.seed, "recipe": recipe}
+    options = {"holes": spec.holes.model_dump(), "patches": patches, "seed": spec.seed, "recipe": recipe}
+    if isinstance(spec.method, CnnMethod):
+        options["network"] = spec.method.fitting.model_dump()
+    return options
 
 
 def lowered(limits: EngineLimits, spec: JobSpec) -> EngineLimits:

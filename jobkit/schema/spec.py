@@ -4,7 +4,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
-from jobkit.schema.base import REFERENCE_PATTERN, TEXT_PATTERN, WHOLE, MeshId, ModelReference, Request
+from jobkit.schema.base import REFERENCE_PATTERN, TEXT_PATTERN, WHOLE, MeshId, Request
 
 Format = Literal["ply", "stl", "obj", "off", "glb", "gltf", "3mf"]
 OutputFormat = Literal["ply", "stl", "obj", "off", "glb", "3mf"]
@@ -16,6 +16,7 @@ Recipe = Literal["default", "paper"]
 Resolution = Annotated[int, Field(ge=8, le=128), WHOLE]
 Overlap = Annotated[int, Field(ge=0, le=8), WHOLE]
 HoleId = Annotated[int, Field(ge=0, le=2**31 - 1), WHOLE]
+FittingSteps = Annotated[int, Field(ge=1, le=100_000), WHOLE]
 MemoryMb = Annotated[int, Field(ge=256, le=1_048_576), WHOLE]
 Seed = Annotated[int, Field(ge=0, le=2**32 - 1), WHOLE]
 Text = Annotated[str, Field(max_length=200, pattern=TEXT_PATTERN)]
@@ -63,11 +64,30 @@ class DictionaryMethod(Request):
     patches: PatchOptions = Field(default_factory=PatchOptions, description="How patches are laid out.")
 
 
+class Fitting(Request):
+    """How long a network is fitted to the mesh itself; read with `self` alone."""
+
+    steps: FittingSteps = Field(default=1000, description="At most so many steps, of 64 patches each.")
+    seconds: float = Field(
+        default=600.0,
+        gt=0,
+        le=86_400,
+        description="At most so long. Where this ends before the steps do, another run may give other bytes.",
+    )
+
+
 class CnnMethod(Request):
-    """A convolutional network, run by ONNX Runtime."""
+    """A convolutional network."""
 
     method: Literal["cnn"] = Field(description="A convolutional network.", examples=["cnn"])
-    model: ModelReference = DEFAULT_NETWORK
+    model: str = Field(
+        default=DEFAULT_NETWORK,
+        pattern=REFERENCE_PATTERN,
+        description="`name@version`, `name` (its latest version), an alias, or `self`: fit the shipped network to the "
+        "undamaged part of the uploaded mesh, which takes minutes.",
+        examples=["self"],
+    )
+    fitting: Fitting = Field(default_factory=Fitting, description="How long `self` may take.")
     patches: PatchOptions = Field(default_factory=PatchOptions, description="How patches are laid out.")
 
 

@@ -5,8 +5,7 @@ object with `kind` = `autoencoder`, `patch_resolution` N and `recipe`:
 
 - `paper`: one channel of heights less the mean of the known bins, scaled so that `height_low`..`height_high` (in patch
   lengths) becomes 0..`scaled_high`, unknown bins 1; the output is the clean patch in the same scale.
-- `residual`: two channels, the signal (detail over the smoothed surface, as dictionaries code it) and 1 for known bins;
-  the output is what to add to the signal.
+- `residual`: two channels and an answer as in `quadpatch.inpainters.corrections`.
 
 Sessions must not cross a fork: create the inpainter in the process that uses it.
 """
@@ -20,7 +19,8 @@ import numpy as np
 import onnxruntime as ort
 
 from quadpatch.errors import ModelError
-from quadpatch.sparse.signals import from_signals, to_signals
+from quadpatch.inpainters.corrections import CHANNELS, corrected, network_input
+from quadpatch.inpainters.inpainter import Surroundings
 from quadpatch.types import BoolArray, FloatArray, Patches
 
 RECIPES = ("paper", "residual")
@@ -77,10 +77,10 @@ class AutoencoderInpainter:
         if recipe not in RECIPES:
             raise ModelError(f"{path.name}: recipe {recipe!r} is not known; known are {', '.join(RECIPES)}")
         scale = _paper_scale(card, path.name) if recipe == "paper" else None
-        _check_shapes(session, 1 if recipe == "paper" else 2, resolution, path.name)
+        _check_shapes(session, 1 if recipe == "paper" else CHANNELS, resolution, path.name)
         return cls(session, resolution, recipe, scale, card)
 
-    def fitted_to(self, patches: Patches, outline: FloatArray) -> "AutoencoderInpainter":
+    def fitted_to(self, surroundings: Surroundings) -> "AutoencoderInpainter":
         """See `Inpainter`; a network stays as it was trained."""
         return self
 
@@ -88,10 +88,8 @@ class AutoencoderInpainter:
         """See `Inpainter`."""
         if self.scale is not None:
             return self._predict_heights(patches, self.scale)
-        signals, scaling = to_signals(patches.heights - outline, np.ones_like(patches.known))
-        shaped = signals.reshape(patches.heights.shape)
-        correction = self._run(np.stack([shaped, patches.known], axis=1).astype(np.float32))
-        return outline + from_signals((shaped + correction).reshape(signals.shape), scaling)
+        seen = network_input(patches, outline)
+        return corrected(patches, seen.spread, self._run(seen.channels))
 
     def _predict_heights(self, patches: Patches, scale: PaperScale) -> FloatArray:
         mean = _mean_of_known(patches.heights, patches.known)[:, None, None]

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from quadpatch.inpainters.inpainter import Surroundings
 from quadpatch.sparse.dictionary import Dictionary
 from quadpatch.sparse.gaussian import gaussian_codes, known_covariance, principal_atoms
 from quadpatch.sparse.omp import masked_omp
@@ -44,12 +45,12 @@ class DictionaryInpainter:
         """Bins along one side of its patches."""
         return self.dictionary.resolution
 
-    def fitted_to(self, patches: Patches, outline: FloatArray) -> "DictionaryInpainter":
+    def fitted_to(self, surroundings: Surroundings) -> "DictionaryInpainter":
         """See `Inpainter`: learn how much this mesh uses each atom, from sparse codes of its patches.
 
         That makes a covariance of the bins, and its principal directions take the place of the atoms.
         """
-        signals, known = _lessons(patches, outline)
+        signals, known = _usable_signals(surroundings.patches, surroundings.outline)
         if len(signals) < MIN_TRAINING_PATCHES:
             return self
         codes = masked_omp(signals, known, self.dictionary.atoms, self.dictionary.n_nonzero)
@@ -82,7 +83,7 @@ def learn_from_patches(patches: Patches, outline: FloatArray) -> DictionaryInpai
     DictionaryInpainter or None
         None where too few patches show enough surface to learn anything.
     """
-    signals, known = _lessons(patches, outline)
+    signals, known = _usable_signals(patches, outline)
     if len(signals) < MIN_TRAINING_PATCHES:
         return None
     return _principal(known_covariance(signals, known), patches.resolution)
@@ -93,7 +94,7 @@ def _principal(covariance: FloatArray, resolution: int) -> DictionaryInpainter:
     return DictionaryInpainter(Dictionary(atoms, resolution, len(deviations)), deviations)
 
 
-def _lessons(patches: Patches, outline: FloatArray) -> tuple[FloatArray, BoolArray]:
+def _usable_signals(patches: Patches, outline: FloatArray) -> tuple[FloatArray, BoolArray]:
     """Signals of the patches that show enough surface, and some texture; and their known bins."""
     usable = patches.known.mean(axis=(1, 2)) >= LEAST_KNOWN
     signals, scaling = to_signals(patches.heights[usable] - outline[usable], patches.known[usable])

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from quadpatch.inpainters.inpainter import Surroundings
 from quadpatch.options import DictionaryOptions
 from quadpatch.sparse.dictionary import Dictionary
 from quadpatch.sparse.ksvd import KsvdOptions, OnIteration, masked_ksvd
@@ -42,7 +43,7 @@ class HeightsInpainter:
         """Bins along one side of its patches."""
         return self.dictionary.resolution
 
-    def fitted_to(self, patches: Patches, outline: FloatArray) -> "HeightsInpainter":
+    def fitted_to(self, surroundings: Surroundings) -> "HeightsInpainter":
         """See `Inpainter`; the paper fits nothing."""
         return self
 

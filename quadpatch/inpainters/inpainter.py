@@ -1,8 +1,28 @@
 """What every inpainter does: predict the whole height map of a patch from its known bins."""
 
+from dataclasses import dataclass
 from typing import Protocol
 
+from quadpatch.lessons import Ground
 from quadpatch.types import FloatArray, Patches
+
+
+@dataclass(frozen=True)
+class Surroundings:
+    """Undamaged surface of the mesh at hand, for a model to be fitted to.
+
+    Attributes
+    ----------
+    patches : Patches
+        Practice holes count as unknown.
+    outline : (n_patches, N, N) float64
+    ground : Ground
+        The same surface to cut lessons from; practice holes are open.
+    """
+
+    patches: Patches
+    outline: FloatArray
+    ground: Ground
 
 
 class Inpainter(Protocol):
@@ -13,15 +33,8 @@ class Inpainter(Protocol):
         """Bins along one side of its patches."""
         ...
 
-    def fitted_to(self, patches: Patches, outline: FloatArray) -> "Inpainter":
-        """Fit the model to the mesh at hand, by undamaged surface of it; itself where there is nothing to fit.
-
-        Parameters
-        ----------
-        patches : Patches
-        outline : (n_patches, N, N) float64
-            As for `predict`.
-        """
+    def fitted_to(self, surroundings: Surroundings) -> "Inpainter":
+        """Fit the model to the mesh at hand; itself where there is nothing to fit."""
         ...
 
     def predict(self, patches: Patches, outline: FloatArray) -> FloatArray:

@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
 
+from quadpatch.filling.fairing import THIN_PLATE
 from quadpatch.inpainters.dictionary import (
     LEAST_KNOWN,
     MIN_TRAINING_PATCHES,
@@ -8,8 +9,12 @@ from quadpatch.inpainters.dictionary import (
     DictionaryInpainter,
     learn_from_patches,
 )
+from quadpatch.inpainters.inpainter import Surroundings
+from quadpatch.lessons import Ground
+from quadpatch.patches.scale import PatchScale
+from quadpatch.patches.seeds import Seeds
 from quadpatch.sparse.dictionary import Dictionary
-from quadpatch.types import BoolArray, FloatArray, Patches
+from quadpatch.types import BoolArray, FloatArray, Patches, TriangleMesh
 
 N = 12
 
@@ -21,6 +26,14 @@ def as_patches(heights: FloatArray, known: BoolArray | None = None) -> Patches:
     return Patches(
         np.zeros((count, 3)), frames, 1.0, heights, known, np.ones(heights.shape, bool), np.zeros(heights.shape, int)
     )
+
+
+def surroundings(patches: Patches) -> Surroundings:
+    """Surface over a flat outline; dictionaries don't look at the ground."""
+    flat = TriangleMesh(np.zeros((0, 3)), np.zeros((0, 3), np.int64))
+    nowhere = Seeds(np.zeros((0, 3)), np.zeros((0, 3, 3)), np.zeros(0, np.int64))
+    ground = Ground(flat, nowhere, PatchScale(1.0, N, 1), THIN_PLATE, np.ones(1), 0.1)
+    return Surroundings(patches, 0 * patches.heights, ground)
 
 
 def waves(count: int, seed: int = 0) -> FloatArray:
@@ -104,7 +117,7 @@ def test_a_dictionary_from_elsewhere_learns_how_much_this_mesh_uses_each_atom(le
     atoms = learned.dictionary.atoms
     strangers = np.linalg.qr(np.random.default_rng(0).normal(size=(N * N, N * N - atoms.shape[1])))[0]
     mixed = Dictionary(np.concatenate([atoms, strangers], axis=1), N, 4)
-    fitted = DictionaryInpainter(mixed).fitted_to(as_patches(heights), 0 * heights)
+    fitted = DictionaryInpainter(mixed).fitted_to(surroundings(as_patches(heights)))
     # What this mesh uses comes first: the waves, not the strangers.
     common = fitted.dictionary.atoms[:, :4]
     assert np.linalg.norm(atoms.T @ common, axis=0).min() > 0.95
@@ -117,7 +130,7 @@ def test_a_dictionary_from_elsewhere_learns_how_much_this_mesh_uses_each_atom(le
 def test_without_surface_to_fit_to_a_dictionary_stays_as_it_is(learned: DictionaryInpainter) -> None:
     plain = DictionaryInpainter(learned.dictionary)
     few = waves(MIN_TRAINING_PATCHES - 1)
-    assert plain.fitted_to(as_patches(few), 0 * few) is plain
+    assert plain.fitted_to(surroundings(as_patches(few))) is plain
 
 
 def test_unknown_bins_are_not_learned_from() -> None:

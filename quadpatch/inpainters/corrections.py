@@ -1,0 +1,62 @@
+"""What a network of the recipe `residual` sees of a patch, and what its answer means.
+
+It sees the detail of the filled surface over the outline, in spreads of the known bins, and which bins are known. It
+answers how much higher the true surface lies in the bins that were invented: zero means the fill as it is.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from quadpatch.sparse.signals import to_signals
+from quadpatch.types import FloatArray, Patches
+
+CHANNELS = 2
+
+# Single bins may stand out (a spike at a fold), and must not drown the others.
+LARGEST = 10.0
+
+
+@dataclass(frozen=True)
+class NetworkInput:
+    """Patches as the network sees them.
+
+    Attributes
+    ----------
+    channels : (n, 2, N, N) float32
+        Detail in spreads, and 1 for known bins.
+    spread : (n,) float64
+        Standard deviation of the known detail, in mesh units; 0 where there is none.
+    """
+
+    channels: NDArray[np.float32]
+    spread: FloatArray
+
+
+def network_input(patches: Patches, outline: FloatArray) -> NetworkInput:
+    """Prepare patches for a network.
+
+    Parameters
+    ----------
+    patches : Patches
+        Heights in unknown bins are those of the fill.
+    outline : (n, N, N) float64
+    """
+    detail = patches.heights - outline
+    _, scaling = to_signals(detail, patches.known)
+    centred = np.where(patches.seen, detail - scaling.mean[:, None, None], 0.0)
+    signals = in_spreads(centred, scaling.spread)
+    return NetworkInput(np.stack([signals, patches.known], axis=1, dtype=np.float32), scaling.spread)
+
+
+def in_spreads(lengths: FloatArray, spread: FloatArray) -> FloatArray:
+    """Divide lengths (n, N, N) by the spread (n,) of their patch; 0 for flat patches."""
+    wide = np.broadcast_to(spread[:, None, None], lengths.shape)
+    signals = np.divide(lengths, wide, out=np.zeros_like(lengths), where=wide > 0.0)
+    return np.asarray(np.clip(signals, -LARGEST, LARGEST))
+
+
+def corrected(patches: Patches, spread: FloatArray, corrections: FloatArray) -> FloatArray:
+    """Heights (n, N, N), in mesh units: those of the fill, corrected in invented bins by (n, N, N) spreads."""
+    return np.asarray(patches.heights + np.where(patches.known, 0.0, corrections * spread[:, None, None]))

@@ -1,0 +1,126 @@
+"""Lessons for networks: fills of holes that were cut into undamaged surface, beside the surface that was there.
+
+The holes are cut into the mesh and filled by the same code as the real ones, since a network can only learn to correct
+the errors that it is shown.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from quadpatch.filling.fairing import Energy
+from quadpatch.filling.fill import close_holes, fair_holes
+from quadpatch.inpainters.corrections import in_spreads, network_input
+from quadpatch.mesh.smoothing import laplacian_smooth
+from quadpatch.patches.folding import is_unfolded
+from quadpatch.patches.height_map import sample_height_maps
+from quadpatch.patches.layout import patchify, pick, seeds_near, take
+from quadpatch.patches.scale import PatchScale, outline_iterations
+from quadpatch.patches.seeds import Seeds
+from quadpatch.punching import Spacing, punch
+from quadpatch.raycast import RayScene
+from quadpatch.types import FloatArray, TriangleMesh
+
+# Surface left between the holes of one round, in mean edge lengths: closer than in practice, for the sake of many.
+_MARGIN_EDGES = 2.0
+# Holes are cut from this much narrower to this much wider than those that are asked for.
+WIDTHS = (0.8, 1.15)
+
+
+@dataclass(frozen=True)
+class Ground:
+    """Surface that lessons are cut from.
+
+    Attributes
+    ----------
+    mesh : TriangleMesh
+        Real holes, and what else must stay unseen, are open in it.
+    seeds : Seeds
+        Where patches may lie.
+    scale : PatchScale
+    energy : Energy
+        That the holes are filled by.
+    diameters : (k,) float64
+        Of the holes to prepare for, in mesh units.
+    edge_length : float
+        Mean of the mesh, in mesh units.
+    """
+
+    mesh: TriangleMesh
+    seeds: Seeds
+    scale: PatchScale
+    energy: Energy
+    diameters: FloatArray
+    edge_length: float
+
+
+@dataclass(frozen=True)
+class Lessons:
+    """Pairs of question and answer, float32 each.
+
+    Attributes
+    ----------
+    channels : (n, 2, N, N)
+        As `network_input` gives them.
+    correction : (n, N, N)
+        How much higher the true surface lies, in spreads of the patch; 0 where `asked` is 0.
+    asked : (n, N, N)
+        1 for invented bins whose truth is known.
+    """
+
+    channels: "np.ndarray[tuple[int, ...], np.dtype[np.float32]]"
+    correction: "np.ndarray[tuple[int, ...], np.dtype[np.float32]]"
+    asked: "np.ndarray[tuple[int, ...], np.dtype[np.float32]]"
+
+    def __len__(self) -> int:
+        """Count of pairs."""
+        return len(self.channels)
+
+    @staticmethod
+    def joined(parts: "list[Lessons]", resolution: int) -> "Lessons":
+        """Join the lessons of several rounds."""
+        none = np.zeros((0, resolution, resolution), np.float32)
+        return Lessons(
+            np.concatenate([np.zeros((0, 2, resolution, resolution), np.float32), *(p.channels for p in parts)]),
+            np.concatenate([none, *(part.correction for part in parts)]),
+            np.concatenate([none, *(part.asked for part in parts)]),
+        )
+
+
+def give_lessons(ground: Ground, rng: np.random.Generator) -> Iterator[Lessons]:
+    """Cut, fill and compare, round after round, at other places each time.
+
+    Parameters
+    ----------
+    ground : Ground
+    rng : numpy.random.Generator
+
+    Yields
+    ------
+    Lessons
+        None where the surface has no room for a hole.
+    """
+    while True:
+        width = float(rng.choice(ground.diameters)) * rng.uniform(*WIDTHS)
+        yield _round(ground, width, rng)
+
+
+def _round(ground: Ground, diameter: float, rng: np.random.Generator) -> Lessons:
+    scale = ground.scale
+    spacing = Spacing(ground.edge_length, _MARGIN_EDGES * ground.edge_length)
+    punched = punch(ground.mesh, diameter, spacing, rng)
+    filled = fair_holes(close_holes(punched.mesh, punched.loops), ground.energy)
+    outline = laplacian_smooth(filled.mesh, outline_iterations(scale.length, ground.edge_length))
+    invented = filled.mesh.vertices[filled.n_measured_vertices :]
+    near = take(ground.seeds, seeds_near(ground.seeds, invented, scale.length))
+    sampled = patchify(filled, outline, near, scale)
+    sampled = pick(sampled, is_unfolded(sampled.patches))
+    patches = sampled.patches
+    places = Seeds(patches.origins, patches.frames, np.zeros(len(patches), np.int64))
+    nothing = np.zeros(len(ground.mesh.triangles), bool)
+    truth = sample_height_maps(RayScene(ground.mesh), ground.mesh, nothing, places, scale.length, scale.resolution)
+    asked = truth.seen & patches.seen & ~patches.known
+    seen = network_input(patches, sampled.outline)
+    correction = in_spreads(np.where(asked, truth.heights - patches.heights, 0.0), seen.spread)
+    return Lessons(seen.channels, correction.astype(np.float32), asked.astype(np.float32))

@@ -1,0 +1,133 @@
+"""Fitting the network `residual` to one mesh: it practises on that mesh's own undamaged surface."""
+
+import time
+from dataclasses import dataclass, replace
+from itertools import islice
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from quadpatch.inpainters.corrections import corrected, network_input
+from quadpatch.inpainters.inpainter import Surroundings
+from quadpatch.lessons import Lessons, give_lessons
+from quadpatch.networks.residual import RESOLUTION, Residual, errors, turned
+from quadpatch.options import NetworkOptions
+from quadpatch.types import FloatArray, Patches, Progress, no_progress
+
+BATCH = 64
+RATE = 2e-3
+# Steps over which the rate rises to its full height.
+WARM_UP = 50
+# More lessons than this add seconds, not quality; fewer rounds than this show too few places.
+ENOUGH_LESSONS = 5000
+MAX_ROUNDS = 8
+MIN_LESSONS = 64
+# Longest gradient, over all weights, that one step follows.
+_LONGEST_GRADIENT = 1.0
+# Patches in one run of the network.
+_RUN = 256
+
+
+@dataclass(frozen=True)
+class FittingInpainter:
+    """The network, before it is fitted (`fitted_to`) and afterwards.
+
+    Attributes
+    ----------
+    network : Residual
+    options : NetworkOptions
+    seed : int
+    progress : callable
+        Told the share of the steps that is done, as stage `learn`.
+    """
+
+    network: Residual
+    options: NetworkOptions
+    seed: int = 0
+    progress: Progress = no_progress
+
+    @property
+    def resolution(self) -> int:
+        """Bins along one side of its patches."""
+        return RESOLUTION
+
+    def fitted_to(self, surroundings: Surroundings) -> "FittingInpainter":
+        """See `Inpainter`. Leaves the weights as they are where the mesh has no room for lessons."""
+        started = time.monotonic()
+        lessons = gather_lessons(surroundings, self.seed)
+        if len(lessons) < MIN_LESSONS:
+            return self
+        network = Residual()
+        network.load_state_dict(self.network.state_dict())
+        left = self.options.seconds - (time.monotonic() - started)
+        fit(network, lessons, replace(self.options, seconds=max(left, 0.0)), self.seed, self.progress)
+        return replace(self, network=network)
+
+    def predict(self, patches: Patches, outline: FloatArray) -> FloatArray:
+        """See `Inpainter`."""
+        seen = network_input(patches, outline)
+        answers = [np.zeros((0, RESOLUTION, RESOLUTION), np.float32)]
+        with torch.inference_mode():
+            for start in range(0, len(patches), _RUN):
+                part = torch.from_numpy(seen.channels[start : start + _RUN])
+                answers.append(self.network(part)[:, 0].numpy())
+        return corrected(patches, seen.spread, np.concatenate(answers).astype(np.float64))
+
+
+def gather_lessons(surroundings: Surroundings, seed: int) -> Lessons:
+    """Cut lessons until there are enough, or a round of them would come too often to the same places."""
+    parts: list[Lessons] = []
+    for part in islice(give_lessons(surroundings.ground, np.random.default_rng([seed, 3])), MAX_ROUNDS):
+        parts.append(part)
+        if sum(len(part) for part in parts) >= ENOUGH_LESSONS:
+            break
+    return Lessons.joined(parts, RESOLUTION)
+
+
+def fit(
+    network: Residual, lessons: Lessons, options: NetworkOptions, seed: int, progress: Progress = no_progress
+) -> int:
+    """Train a network in place.
+
+    The rate falls along a cosine that ends with the steps, or with the time where that is shorter: the outcome is the
+    same for the same seed as long as the steps fit into the time.
+
+    Returns
+    -------
+    int
+        Steps done.
+    """
+    random = torch.Generator().manual_seed(seed)
+    arrays = lessons.channels, lessons.correction[:, None], lessons.asked[:, None]
+    tensors = tuple(torch.from_numpy(array) for array in arrays)
+    network.to(memory_format=torch.channels_last)  # type: ignore[call-overload]  # torch's own stubs lack it
+    optimiser = torch.optim.AdamW(network.parameters(), RATE, weight_decay=1e-2)
+    started = time.monotonic()
+    for step in range(options.steps):
+        spent = (time.monotonic() - started) / max(options.seconds, 1e-9)
+        done = max(step / options.steps, spent)
+        if done >= 1.0:
+            return step
+        for group in optimiser.param_groups:
+            group["lr"] = RATE * min(1.0, (step + 1) / WARM_UP) * 0.5 * (1 + np.cos(np.pi * done))
+        _step(network, optimiser, _batch(tensors, random))
+        progress("learn", done)
+    return options.steps
+
+
+def _batch(tensors: tuple[Tensor, ...], random: torch.Generator) -> tuple[Tensor, ...]:
+    chosen = torch.randint(0, len(tensors[0]), (BATCH,), generator=random)
+    turn = int(torch.randint(0, 8, (1,), generator=random).item())
+    return turned(tuple(tensor[chosen] for tensor in tensors), turn % 4, mirrored=turn >= 4)
+
+
+def _step(network: Residual, optimiser: torch.optim.Optimizer, batch: tuple[Tensor, ...]) -> None:
+    channels, correction, asked = batch
+    with torch.autocast("cpu", torch.bfloat16):
+        answer = network(channels.contiguous(memory_format=torch.channels_last))
+    loss = errors(answer.float(), correction, asked).loss
+    optimiser.zero_grad()
+    loss.backward()  # type: ignore[no-untyped-call]
+    torch.nn.utils.clip_grad_norm_(network.parameters(), _LONGEST_GRADIENT)
+    optimiser.step()

@@ -1,0 +1,28 @@
+"""From a network file back to a network that can be trained further."""
+
+from pathlib import Path
+
+import onnx
+import torch
+from onnx import numpy_helper
+
+from quadpatch.errors import ModelError
+from quadpatch.networks.residual import Residual
+
+
+def load_residual(path: Path) -> Residual:
+    """Read the weights of a network `residual` from its ONNX file, where they carry their names.
+
+    Raises
+    ------
+    ModelError
+        If the file holds another network.
+    """
+    try:
+        tensors = onnx.load(path).graph.initializer
+        weights = {tensor.name: torch.from_numpy(numpy_helper.to_array(tensor).copy()) for tensor in tensors}
+        network = Residual()
+        network.load_state_dict({name: weights[name] for name in network.state_dict()})
+    except (OSError, ValueError, KeyError, RuntimeError) as error:
+        raise ModelError(f"{path.name} holds no network 'residual' that could be trained further: {error}") from error
+    return network
