@@ -16,6 +16,7 @@ from jobkit.clock import utc_now
 from jobkit.database import Database
 from jobkit.errors import ModelNotFoundError, NameTakenError, UnusableModelError
 from jobkit.model_header import Card, artifact_format, read_dictionary_card, to_wire_card
+from jobkit.network_header import read_network_card
 from jobkit.schema import SELF, Alias, Model, ModelKind, ModelLinks, ModelList, ModelVersion
 from jobkit.store import CHUNK_BYTES, ObjectStore, StoredObject
 from jobkit.tables import AliasRow, ModelRow
@@ -52,7 +53,7 @@ class Registry:
         stored : StoredObject
             Written with the prefix MODEL_PREFIX; removed again if it is no model.
         card : dict, optional
-            Of a network; a dictionary brings its own.
+            Of a network, in place of the one in its metadata; a dictionary always brings its own.
         version : int, optional
             Number to take; None: the next one.
 
@@ -154,7 +155,7 @@ class Registry:
             kind_of_file = artifact_format(path)
             artifact = Artifact(stored.key, kind_of_file, stored.sha256, stored.size_bytes)
             if kind_of_file == "onnx":
-                return "autoencoder", artifact, card or {}
+                return "autoencoder", artifact, card or read_network_card(path) or {}
             return "dictionary", artifact, read_dictionary_card(path)
 
     def _insert(self, row: ModelRow, version: int | None) -> tuple[ModelVersion, bool]:

@@ -17,8 +17,9 @@ _logger = logging.getLogger(__name__)
 def seed_shipped(registry: Registry, folder: Path) -> list[ModelVersion]:
     """Register every `name@version.safetensors` and `name@version.onnx` of a folder.
 
-    A network's card lies beside it as `name@version.json`. Where the aliases `default` and `default-network` point to
-    nothing yet, they are pointed to the latest version of the first dictionary and of the first network.
+    Models bring their cards; a network without one may have it beside it as `name@version.json`. Where the aliases
+    `default` and `default-network` point to nothing yet, they are pointed to the latest version of the first
+    dictionary and of the first network.
 
     Parameters
     ----------

@@ -1,7 +1,5 @@
 """``python -m training``: learn models from the command line."""
 
-import shlex
-import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
@@ -9,12 +7,13 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from jobkit.errors import JobkitError
-from quadpatch.errors import OptionError, QuadpatchError
+from quadpatch.errors import OptionError
 from quadpatch.options import Recipe
 from quadpatch.sparse.ksvd import KsvdOptions
+from training.commands import corpus, network
 from training.dictionary import USUAL, LearningOptions
 from training.run import Request, run
+from training.typed import command_line, refusals
 
 app = typer.Typer(add_completion=False, no_args_is_help=True, help="Learn models and publish them.")
 
@@ -47,16 +46,17 @@ def dictionary(  # noqa: PLR0913 - one parameter for each option of the command 
 ) -> None:
     """Learn a patch dictionary by K-SVD and write it with its card."""
     console = Console(stderr=True)
-    try:
+    with refusals(console):
         usual = USUAL[recipe]
         patches = replace(usual.recipe, resolution=resolution, length=_length(patch_length), overlap=overlap)
         ksvd = KsvdOptions(atoms or usual.ksvd.n_atoms, nonzero or usual.ksvd.n_nonzero, iterations)
         options = LearningOptions(patches, ksvd, procedural, seed=seed)
         file = output or Path(f"{name}.safetensors")
-        run(Request(name, meshes, holdout or [], options, _command(), file, curve, register), console)
-    except (QuadpatchError, JobkitError) as error:
-        console.print(f"error ({error.code}): {error}", style="red", highlight=False, markup=False)
-        raise typer.Exit(1) from None
+        run(Request(name, meshes, holdout or [], options, command_line(), file, curve, register), console)
+
+
+app.command()(corpus)
+app.command()(network)
 
 
 def _length(text: str) -> float | None:
@@ -67,19 +67,6 @@ def _length(text: str) -> float | None:
     if length is not None and not 0.0 < length < float("inf"):
         raise OptionError(f"--patch-length must be greater than 0; got {text}")
     return length
-
-
-def _command() -> str:
-    """Return what was typed, without the folders that files lie in and without what does not change the bytes."""
-    kept, arguments = ["python", "-m", "training"], iter(sys.argv[1:])
-    for argument in arguments:
-        option, _, value = argument.partition("=")
-        if option in ("--output", "--curve"):
-            if not value:
-                next(arguments, None)
-        elif option != "--register":
-            kept.append(Path(argument).name if "/" in argument else argument)
-    return shlex.join(kept)
 
 
 if __name__ == "__main__":

@@ -21,6 +21,8 @@ class Architecture:
         Bins along one side of its patches.
     recipe : str
         How patches are prepared for it, one of `quadpatch.inpainters.autoencoder.RECIPES`; a corpus is cut for one.
+    channels : int
+        Of its input.
     build : callable
         Makes the module; its weights follow from torch's generator.
     output : callable
@@ -30,12 +32,14 @@ class Architecture:
     name: str
     resolution: int
     recipe: str
+    channels: int
     build: Callable[[], nn.Module]
     output: Callable[[], nn.Module] = nn.Identity
 
 
 ARCHITECTURES = {
-    name: Architecture(name, plan.resolution, "paper", partial(build, name), nn.Sigmoid) for name, plan in PLANS.items()
+    name: Architecture(name, plan.resolution, "paper", 1, partial(build, name), nn.Sigmoid)
+    for name, plan in PLANS.items()
 }
 
 

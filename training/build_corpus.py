@@ -53,6 +53,8 @@ class CorpusOptions:
     relief_side : int
         Vertices along one side of a procedural mesh.
     seed : int
+    command : str
+        What was typed, for the cards of the networks that learn from it.
     """
 
     recipe: str = "paper"
@@ -64,6 +66,7 @@ class CorpusOptions:
     n_procedural: int = 0
     relief_side: int = 120
     seed: int = 0
+    command: str = ""
 
     def facts(self) -> Facts:
         """Return what the manifest says about the patches."""
@@ -75,6 +78,7 @@ class CorpusOptions:
             "max_places_per_mesh_and_scale": self.places,
             "procedural": {"patterns": sorted(PATTERNS), "n_each": self.n_procedural} if self.n_procedural else {},
             "seed": self.seed,
+            "command": self.command,
         }
 
 

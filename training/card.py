@@ -1,5 +1,6 @@
 """Model cards: the facts inside a model file, and the page beside it."""
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -20,9 +21,41 @@ _SIGNALS = {
     HEIGHTS: "heights over the plane of the patch, mean removed: the paper's own recipe",
 }
 
-_REPEATING = (
-    "Paths are shortened to their last part; the meshes are those listed below. The same meshes and the same command",
-    "give the same bytes, with the same numpy on the same kind of processor: elsewhere sums may round differently.",
+
+@dataclass(frozen=True)
+class PageWording:
+    """What the page of a kind of model says besides the facts of its card.
+
+    Attributes
+    ----------
+    kind : str
+    repeating : tuple of str
+        Lines on what the same command gives.
+    measuring : tuple of str
+        Lines on what the metrics mean.
+    """
+
+    kind: str
+    repeating: tuple[str, ...]
+    measuring: tuple[str, ...]
+
+
+WORDING = PageWording(
+    "dictionary",
+    (
+        "Paths are shortened to their last part; the meshes are those listed below. The same meshes and the same "
+        "command",
+        "give the same bytes, with the same numpy on the same kind of processor: elsewhere sums may round differently.",
+    ),
+    (
+        "Patches of these scans (`scan_`) and of procedural reliefs from another seed (`relief_`), none of them",
+        "learned from. A disk in the middle of each patch is hidden (its width in percent of the patch's side stands",
+        "in the name) and completed. `error`: root mean square error in the disk, in units of the patch's own spread;",
+        "`to_plate`, `to_membrane`: divided by that of a thin plate or a membrane over the same hole; `to_unhidden`:",
+        "divided by that of coding the whole patch. Below 1 the dictionary is the better one. One patch at a time,",
+        "over the outline of the undamaged mesh: these figures rank dictionaries, they do not foretell the error of",
+        "a repair.",
+    ),
 )
 
 
@@ -87,32 +120,35 @@ def dictionary_card(
     }
 
 
-def write_card_page(path: Path, card: Card, sha256: str) -> None:
+def write_card_page(path: Path, card: Card, sha256: str, wording: PageWording = WORDING) -> None:
     """Write the card as a Markdown page."""
-    path.write_text(_page(card, sha256), "utf-8")
+    path.write_text(_page(card, sha256, wording), "utf-8")
 
 
-def _page(card: Card, sha256: str) -> str:
+def _page(card: Card, sha256: str, wording: PageWording) -> str:
     version = f"@{card['version']}" if card["version"] else ""
     lines = [f"# {card['name']}{version}", "", str(card["description"]), ""]
     lines += ["| | |", "| --- | --- |"]
-    lines += [f"| {key} | {value} |" for key, value in _facts(card, sha256).items()]
+    lines += [f"| {key} | {value} |" for key, value in _facts(card, sha256, wording.kind).items()]
     lines += ["", "## Intended use", "", str(card["intended_use"])]
-    lines += ["", "## How it was made", "", "```", str(card["command"]), "```", "", *_REPEATING, ""]
-    lines += [f"- {key.replace('_', ' ')}: {value}" for key, value in card["recipe"].items()]
+    lines += ["", "## How it was made", "", "```", str(card["command"]), "```", "", *wording.repeating, ""]
+    made_so = card.get("training") or card["recipe"]
+    lines += [f"- {key.replace('_', ' ')}: {value}" for key, value in made_so.items()]
     lines += ["", "## Learned from", "", *_mesh_table(card["training_corpus"])]
     if card["procedural"]:
         made = card["procedural"]
         lines += ["", f"And {made['n_each']} of each procedural relief, seed {made['seed']}: "]
         lines[-1] += ", ".join(made["patterns"]) + "."
     if card["metrics"]:
-        lines += ["", "## Measured on", "", *_mesh_table(card["held_out"]), "", *_metric_lines(card["metrics"])]
+        lines += ["", "## Measured on", "", *_mesh_table(card["held_out"]), "", *wording.measuring]
+        lines += ["", "| measure | value |", "| --- | --- |"]
+        lines += [f"| {key} | {value:g} |" for key, value in card["metrics"].items()]
     return "\n".join(lines) + "\n"
 
 
-def _facts(card: Card, sha256: str) -> dict[str, Any]:
+def _facts(card: Card, sha256: str, kind: str) -> dict[str, Any]:
     return {
-        "kind": "dictionary",
+        "kind": kind,
         "licence": card["licence"],
         "seed": card["seed"],
         "corpus sha256": f"`{card['corpus_sha256']}`",
@@ -123,19 +159,3 @@ def _facts(card: Card, sha256: str) -> dict[str, Any]:
 def _mesh_table(meshes: list[dict[str, str]]) -> list[str]:
     rows = [f"| {m['name']} | {m['origin']} | {m['licence']} | `{m['sha256'][:12]}` |" for m in meshes]
     return ["| mesh | origin | licence and attribution | sha256 |", "| --- | --- | --- | --- |", *rows]
-
-
-def _metric_lines(metrics: dict[str, float]) -> list[str]:
-    lines = [
-        "Patches of these scans (`scan_`) and of procedural reliefs from another seed (`relief_`), none of them",
-        "learned from. A disk in the middle of each patch is hidden (its width in percent of the patch's side stands",
-        "in the name) and completed. `error`: root mean square error in the disk, in units of the patch's own spread;",
-        "`to_plate`, `to_membrane`: divided by that of a thin plate or a membrane over the same hole; `to_unhidden`:",
-        "divided by that of coding the whole patch. Below 1 the dictionary is the better one. One patch at a time,",
-        "over the outline of the undamaged mesh: these figures rank dictionaries, they do not foretell the error of",
-        "a repair.",
-        "",
-        "| measure | value |",
-        "| --- | --- |",
-    ]
-    return lines + [f"| {key} | {value:g} |" for key, value in metrics.items()]

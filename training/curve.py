@@ -23,8 +23,15 @@ def text_curve(errors: FloatArray) -> str:
     return f"{errors[0]:.4f} {bars} {errors[-1]:.4f}"
 
 
-def write_curve(path: Path, errors: FloatArray) -> None:
+def write_curve(path: Path, errors: FloatArray, name: str = "rms_error") -> None:
     """Write the errors (n,) as `.json` (a list) or `.png` (a line over the iterations).
+
+    Parameters
+    ----------
+    path : Path
+    errors : (n,) float64
+    name : str
+        What they are, for the reader of the file.
 
     Raises
     ------
@@ -32,14 +39,14 @@ def write_curve(path: Path, errors: FloatArray) -> None:
         If the suffix is another one.
     """
     if path.suffix == ".json":
-        path.write_text(json.dumps({"rms_error": errors.tolist()}) + "\n", "utf-8")
+        path.write_text(json.dumps({name: errors.tolist()}) + "\n", "utf-8")
     elif path.suffix == ".png":
-        _draw(errors).save(path)
+        _draw(errors, name).save(path)
     else:
         raise OptionError(f"a curve is written as .json or .png; got {path.name}")
 
 
-def _draw(errors: FloatArray) -> Image.Image:
+def _draw(errors: FloatArray, name: str) -> Image.Image:
     """Draw a line over the iterations; the axis of errors starts at 0."""
     image = Image.new("RGB", SIZE, "white")
     draw = ImageDraw.Draw(image)
@@ -53,6 +60,6 @@ def _draw(errors: FloatArray) -> Image.Image:
     ]
     if len(points) > 1:
         draw.line(points, fill=(200, 60, 20), width=3)
-    draw.text((left, bottom + 8), f"iteration 1 to {len(errors)}", fill="black")
-    draw.text((left, top - 20), f"root mean square error, {highest:.3g} at the top", fill="black")
+    draw.text((left, bottom + 8), f"1 to {len(errors)}", fill="black")
+    draw.text((left, top - 20), f"{name.replace('_', ' ')}, {highest:.3g} at the top", fill="black")
     return image

@@ -22,12 +22,14 @@ from quadpatch.inpainters.autoencoder import PaperScale
 from quadpatch.types import IntArray
 from training.architectures import Architecture
 from training.holes import N_TURNS, Holes, draw_holes, turn
-from training.shards import PatchSet
+from training.shards import Corpus, PatchSet
 from training.task import Batch
 
 # Limits of the scale: heights beyond are cut off. The outermost bins of all stand for folds and spikes.
 PERCENTILES = (0.25, 99.75)
 MAX_SCALE_PATCHES = 5000
+# What model cards call it.
+NORMALISATION = "heights-mean-range"
 # Validation is the same for every run, so that runs with several seeds can be compared.
 VALIDATION_SEED = 20_190_325
 MAX_VALIDATION_PATCHES = 2048
@@ -54,6 +56,16 @@ class PaperTask:
     def identity(self) -> dict[str, Any]:
         """See `Task`."""
         return {"architecture": self.architecture.name, "corpus_sha256": self.corpus_sha256}
+
+    def card_facts(self) -> dict[str, Any]:
+        """See `Task`."""
+        scale = self.scale
+        return {
+            "height_low": scale.low,
+            "height_high": scale.high,
+            "scaled_high": scale.scaled_high,
+            "normalisation": NORMALISATION,
+        }
 
     def build(self) -> nn.Module:
         """See `Task`."""
@@ -97,6 +109,12 @@ class PaperTask:
         clean = scaled.clamp(0.0, scale.scaled_high)
         inputs = torch.where(visible, clean, 1.0)
         return inputs[:, None], clean[:, None], known[:, None]
+
+
+def open_paper_task(architecture: Architecture, corpus: Corpus) -> PaperTask:
+    """Join a network and a corpus that was cut for the recipe `paper`."""
+    train = corpus.patches("train")
+    return PaperTask(architecture, train, corpus.patches("validation"), paper_scale(train), corpus.sha256)
 
 
 def paper_scale(patches: PatchSet) -> PaperScale:

@@ -18,6 +18,10 @@ class Task(Protocol):
         """Return the facts that a checkpoint must agree with, JSON-ready."""
         ...
 
+    def card_facts(self) -> dict[str, Any]:
+        """Return what the card must say for a repair to prepare patches as in training, JSON-ready."""
+        ...
+
     def build(self) -> nn.Module:
         """Build the network; its weights follow from torch's generator."""
         ...
