@@ -189,6 +189,9 @@ class Trainer:
                 if checkpoint is not None:
                     self.save(checkpoint)
                 raise Interrupted
+        if not state.best:
+            # Gone on from before the first validation, with a smaller budget than what is already spent.
+            self._validate()
         self.module.load_state_dict(state.best)
         return state
 
