@@ -1,3 +1,5 @@
+from typing import Any
+
 import pytest
 import torch
 from torch import Tensor, nn, relu
@@ -52,8 +54,9 @@ def test_the_dense_layer_stands_between_encoder_and_decoder() -> None:
     plan = PLANS["6x_128_FC"]
     network = Autoencoder(Plan(16, plan.encoder, plan.decoder, n_dense=5))
     assert run(network, 16).shape == (2, 1, 16, 16)
-    network.dense[1].weight.data.zero_()
-    network.dense[1].bias.data.fill_(-1.0)
+    middle: Any = network.dense
+    middle[1].weight.data.zero_()
+    middle[1].bias.data.fill_(-1.0)
     # Nothing gets past it.
     assert torch.equal(run(network, 16, 1), run(network, 16, 2))
 
@@ -61,7 +64,7 @@ def test_the_dense_layer_stands_between_encoder_and_decoder() -> None:
 def test_skips_carry_what_the_middle_of_the_network_loses() -> None:
     for name, passes in (("long_12x", False), ("long_12x_SC", True)):
         network = build(name)
-        network.encoder[-1].weight.data.zero_()
+        next(network.encoder[-1].parameters()).data.zero_()
         assert torch.equal(run(network, 100, 1), run(network, 100, 2)) is not passes
 
 

@@ -46,7 +46,7 @@ def train(folder: Path, *launcher: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=300, check=False)
 
 
-def weights(folder: Path) -> dict[str, np.ndarray]:  # type: ignore[type-arg]
+def weights(folder: Path) -> dict[str, np.ndarray]:
     model = onnx.load(folder / "x.onnx")
     return {tensor.name: onnx.numpy_helper.to_array(tensor) for tensor in model.graph.initializer}
 
