@@ -7,6 +7,8 @@ from functools import partial
 from torch import nn
 
 from quadpatch.errors import OptionError
+from quadpatch.inpainters.corrections import CHANNELS, RESOLUTION
+from quadpatch.networks.residual import Residual
 from training.autoencoder import PLANS, build
 
 
@@ -40,7 +42,7 @@ class Architecture:
 ARCHITECTURES = {
     name: Architecture(name, plan.resolution, "paper", 1, partial(build, name), nn.Sigmoid)
     for name, plan in PLANS.items()
-}
+} | {"residual": Architecture("residual", RESOLUTION, "residual", CHANNELS, Residual)}
 
 
 def find_architecture(name: str) -> Architecture:

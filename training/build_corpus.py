@@ -3,7 +3,7 @@
 For the recipe `paper` a patch is the array `heights`, float32: heights over the plane of the patch less the mean of the
 known bins, in patch lengths, 0 in unknown bins; and the array `known`, bool. Not float16: its steps reach 1.2e-4 of the
 patch length where relief is deepest, as much as the least relief that is worth learning (`LEAST_RELIEF`), and mapped
-files need no memory that it would save.
+files need no memory that it would save. For the recipe `residual` see `training.lessons`.
 """
 
 import hashlib
@@ -13,9 +13,12 @@ from pathlib import Path
 
 import numpy as np
 
+from quadpatch.errors import OptionError
+from quadpatch.inpainters import corrections
 from quadpatch.mesh.measures import mean_edge_length
 from quadpatch.sparse.signals import HEIGHTS, mean_free
 from quadpatch.types import Progress, TriangleMesh, no_progress
+from training import lessons
 from training.corpus import PatchRecipe, cut_patches, read_mesh
 from training.dictionary import HOLDOUT_SEED_OFFSET, PROCEDURAL_SEEDS
 from training.patterns import PATTERNS
@@ -68,18 +71,26 @@ class CorpusOptions:
     seed: int = 0
     command: str = ""
 
+    def __post_init__(self) -> None:
+        """Refuse bins that no network of the recipe reads."""
+        if self.recipe == "residual" and self.resolution != RESOLUTIONS["residual"]:
+            raise OptionError(f"the recipe residual has {RESOLUTIONS['residual']} bins; got {self.resolution}")
+
     def facts(self) -> Facts:
         """Return what the manifest says about the patches."""
         return {
             "recipe": self.recipe,
             "resolution": self.resolution,
-            "length_rule": f"{self.edges:g} mean edges, times {', '.join(f'{scale:g}' for scale in self.scales)}",
+            "length_rule": lessons.LENGTH_RULE if self.recipe == "residual" else self._length_rule(),
             "overlap": self.overlap,
             "max_places_per_mesh_and_scale": self.places,
             "procedural": {"patterns": sorted(PATTERNS), "n_each": self.n_procedural} if self.n_procedural else {},
             "seed": self.seed,
             "command": self.command,
         }
+
+    def _length_rule(self) -> str:
+        return f"{self.edges:g} mean edges, times {', '.join(f'{scale:g}' for scale in self.scales)}"
 
 
 Cutter = Callable[[TriangleMesh, CorpusOptions, np.random.Generator], Arrays]
@@ -151,7 +162,14 @@ def cut_heights(mesh: TriangleMesh, options: CorpusOptions, rng: np.random.Gener
     return {"heights": np.concatenate(heights), "known": np.concatenate(known)}
 
 
-CUTTERS: dict[str, Cutter] = {"paper": cut_heights}
+def cut_lessons(mesh: TriangleMesh, options: CorpusOptions, rng: np.random.Generator) -> Arrays:
+    """Cut the lessons that the network `residual` learns from."""
+    return lessons.cut_lessons(mesh, options.places, rng)
+
+
+CUTTERS: dict[str, Cutter] = {"paper": cut_heights, "residual": cut_lessons}
+# Bins along one side where nothing else is asked for.
+RESOLUTIONS = {"paper": 24, "residual": corrections.RESOLUTION}
 
 
 def _by_pattern(made: Iterator[Relief]) -> Iterator[tuple[str, list[Relief]]]:

@@ -8,7 +8,7 @@ import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
-from training.build_corpus import EDGES, CorpusOptions, build_corpus
+from training.build_corpus import EDGES, RESOLUTIONS, CorpusOptions, build_corpus
 from training.errors import MissingExtraError
 from training.sources import find_sources, split_holdout
 from training.typed import command_line, refusals
@@ -21,8 +21,12 @@ def corpus(  # noqa: PLR0913 - one parameter for each option of the command line
     meshes: Annotated[list[Path], typer.Argument(help="Meshes to cut; a folder stands for all meshes in it.")],
     *,
     output: Annotated[Path, typer.Option(help="Folder to write; empty, or not there yet.")],
-    resolution: Annotated[int, typer.Option(min=8, max=128, help="Bins along one side of a patch.")] = 24,
-    recipe: Annotated[Literal["paper"], typer.Option(help="Of the networks that it is for.")] = "paper",
+    resolution: Annotated[
+        int | None, typer.Option(min=8, max=128, help="Bins along one side of a patch.", show_default="24 or 32")
+    ] = None,
+    recipe: Annotated[
+        Literal["paper", "residual"], typer.Option(help="Of the networks that it is for: the paper's, or residual.")
+    ] = "paper",
     edges: Annotated[float, typer.Option(min=1.0, help="Side of the smallest patches, in mean edges.")] = EDGES,
     overlap: Annotated[int, typer.Option(min=0, max=8, help="Every quad carries 4 k offset patches.")] = 2,
     places: Annotated[int, typer.Option(min=1, help="Patches of one mesh and size, at most.")] = 2000,
@@ -35,7 +39,7 @@ def corpus(  # noqa: PLR0913 - one parameter for each option of the command line
     with refusals(console):
         options = CorpusOptions(
             recipe,
-            resolution,
+            resolution or RESOLUTIONS[recipe],
             edges,
             overlap=overlap,
             places=places,
@@ -62,7 +66,9 @@ def corpus(  # noqa: PLR0913 - one parameter for each option of the command line
 
 def network(  # noqa: PLR0913 - one parameter for each option of the command line
     *,
-    arch: Annotated[str, typer.Option(help="small_4x, multi_6x, 6x_128, 6x_128_FC, long_12x or long_12x_SC.")],
+    arch: Annotated[
+        str, typer.Option(help="residual, small_4x, multi_6x, 6x_128, 6x_128_FC, long_12x, long_12x_SC.")
+    ],
     corpus: Annotated[Path, typer.Option(help="Folder that `corpus` wrote.")],
     name: Annotated[str, typer.Option(help="Name of the model, or name@version.")],
     output: Annotated[Path | None, typer.Option(help="File to write; NAME.onnx if not given.")] = None,

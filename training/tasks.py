@@ -5,10 +5,11 @@ from collections.abc import Callable
 from training.architectures import Architecture
 from training.errors import CorpusError
 from training.paper_task import open_paper_task
+from training.residual_task import open_residual_task
 from training.shards import Corpus
 from training.task import Task
 
-TASKS: dict[str, Callable[[Architecture, Corpus], Task]] = {"paper": open_paper_task}
+TASKS: dict[str, Callable[[Architecture, Corpus], Task]] = {"paper": open_paper_task, "residual": open_residual_task}
 
 
 def open_task(architecture: Architecture, corpus: Corpus) -> Task:

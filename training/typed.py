@@ -13,7 +13,7 @@ from jobkit.errors import JobkitError
 from quadpatch.errors import QuadpatchError
 from training.errors import TrainingError
 
-# What does not change the model.
+# What does not change the model. The folder of a corpus is kept: the next command names it.
 _DROPPED = ("--output", "--curve", "--checkpoint", "--resume", "--tensorboard")
 _DROPPED_FLAGS = ("--register",)
 
@@ -31,9 +31,10 @@ def refusals(console: Console) -> Iterator[None]:
 def command_line() -> str:
     """Return what was typed, without the folders that files lie in and without what does not change the bytes."""
     kept, arguments = ["python", "-m", "training"], iter(sys.argv[1:])
+    dropped = set(_DROPPED) - ({"--output"} if sys.argv[1:2] == ["corpus"] else set())
     for argument in arguments:
         option, _, value = argument.partition("=")
-        if option in _DROPPED:
+        if option in dropped:
             if not value:
                 next(arguments, None)
         elif option not in _DROPPED_FLAGS:

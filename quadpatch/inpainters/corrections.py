@@ -13,6 +13,7 @@ from quadpatch.sparse.signals import to_signals
 from quadpatch.types import FloatArray, Patches
 
 CHANNELS = 2
+RESOLUTION = 32
 
 # Single bins may stand out (a spike at a fold), and must not drown the others.
 LARGEST = 10.0

@@ -8,19 +8,19 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from quadpatch.inpainters.corrections import corrected, network_input
+from quadpatch.inpainters.corrections import RESOLUTION, corrected, network_input
 from quadpatch.inpainters.inpainter import Surroundings
 from quadpatch.lessons import Lessons, give_lessons
-from quadpatch.networks.residual import RESOLUTION, Residual, errors, turned
+from quadpatch.networks.residual import Residual, errors, turned
 from quadpatch.options import NetworkOptions
 from quadpatch.types import FloatArray, Patches, Progress, no_progress
 
 BATCH = 64
-RATE = 2e-3
+RATE = 4e-3
 # Steps over which the rate rises to its full height.
 WARM_UP = 50
 # More lessons than this add seconds, not quality; fewer rounds than this show too few places.
-ENOUGH_LESSONS = 5000
+ENOUGH_LESSONS = 8000
 MAX_ROUNDS = 8
 MIN_LESSONS = 64
 # Longest gradient, over all weights, that one step follows.

@@ -9,6 +9,8 @@ from onnx import numpy_helper
 from quadpatch.errors import ModelError
 from quadpatch.networks.residual import Residual
 
+_PREFIX = "0."
+
 
 def load_residual(path: Path) -> Residual:
     """Read the weights of a network `residual` from its ONNX file, where they carry their names.
@@ -20,7 +22,8 @@ def load_residual(path: Path) -> Residual:
     """
     try:
         tensors = onnx.load(path).graph.initializer
-        weights = {tensor.name: torch.from_numpy(numpy_helper.to_array(tensor).copy()) for tensor in tensors}
+        # The export wraps the network: its names stand behind a prefix there.
+        weights = {t.name.removeprefix(_PREFIX): torch.from_numpy(numpy_helper.to_array(t).copy()) for t in tensors}
         network = Residual()
         network.load_state_dict({name: weights[name] for name in network.state_dict()})
     except (OSError, ValueError, KeyError, RuntimeError) as error:

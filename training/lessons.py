@@ -1,0 +1,71 @@
+"""Cutting the lessons of the network `residual` out of training meshes, as a repair would: see `quadpatch.lessons`.
+
+Arrays: `channels` and `correction`, float16 (both in spreads of the patch, where its steps of a thousandth are less
+than any scanner's noise), and `asked`, bool.
+"""
+
+from itertools import islice
+
+import numpy as np
+
+from quadpatch.errors import NoQuadsError
+from quadpatch.inpainters.corrections import RESOLUTION
+from quadpatch.lessons import Ground, Lessons, give_lessons
+from quadpatch.mesh.measures import mean_edge_length
+from quadpatch.mesh.smoothing import laplacian_smooth
+from quadpatch.options import PatchOptions
+from quadpatch.patches.layout import lay_out
+from quadpatch.patches.scale import choose_scale, outline_iterations
+from quadpatch.pipeline import suitable_energy
+from quadpatch.practice import practise
+from quadpatch.types import TriangleMesh
+from training.shards import Arrays
+
+# Diameters of the holes, in mean edges, from scratches to the widest that leave a scan room for practice.
+HOLE_EDGES = (6.0, 9.0, 13.0, 18.0)
+# Rounds of cutting for each diameter, so that a small mesh doesn't show the same places over and over.
+ROUNDS = 4
+LENGTH_RULE = f"as wide as for a repair of holes {', '.join(f'{edges:g}' for edges in HOLE_EDGES)} mean edges wide"
+
+
+def cut_lessons(mesh: TriangleMesh, most: int, rng: np.random.Generator) -> Arrays:
+    """Cut lessons with holes of several diameters.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+    most : int
+        Lessons of one diameter, at most.
+    rng : numpy.random.Generator
+
+    Returns
+    -------
+    dict of str to array
+        See the head of this module; no row where the mesh is too small.
+    """
+    parts = [_of_diameter(mesh, edges * mean_edge_length(mesh), most, rng) for edges in HOLE_EDGES]
+    lessons = Lessons.joined(parts, RESOLUTION)
+    return {
+        "channels": lessons.channels.astype(np.float16),
+        "correction": lessons.correction.astype(np.float16),
+        "asked": lessons.asked > 0,
+    }
+
+
+def _of_diameter(mesh: TriangleMesh, diameter: float, most: int, rng: np.random.Generator) -> Lessons:
+    edge_length = mean_edge_length(mesh)
+    scale = choose_scale([diameter], edge_length, PatchOptions(), RESOLUTION)
+    energy = suitable_energy(practise(mesh, diameter, edge_length, rng))
+    try:
+        seeds = lay_out(laplacian_smooth(mesh, outline_iterations(scale.length, edge_length)), scale)
+    except NoQuadsError:
+        return Lessons.joined([], RESOLUTION)
+    ground = Ground(mesh, seeds, scale, energy, np.array([diameter]), edge_length)
+    parts: list[Lessons] = []
+    for part in islice(give_lessons(ground, rng), ROUNDS):
+        parts.append(part)
+        if sum(len(part) for part in parts) >= most:
+            break
+    lessons = Lessons.joined(parts, RESOLUTION)
+    chosen = np.sort(rng.permutation(len(lessons))[:most])
+    return Lessons(lessons.channels[chosen], lessons.correction[chosen], lessons.asked[chosen])
