@@ -84,7 +84,7 @@ def test_a_network_says_what_it_was_trained_on_and_how_well(made: Path) -> None:
     losses = json.loads((made / "c.json").read_text())["validation_loss"]
     assert card["metrics"]["validation_loss"] == pytest.approx(min(losses), abs=1e-6)
     assert card["command"] == (
-        f"python -m training corpus scans --holdout noise {' '.join(SMALL)}\n"
+        f"python -m training corpus scans --output corpus --holdout noise {' '.join(SMALL)}\n"
         f"python -m training network --arch small_4x --corpus corpus {' '.join(SHORT)} --name own@2"
     )
 
