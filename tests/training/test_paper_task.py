@@ -126,9 +126,9 @@ def test_rows_are_spread_evenly() -> None:
     assert spread_rows(101, 5).tolist() == [0, 25, 50, 75, 100]
 
 
-def test_every_network_learns_from_a_corpus_of_its_own_resolution_only(tmp_path: Path) -> None:
+def test_every_network_of_the_paper_learns_from_a_corpus_of_its_own_resolution_only(tmp_path: Path) -> None:
     corpora = {resolution: write_corpus(tmp_path / str(resolution), resolution) for resolution in (24, 100)}
-    for architecture in ARCHITECTURES.values():
+    for architecture in (a for a in ARCHITECTURES.values() if a.recipe == "paper"):
         fitting, other = corpora[architecture.resolution], corpora[124 - architecture.resolution]
         assert open_task(architecture, fitting).identity() == {
             "architecture": architecture.name,
