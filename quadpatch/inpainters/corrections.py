@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from quadpatch.sparse.signals import to_signals
+from quadpatch.sparse.signals import FLAT, to_signals
 from quadpatch.types import FloatArray, Patches
 
 CHANNELS = 2
@@ -47,8 +47,10 @@ def network_input(patches: Patches, outline: FloatArray) -> NetworkInput:
     detail = patches.heights - outline
     _, scaling = to_signals(detail, patches.known)
     centred = np.where(patches.seen, detail - scaling.mean[:, None, None], 0.0)
-    signals = in_spreads(centred, scaling.spread)
-    return NetworkInput(np.stack([signals, patches.known], axis=1, dtype=np.float32), scaling.spread)
+    # A detail this small is what rounding left between a flat surface and its outline.
+    spread = np.where(scaling.spread > FLAT * patches.length, scaling.spread, 0.0)
+    signals = in_spreads(centred, spread)
+    return NetworkInput(np.stack([signals, patches.known], axis=1, dtype=np.float32), spread)
 
 
 def in_spreads(lengths: FloatArray, spread: FloatArray) -> FloatArray:

@@ -1,0 +1,36 @@
+"""Surface that lessons are cut from."""
+
+import numpy as np
+
+from quadpatch.filling.fairing import THIN_PLATE
+from quadpatch.inpainters.corrections import RESOLUTION
+from quadpatch.inpainters.inpainter import Surroundings
+from quadpatch.lessons import Ground
+from quadpatch.mesh.measures import mean_edge_length
+from quadpatch.mesh.smoothing import laplacian_smooth
+from quadpatch.options import PatchOptions
+from quadpatch.patches.layout import lay_out
+from quadpatch.patches.scale import choose_scale, outline_iterations
+from quadpatch.patches.seeds import Seeds
+from quadpatch.types import Patches, TriangleMesh
+
+
+def ground_of(mesh: TriangleMesh, diameter: float) -> Ground:
+    """Prepare a whole mesh for holes of one diameter, as a repair would."""
+    edge_length = mean_edge_length(mesh)
+    scale = choose_scale([diameter], edge_length, PatchOptions(), RESOLUTION)
+    seeds = lay_out(laplacian_smooth(mesh, outline_iterations(scale.length, edge_length)), scale)
+    return Ground(mesh, seeds, scale, THIN_PLATE, np.array([diameter]), edge_length)
+
+
+def looking_down(*places: tuple[float, float, float]) -> Seeds:
+    """Seeds whose frames are the axes of space."""
+    return Seeds(np.array(places), np.tile(np.eye(3), (len(places), 1, 1)), np.zeros(len(places), np.int64))
+
+
+def surroundings_of(ground: Ground) -> Surroundings:
+    """What a model that is fitted by lessons alone is given: no patch, and the ground."""
+    none = np.zeros((0, RESOLUTION, RESOLUTION))
+    is_none = none > 0
+    patches = Patches(np.zeros((0, 3)), np.zeros((0, 3, 3)), 1.0, none, is_none, is_none, none.astype(np.int64))
+    return Surroundings(patches, none, ground)

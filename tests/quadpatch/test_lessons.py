@@ -1,0 +1,143 @@
+from dataclasses import replace
+from itertools import islice
+
+import numpy as np
+import pytest
+
+from quadpatch.filling.fairing import Energy
+from quadpatch.inpainters.corrections import LARGEST, RESOLUTION
+from quadpatch.lessons import Ground, Lessons, give_lessons
+from quadpatch.mesh.measures import mean_edge_length
+from quadpatch.patches.scale import PatchScale
+from quadpatch.types import BoolArray, FloatArray, TriangleMesh
+from tests.quadpatch.grounds import ground_of, looking_down
+from tests.quadpatch.shapes import open_grid, punched, relief, sphere
+
+DIAMETER = 0.3
+RELIEF = relief(110, 2.0, 0.04, 6)
+# Three waves across a patch: the outline, a mean over a third of it, shows none of them.
+LENGTH = 1.0
+
+
+def rounds(ground: Ground, count: int, seed: int = 0) -> list[Lessons]:
+    return list(islice(give_lessons(ground, np.random.default_rng(seed)), count))
+
+
+def height_of_relief(x: FloatArray, y: FloatArray) -> FloatArray:
+    """As `relief` says, at any place."""
+    u, v = 6 * np.pi * x, 6 * np.pi * y
+    return np.asarray(0.04 * (np.sin(u) * np.cos(v) + np.sin(v) * np.cos(0.3) + np.sin(0.3) * np.cos(u)))
+
+
+def left_over(signal: FloatArray, truth: FloatArray, where: BoolArray, known: BoolArray) -> float:
+    """Mean distance in some bins, in spreads, once scale, shift and tilt are as the known bins say."""
+    tick = (np.arange(RESOLUTION) + 0.5) / RESOLUTION
+    columns = np.stack([truth, np.ones_like(truth), *np.meshgrid(tick, tick)], axis=-1)
+    solution, *_ = np.linalg.lstsq(columns[known], signal[known], rcond=None)
+    return float(np.abs(columns[where] @ solution - signal[where]).mean())
+
+
+@pytest.fixture(scope="module")
+def ground() -> Ground:
+    return ground_of(RELIEF, DIAMETER)
+
+
+@pytest.fixture(scope="module")
+def lessons(ground: Ground) -> Lessons:
+    (only,) = rounds(ground, 1)
+    return only
+
+
+def test_the_fill_with_its_correction_is_the_surface_that_was_there(ground: Ground) -> None:
+    """Held against the formula of the relief: the known bins say in which scale."""
+    places = [(x, y, 0.0) for x in (-0.3, 0.0, 0.3) for y in (-0.3, 0.0, 0.3)]
+    scale = PatchScale(LENGTH, RESOLUTION, 0)
+    (given,) = rounds(replace(ground, seeds=looking_down(*places), scale=scale), 1)
+    assert len(given) == len(places)
+    tick = ((np.arange(RESOLUTION) + 0.5) / RESOLUTION - 0.5) * LENGTH
+    offset_x, offset_y = np.meshgrid(tick, tick)
+    for (x, y, _), channels, correction, asked in zip(
+        places, given.channels.astype(float), given.correction.astype(float), given.asked > 0, strict=True
+    ):
+        truth = height_of_relief(x + offset_x, y + offset_y)
+        known = channels[1] > 0
+        in_the_fill = left_over(channels[0], truth, asked, known)
+        in_the_lesson = left_over(channels[0] + correction, truth, asked, known)
+        in_the_mesh = left_over(channels[0], truth, known, known)
+        assert in_the_fill > 0.25
+        assert in_the_lesson < 0.1
+        assert in_the_lesson < 3 * in_the_mesh
+
+
+def test_a_fill_without_error_leaves_nothing_to_correct() -> None:
+    flat = ground_of(open_grid(80, 2.0), DIAMETER)
+    (given,) = rounds(flat, 1)
+    assert given.asked.sum() > 1000
+    assert (given.correction == 0).all()
+
+
+def test_the_true_surface_of_a_ball_lies_above_a_fill_that_is_drawn_tight() -> None:
+    ball = ground_of(sphere(5), 0.4)
+    (given,) = rounds(replace(ball, energy=Energy(membrane=1.0)), 1)
+    corrections = given.correction[given.asked > 0]
+    assert np.mean(corrections > 0) > 0.97
+    assert np.median(corrections) > 0.5
+
+
+def test_nothing_is_asked_but_in_invented_bins(lessons: Lessons) -> None:
+    asked = lessons.asked > 0
+    assert set(np.unique(lessons.asked)) == {0.0, 1.0}
+    assert asked.any(axis=(1, 2)).mean() > 0.9
+    assert (lessons.channels[:, 1][asked] == 0).all()
+    assert (lessons.correction[~asked] == 0).all()
+
+
+def test_lessons_are_bounded_and_of_the_shape_that_networks_read(lessons: Lessons) -> None:
+    assert len(lessons) > 50
+    assert lessons.channels.shape == (len(lessons), 2, RESOLUTION, RESOLUTION)
+    assert lessons.correction.shape == lessons.asked.shape == (len(lessons), RESOLUTION, RESOLUTION)
+    for array in (lessons.channels, lessons.correction, lessons.asked):
+        assert array.dtype == np.float32
+        assert np.isfinite(array).all()
+        assert np.abs(array).max() <= LARGEST
+
+
+def test_the_same_generator_gives_the_same_lessons_and_another_round_or_generator_others() -> None:
+    ground = ground_of(relief(60, 1.2, 0.04, 4), DIAMETER)
+    one, next_one = rounds(ground, 2)
+    (same,), (other,) = rounds(ground, 1), rounds(ground, 1, seed=1)
+    assert one.channels.tobytes() == same.channels.tobytes()
+    assert one.correction.tobytes() == same.correction.tobytes()
+    assert one.asked.tobytes() == same.asked.tobytes()
+    for another in (next_one, other):
+        assert one.asked.tobytes() != another.asked.tobytes()
+
+
+def test_surface_that_is_missing_already_is_never_asked_for() -> None:
+    """It is no truth: real holes, and those of practice, are open in the ground."""
+    mesh = punched(RELIEF, *((x, y, 0.0) for x in (-0.5, 0.0, 0.5) for y in (-0.5, 0.0, 0.5)), radius=0.15)
+    whole = ground_of(RELIEF, DIAMETER)
+    seeds = looking_down((0.0, 0.0, 0.0))
+    scale = PatchScale(0.28, RESOLUTION, 0)
+    for given in rounds(replace(whole, mesh=mesh, seeds=seeds, scale=scale), 2):
+        assert given.asked.sum() == 0
+
+
+def test_where_there_is_no_room_for_a_hole_there_is_no_lesson() -> None:
+    small = open_grid(12, 0.3)
+    edge_length = mean_edge_length(small)
+    ground = Ground(
+        small, looking_down((0, 0, 0)), PatchScale(0.6, RESOLUTION, 0), Energy(plate=1.0), np.array([0.5]), edge_length
+    )
+    assert [len(given) for given in rounds(ground, 2)] == [0, 0]
+    nothing = TriangleMesh(small.vertices, small.triangles[:0])
+    assert [len(given) for given in rounds(replace(ground, mesh=nothing), 1)] == [0]
+
+
+def test_joined_lessons_stand_one_after_the_other(lessons: Lessons) -> None:
+    joined = Lessons.joined([lessons, lessons], RESOLUTION)
+    assert len(joined) == 2 * len(lessons)
+    np.testing.assert_array_equal(joined.channels[len(lessons) :], lessons.channels)
+    np.testing.assert_array_equal(joined.correction[: len(lessons)], lessons.correction)
+    none = Lessons.joined([], RESOLUTION)
+    assert (len(none), none.channels.shape, none.asked.shape) == (0, (0, 2, 32, 32), (0, 32, 32))

@@ -1,0 +1,107 @@
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from quadpatch.mesh.boundary import boundary_edge_mask, boundary_loops, directed_edges
+from quadpatch.mesh.holes import loop_diameter
+from quadpatch.mesh.measures import mean_edge_length
+from quadpatch.punching import Punched, Spacing, punch
+from quadpatch.types import IntArray, TriangleMesh
+from tests.quadpatch.shapes import bumpy_plate, cylinder, euler_characteristic, open_grid, punched, sphere
+
+SHEET = punched(bumpy_plate(90, 2.0), (0.3, 0.3, 0), (-0.5, 0.2, 0), radius=0.12)
+EDGE = mean_edge_length(SHEET)
+LONGEST = float(np.linalg.norm(np.diff(SHEET.vertices[directed_edges(SHEET.triangles)], axis=1), axis=2).max())
+
+
+def punched_at_random(mesh: TriangleMesh, diameter: float, spacing: Spacing, seed: int = 0) -> Punched:
+    return punch(mesh, diameter, spacing, np.random.default_rng(seed))
+
+
+def rim_vertices(mesh: TriangleMesh) -> IntArray:
+    return np.unique(directed_edges(mesh.triangles)[boundary_edge_mask(mesh.triangles)])
+
+
+@settings(max_examples=10, deadline=None)
+@given(seed=st.integers(0, 1000), diameter=st.floats(0.1, 0.4), margin=st.floats(0.05, 0.2))
+def test_holes_keep_their_margin_from_every_border_and_from_each_other(
+    seed: int, diameter: float, margin: float
+) -> None:
+    cut = punched_at_random(SHEET, diameter, Spacing(EDGE, margin), seed)
+    assert len(cut.loops) > 3
+    gone, rims = SHEET.vertices[cut.gone], SHEET.vertices[rim_vertices(SHEET)]
+    assert np.linalg.norm(gone[:, None] - rims, axis=2).min() > margin
+    for i, loop in enumerate(cut.loops):
+        others = SHEET.vertices[np.concatenate([other for j, other in enumerate(cut.loops) if j != i])]
+        apart = np.linalg.norm(SHEET.vertices[loop][:, None] - others, axis=2)
+        # Vertices that are gone lie two margins apart, and a rim at most one edge from them.
+        assert apart.min() > 2 * margin - 2 * LONGEST
+
+
+def test_loops_are_the_new_rims_and_all_of_them() -> None:
+    cut = punched_at_random(SHEET, 0.25, Spacing(EDGE, 2 * EDGE))
+    old = {tuple(loop.tolist()) for loop in boundary_loops(SHEET.triangles).loops}
+    now = {tuple(loop.tolist()) for loop in boundary_loops(cut.mesh.triangles).loops}
+    assert old < now
+    assert {tuple(loop.tolist()) for loop in cut.loops} == now - old
+    assert not cut.gone[np.concatenate(cut.loops)].any()
+
+
+def test_what_is_left_and_what_was_cut_away_make_up_the_mesh() -> None:
+    cut = punched_at_random(SHEET, 0.25, Spacing(EDGE, 2 * EDGE))
+    np.testing.assert_array_equal(cut.mesh.triangles, SHEET.triangles[~cut.cut_away])
+    np.testing.assert_array_equal(cut.cut_away, cut.gone[SHEET.triangles].any(axis=1))
+    assert cut.mesh.vertices is SHEET.vertices
+    assert not cut.gone[cut.mesh.triangles].any()
+
+
+def test_rims_are_as_wide_as_they_were_asked_to_be() -> None:
+    cut = punched_at_random(SHEET, 0.3, Spacing(EDGE, 2 * EDGE))
+    widths = [loop_diameter(SHEET.vertices[loop]) for loop in cut.loops]
+    assert np.median(widths) == pytest.approx(0.3, abs=EDGE)
+
+
+@pytest.mark.parametrize("mesh", [sphere(4), cylinder(60, 80)], ids=["sphere", "cylinder"])
+def test_every_hole_takes_one_disk(mesh: TriangleMesh) -> None:
+    edge = mean_edge_length(mesh)
+    cut = punched_at_random(mesh, 6 * edge, Spacing(edge, 2 * edge))
+    assert len(cut.loops) > 5
+    assert euler_characteristic(cut.mesh.triangles) == euler_characteristic(mesh.triangles) - len(cut.loops)
+
+
+def test_a_hole_never_takes_the_surface_that_lies_behind_it() -> None:
+    flat = open_grid(60, 2.0)
+    n, gap = len(flat.vertices), np.array([0, 0, -0.01])
+    thin = TriangleMesh(
+        np.concatenate([flat.vertices, flat.vertices + gap]),
+        np.concatenate([flat.triangles, flat.triangles[:, ::-1] + n]),
+    )
+    edge = mean_edge_length(flat)
+    cut = punched_at_random(thin, 0.3, Spacing(edge, 2 * edge))
+    assert len(cut.loops) > 3
+    # The centres keep clear of each other on both sides, so no place is gone on both.
+    assert not (cut.gone[:n] & cut.gone[n:]).any()
+
+
+def test_no_more_holes_are_cut_than_were_asked_for() -> None:
+    for most in (1, 3):
+        assert len(punched_at_random(SHEET, 0.2, Spacing(EDGE, 2 * EDGE, most)).loops) == most
+
+
+@pytest.mark.parametrize("mesh", [open_grid(8, 0.5), TriangleMesh(np.zeros((4, 3)), np.zeros((0, 3), np.int64))])
+def test_nothing_is_cut_where_there_is_no_room(mesh: TriangleMesh) -> None:
+    cut = punched_at_random(mesh, 0.4, Spacing(0.07, 0.2))
+    assert cut.loops == []
+    assert not cut.gone.any()
+    assert not cut.cut_away.any()
+    np.testing.assert_array_equal(cut.mesh.triangles, mesh.triangles)
+
+
+def test_the_same_generator_cuts_the_same_holes_another_one_others_and_neither_changes_the_mesh() -> None:
+    before = SHEET.vertices.tobytes(), SHEET.triangles.tobytes()
+    one, same, other = (punched_at_random(SHEET, 0.2, Spacing(EDGE, 2 * EDGE), seed) for seed in (1, 1, 2))
+    assert one.gone.tobytes() == same.gone.tobytes()
+    assert [loop.tolist() for loop in one.loops] == [loop.tolist() for loop in same.loops]
+    assert one.gone.tobytes() != other.gone.tobytes()
+    assert before == (SHEET.vertices.tobytes(), SHEET.triangles.tobytes())
