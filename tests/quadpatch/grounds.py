@@ -15,10 +15,10 @@ from quadpatch.patches.seeds import Seeds
 from quadpatch.types import Patches, TriangleMesh
 
 
-def ground_of(mesh: TriangleMesh, diameter: float) -> Ground:
+def ground_of(mesh: TriangleMesh, diameter: float, overlap: int | None = None) -> Ground:
     """Prepare a whole mesh for holes of one diameter, as a repair would."""
     edge_length = mean_edge_length(mesh)
-    scale = choose_scale([diameter], edge_length, PatchOptions(), RESOLUTION)
+    scale = choose_scale([diameter], edge_length, PatchOptions(overlap=overlap), RESOLUTION)
     seeds = lay_out(laplacian_smooth(mesh, outline_iterations(scale.length, edge_length)), scale)
     return Ground(mesh, seeds, scale, THIN_PLATE, np.array([diameter]), edge_length)
 

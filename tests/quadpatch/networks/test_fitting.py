@@ -1,0 +1,135 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import torch
+
+from quadpatch.inpainters.corrections import RESOLUTION, corrected, network_input
+from quadpatch.lessons import Ground, Lessons, give_lessons
+from quadpatch.networks.fitting import MAX_ROUNDS, FittingInpainter, fit, gather_lessons
+from quadpatch.networks.residual import Errors, Residual, errors
+from quadpatch.options import NetworkOptions
+from quadpatch.types import Patches
+from tests.quadpatch.grounds import ground_of, surroundings_of
+from tests.quadpatch.networks.made import stirred
+from tests.quadpatch.shapes import relief
+
+STEPS = 60
+
+
+@pytest.fixture(scope="module")
+def ground() -> Ground:
+    """A pattern that repeats often enough to be learned at some places and asked for at others."""
+    return ground_of(relief(70, 2.0, 0.04, 8), 0.3)
+
+
+@pytest.fixture(scope="module")
+def lessons(ground: Ground) -> Lessons:
+    """One round."""
+    return next(give_lessons(ground, np.random.default_rng(1)))
+
+
+@pytest.fixture(scope="module")
+def small_ground() -> Ground:
+    """Room for a few holes a round."""
+    return ground_of(relief(34, 0.9, 0.03, 3), 0.25, overlap=1)
+
+
+def measured(network: Residual, lessons: Lessons) -> Errors:
+    channels, correction, asked = map(torch.from_numpy, (lessons.channels, lessons.correction, lessons.asked))
+    with torch.inference_mode():
+        return errors(network(channels), correction[:, None], asked[:, None])
+
+
+def weights(network: Residual) -> bytes:
+    return b"".join(tensor.numpy().tobytes() for tensor in network.state_dict().values())
+
+
+def fresh() -> Residual:
+    torch.manual_seed(0)
+    return Residual()
+
+
+@pytest.mark.slow
+def test_a_network_learns_from_some_holes_to_fill_others_of_the_same_surface(ground: Ground, lessons: Lessons) -> None:
+    network = fresh()
+    assert fit(network, lessons, NetworkOptions(STEPS), seed=0) == STEPS
+    unseen = next(give_lessons(ground, np.random.default_rng(99)))
+    untrained, trained = measured(Residual(), unseen), measured(network, unseen)
+    assert untrained.network == untrained.fill == trained.fill
+    assert trained.network < 0.75 * trained.fill
+    assert trained.loss < 0.8 * untrained.loss
+
+
+def test_the_same_seed_gives_the_same_bits_and_another_one_others(lessons: Lessons) -> None:
+    found = []
+    for seed in (3, 3, 4):
+        found.append(fresh())
+        fit(found[-1], lessons, NetworkOptions(steps=5), seed)
+    assert weights(found[0]) == weights(found[1])
+    assert weights(found[0]) != weights(found[2])
+
+
+def test_a_short_time_ends_the_steps_early_and_the_rate_still_falls_to_its_end(lessons: Lessons) -> None:
+    shares: list[float] = []
+    network = fresh()
+    steps = fit(network, lessons, NetworkOptions(steps=100_000, seconds=4.0), 0, lambda _, share: shares.append(share))
+    assert 2 < steps < 100_000
+    # The rate follows the share, on a cosine: the last steps are small.
+    assert shares == sorted(shares)
+    assert len(shares) == steps
+    assert shares[0] < 0.01
+    assert shares[-1] > 0.6
+    assert measured(network, lessons).loss < measured(Residual(), lessons).loss
+
+
+def test_without_time_nothing_is_done(lessons: Lessons) -> None:
+    network = fresh()
+    before = weights(network)
+    assert fit(network, lessons, NetworkOptions(steps=10, seconds=1e-9), 0) == 0
+    assert weights(network) == before
+
+
+@pytest.mark.slow
+def test_lessons_follow_from_the_seed_and_are_those_of_several_rounds(small_ground: Ground) -> None:
+    surroundings = surroundings_of(small_ground)
+    one, same, other = (gather_lessons(surroundings, seed) for seed in (0, 0, 1))
+    first = next(give_lessons(small_ground, np.random.default_rng([0, 3])))
+    assert len(first) < len(one) <= MAX_ROUNDS * len(small_ground.seeds)
+    assert one.channels[: len(first)].tobytes() == first.channels.tobytes()
+    assert one.channels.tobytes() == same.channels.tobytes()
+    assert one.channels.tobytes() != other.channels.tobytes()
+
+
+def test_a_surface_with_too_few_lessons_leaves_the_network_as_it_is(small_ground: Ground) -> None:
+    inpainter = FittingInpainter(fresh(), NetworkOptions(steps=2))
+    too_wide = replace(small_ground, diameters=np.array([1.5]))
+    assert inpainter.fitted_to(surroundings_of(too_wide)) is inpainter
+
+
+def test_fitting_makes_another_network_and_tells_how_far_it_is(small_ground: Ground) -> None:
+    heard: list[tuple[str, float]] = []
+    inpainter = FittingInpainter(fresh(), NetworkOptions(steps=4), 0, lambda *said: heard.append(said))
+    before = weights(inpainter.network)
+    fitted = inpainter.fitted_to(surroundings_of(small_ground))
+    assert weights(inpainter.network) == before != weights(fitted.network)
+    assert {stage for stage, _ in heard} == {"learn"}
+    assert [share for _, share in heard] == pytest.approx([0.0, 0.25, 0.5, 0.75], abs=1e-6)
+    assert (fitted.resolution, fitted.options) == (inpainter.resolution, inpainter.options)
+
+
+def test_predictions_are_the_fill_with_what_the_network_answers() -> None:
+    rng = np.random.default_rng(0)
+    shape = (300, RESOLUTION, RESOLUTION)
+    heights, outline, known = rng.normal(size=shape), 0.1 * rng.normal(size=shape), rng.random(shape) > 0.3
+    frames = np.tile(np.eye(3), (300, 1, 1))
+    patches = Patches(np.zeros((300, 3)), frames, 1.0, heights, known, np.ones_like(known), np.zeros(shape, np.int64))
+    network = stirred(fresh())
+    predicted = FittingInpainter(network, NetworkOptions()).predict(patches, outline)
+    seen = network_input(patches, outline)
+    with torch.inference_mode():
+        answers = network(torch.from_numpy(seen.channels))[:, 0].numpy().astype(np.float64)
+    np.testing.assert_allclose(predicted, corrected(patches, seen.spread, answers), atol=1e-5)
+    assert predicted[known].tobytes() == heights[known].tobytes()
+    untouched = FittingInpainter(fresh(), NetworkOptions()).predict(patches, outline)
+    np.testing.assert_array_equal(untouched, heights)
