@@ -6,9 +6,11 @@ FROM ${PYTHON_IMAGE} AS build
 ENV PIP_DISABLE_PIP_VERSION_CHECK=1 PIP_NO_CACHE_DIR=1 PIP_ROOT_USER_ACTION=ignore
 RUN python -m venv /opt/quadpatch
 WORKDIR /source
+# "service networks" adds torch, with which workers can fit a network to the mesh itself.
+ARG EXTRAS=service
 # The libraries first: they change less often than the source, and their layer is the large one.
 COPY pyproject.toml constraints.txt ./
-RUN python -c "import tomllib; p = tomllib.load(open('pyproject.toml', 'rb'))['project']; print(*p['dependencies'], *p['optional-dependencies']['service'], sep='\n')" > requirements.txt \
+RUN python -c "import tomllib; p = tomllib.load(open('pyproject.toml', 'rb'))['project']; extras = p['optional-dependencies']; print(*p['dependencies'], *(d for e in '${EXTRAS}'.split() for d in extras[e]), sep='\n')" > requirements.txt \
     && /opt/quadpatch/bin/python -m pip install --only-binary :all: --constraint constraints.txt --requirement requirements.txt
 COPY . .
 RUN /opt/quadpatch/bin/python -m pip install --no-deps . \

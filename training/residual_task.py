@@ -63,7 +63,7 @@ class ResidualTask:
         """See `Task`: the error in shares of the fill's, with its slopes."""
         channels, correction, asked = batch
         inputs = channels.contiguous(memory_format=torch.channels_last)
-        return errors(module(inputs).float(), correction, asked).loss
+        return errors(module(inputs).float(), correction, asked).relative_loss
 
     def _make(self, patches: PatchSet, rows: IntArray, device: torch.device) -> Batch:
         arrays = patches.gather(rows)

@@ -84,13 +84,16 @@ class Errors:
     network, fill : Tensor
         Mean absolute error with the network's corrections, and without, in spreads.
     loss : Tensor
-        What training makes small: errors and their slopes in shares of the fill's error, patch by patch, so that a
-        smooth surface, where errors are small, counts as much as a rough one.
+        Errors and their slopes, in spreads: to be made small on one mesh.
+    relative_loss : Tensor
+        The same in shares of the fill's error, patch by patch: over many meshes, a smooth one, where errors are small,
+        counts as much as a rough one.
     """
 
     network: Tensor
     fill: Tensor
     loss: Tensor
+    relative_loss: Tensor
 
 
 def errors(answer: Tensor, correction: Tensor, asked: Tensor) -> Errors:
@@ -100,8 +103,8 @@ def errors(answer: Tensor, correction: Tensor, asked: Tensor) -> Errors:
     across = (wrong[..., 1:] - wrong[..., :-1]).abs().sum(dim=_PATCH)
     along = (wrong[..., 1:, :] - wrong[..., :-1, :]).abs().sum(dim=_PATCH)
     network, fill = wrong.abs().sum(dim=_PATCH) / count, (correction * asked).abs().sum(dim=_PATCH) / count
-    loss = (network + SLOPES * (across + along) / count) / (fill + LEAST_ERROR)
-    return Errors(network.mean(), fill.mean(), loss.mean())
+    loss = network + SLOPES * (across + along) / count
+    return Errors(network.mean(), fill.mean(), loss.mean(), (loss / (fill + LEAST_ERROR)).mean())
 
 
 def turned(tensors: tuple[Tensor, ...], turns: int, *, mirrored: bool) -> tuple[Tensor, ...]:
