@@ -128,9 +128,12 @@ def paper_scale(
     hole_diameters: list[float], edge_length: float, options: PatchOptions, inpainter: Inpainter | None = None
 ) -> PatchScale:
     """Choose patch length, resolution and overlap where the user or the model doesn't; lengths in mesh units."""
-    resolution = (inpainter.resolution if inpainter else None) or options.resolution or RESOLUTION
+    of_model = inpainter.resolution if inpainter else None
+    resolution = of_model or options.resolution or RESOLUTION
+    # The finest networks show as much surface as the others, more finely: they were trained so.
+    least = LEAST_EDGES_PER_BIN * edge_length * (min(of_model, RESOLUTION) if of_model else resolution)
     typical = float(np.percentile(hole_diameters, 75)) if hole_diameters else 0.0
-    length = options.length or max(HOLES_PER_LENGTH * typical, LEAST_EDGES_PER_BIN * edge_length * resolution)
+    length = options.length or max(HOLES_PER_LENGTH * typical, least)
     return PatchScale(float(length), resolution, OVERLAP if options.overlap is None else options.overlap)
 
 

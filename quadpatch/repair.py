@@ -132,15 +132,28 @@ def _resolve(model: str | Path, options: RepairOptions, progress: Progress) -> t
     if not path.is_file():
         path = shipped_model(str(model))
     loaded = load_model(path)
-    _check_recipe(loaded, options)
     facts = {"name": loaded.card.get("name", path.stem), "version": loaded.card.get("version"), "kind": loaded.kind}
     facts["sha256"] = hashlib.sha256(path.read_bytes()).hexdigest()
     if loaded.dictionary is None:
-        from quadpatch.inpainters.autoencoder import AutoencoderInpainter  # noqa: PLC0415  onnxruntime is slow to load
-
-        return AutoencoderInpainter.load(path), facts
+        return _network(path, options), facts
+    _check_recipe(loaded, options)
     inpainter = HeightsInpainter if loaded.recipe == "paper" else DictionaryInpainter
     return inpainter(loaded.dictionary), facts
+
+
+def _network(path: Path, options: RepairOptions) -> Inpainter:
+    """Open a network. Those of the paper are used by either recipe, others by our own alone."""
+    from quadpatch.inpainters.autoencoder import AutoencoderInpainter  # noqa: PLC0415  onnxruntime is slow to load
+
+    network = AutoencoderInpainter.load(path)
+    if options.recipe == "paper" and network.recipe != "paper":
+        raise OptionError(
+            f"{path.name} is a network for the recipe {network.recipe}, which corrects a faired fill; "
+            "the recipe paper has none: drop it, or take one of the paper's networks"
+        )
+    if options.dictionary != DictionaryOptions():
+        raise OptionError(f"dictionary.atoms and dictionary.nonzero go with the model self; {path.name} is a network")
+    return network
 
 
 def _network_to_fit(options: RepairOptions, progress: Progress) -> tuple[Inpainter, dict[str, Any]]:
@@ -163,10 +176,8 @@ def _network_to_fit(options: RepairOptions, progress: Progress) -> tuple[Inpaint
 
 
 def _check_recipe(model: Model, options: RepairOptions) -> None:
-    """Refuse a model that was learned for the other recipe, and a size for a dictionary that has one."""
+    """Refuse a dictionary that was learned for the other recipe, and a size for one that has a size."""
     name = model.path.name
-    if model.kind == "autoencoder" and options.recipe == "paper":
-        raise OptionError(f"{name} is a network and has a recipe of its own; the recipe paper goes with dictionaries")
     if model.recipe != options.recipe:
         raise OptionError(
             f"{name} was learned for the recipe {model.recipe}, not for {options.recipe}: "

@@ -205,3 +205,9 @@ def test_what_is_asked_for_beats_the_rule_of_thumb_and_the_model_beats_both() ->
     assert 0.1 < automatic.length < 0.4
     # Bins far below the mesh's edges would show its triangles.
     assert paper_scale([0.1], 1.0, PatchOptions()).length >= 0.5 * RESOLUTION
+
+
+def test_the_finest_networks_see_as_much_surface_as_the_others() -> None:
+    coarse, fine = (paper_scale([0.1], 1.0, PatchOptions(), Truth(RELIEF, n)) for n in (RESOLUTION, 100))
+    assert fine == PatchScale(coarse.length, 100, coarse.overlap)
+    assert paper_scale([0.1], 1.0, PatchOptions(resolution=48)).length == 2 * coarse.length

@@ -16,6 +16,8 @@ from quadpatch.repair import repair_file
 from quadpatch.sparse.dictionary import Dictionary
 from quadpatch.sparse.signals import HEIGHTS, NORMALISATION
 from quadpatch.types import TriangleMesh
+from tests.quadpatch.inpainters.test_autoencoder import PAPER as NETWORK
+from tests.quadpatch.inpainters.test_autoencoder import RESIDUAL, write_network
 from tests.quadpatch.shapes import punched, relief, write_ply
 
 PLACES = [(x, y, 0.0) for x in (-0.5, 0.5) for y in (-0.45, 0.5)]
@@ -54,6 +56,19 @@ def test_a_file_is_repaired_by_the_paper_and_keeps_every_bit(scan_file: Path, tm
     assert (tmp_path / "again.ply").read_bytes() == (tmp_path / "out.ply").read_bytes()
 
 
+def test_a_network_of_the_paper_places_new_vertices_by_either_recipe(scan_file: Path, tmp_path: Path) -> None:
+    """This one copies its input, in which unknown bins are 1: the top of its range, far above the surface."""
+    network = write_network(tmp_path / "copy.onnx", NETWORK, 1)
+    report = repair_file(scan_file, tmp_path / "out.ply", network, PAPER)
+    before, after = read_scan(scan_file), read_scan(tmp_path / "out.ply")
+    assert after.vertices[: len(before.vertices)].tobytes() == before.vertices.tobytes()
+    assert (report["model"]["kind"], report["options"]["recipe"]) == ("autoencoder", "paper")
+    assert report["patches"]["resolution"] == 16
+    # In patches of length 0.4 the range is 0.4 wide, and 1 lies above it.
+    assert np.median(after.vertices[len(before.vertices) :, 2]) == pytest.approx(0.4 * (1 / 0.83 - 0.5), rel=0.2)
+    assert repair_file(scan_file, tmp_path / "ours.ply", network)["options"]["recipe"] == "default"
+
+
 def test_a_dictionary_learned_for_the_other_recipe_is_refused(scan_file: Path, tmp_path: Path) -> None:
     ours, papers = dictionary_file(tmp_path, NORMALISATION), dictionary_file(tmp_path, HEIGHTS)
     with pytest.raises(OptionError, match="learned for the recipe default, not for paper: ask for the recipe default"):
@@ -66,12 +81,14 @@ def test_what_the_recipe_has_no_use_for_is_refused(scan_file: Path, tmp_path: Pa
     output = tmp_path / "out.ply"
     with pytest.raises(OptionError, match="with smooth there is none"):
         repair_file(scan_file, output, "smooth", PAPER)
-    (tmp_path / "net.onnx").write_bytes(b"\x08\x0a")
-    with pytest.raises(OptionError, match="a network and has a recipe of its own"):
-        repair_file(scan_file, output, tmp_path / "net.onnx", PAPER)
+    correcting = write_network(tmp_path / "correcting.onnx", RESIDUAL, 2)
+    with pytest.raises(OptionError, match="a network for the recipe residual, which corrects a faired fill"):
+        repair_file(scan_file, output, correcting, PAPER)
     sized = RepairOptions(recipe="paper", dictionary=DictionaryOptions(atoms=30))
     with pytest.raises(OptionError, match="has its own"):
         repair_file(scan_file, output, dictionary_file(tmp_path, HEIGHTS), sized)
+    with pytest.raises(OptionError, match=r"atoms and dictionary\.nonzero go with the model self"):
+        repair_file(scan_file, output, write_network(tmp_path / "net.onnx", NETWORK, 1), sized)
     assert not output.exists()
 
 
