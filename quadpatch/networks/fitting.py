@@ -23,6 +23,8 @@ WARM_UP = 50
 ENOUGH_LESSONS = 8000
 MAX_ROUNDS = 8
 MIN_LESSONS = 64
+# Of the time there is, what cutting lessons may take.
+LESSONS_SHARE = 0.4
 # Longest gradient, over all weights, that one step follows.
 _LONGEST_GRADIENT = 1.0
 # Patches in one run of the network.
@@ -55,13 +57,13 @@ class FittingInpainter:
     def fitted_to(self, surroundings: Surroundings) -> "FittingInpainter":
         """See `Inpainter`. Leaves the weights as they are where the mesh has no room for lessons."""
         started = time.monotonic()
-        lessons = gather_lessons(surroundings, self.seed)
+        lessons = gather_lessons(surroundings, self.seed, LESSONS_SHARE * self.options.seconds)
         if len(lessons) < MIN_LESSONS:
             return self
         network = Residual()
         network.load_state_dict(self.network.state_dict())
         left = self.options.seconds - (time.monotonic() - started)
-        fit(network, lessons, replace(self.options, seconds=max(left, 0.0)), self.seed, self.progress)
+        fit(network, lessons, replace(self.options, seconds=max(left, 1e-3)), self.seed, self.progress)
         return replace(self, network=network)
 
     def predict(self, patches: Patches, outline: FloatArray) -> FloatArray:
@@ -75,12 +77,12 @@ class FittingInpainter:
         return corrected(patches, seen.spread, np.concatenate(answers).astype(np.float64))
 
 
-def gather_lessons(surroundings: Surroundings, seed: int) -> Lessons:
-    """Cut lessons until there are enough, or a round of them would come too often to the same places."""
-    parts: list[Lessons] = []
+def gather_lessons(surroundings: Surroundings, seed: int, seconds: float = np.inf) -> Lessons:
+    """Cut lessons until there are enough, or another round would come too often to the same places, or too late."""
+    started, parts = time.monotonic(), list[Lessons]()
     for part in islice(give_lessons(surroundings.ground, np.random.default_rng([seed, 3])), MAX_ROUNDS):
         parts.append(part)
-        if sum(len(part) for part in parts) >= ENOUGH_LESSONS:
+        if sum(len(part) for part in parts) >= ENOUGH_LESSONS or time.monotonic() - started > seconds:
             break
     return Lessons.joined(parts, RESOLUTION)
 
