@@ -66,6 +66,9 @@ def measure(path: Path, batch: int, threads: int) -> list[str]:
 def count_flop(model: Any, patches: "np.ndarray[Any, np.dtype[np.float32]]") -> float:
     """Count the multiplications and additions for one patch, by weights (onnx.ModelProto) that are not 0."""
     weights = {tensor.name: onnx.numpy_helper.to_array(tensor) for tensor in model.graph.initializer}
+    for node in model.graph.node:
+        if node.op_type == "DequantizeLinear" and node.input[0] in weights:
+            weights[node.output[0]] = weights[node.input[0]]
     counted = [node for node in model.graph.node if node.op_type in ("Conv", "ConvTranspose", "Gemm", "MatMul")]
     sides = _sides(model, patches)
     n_flop = 0.0
