@@ -47,6 +47,7 @@ MeshArgument = Annotated[
     typer.Argument(help="Mesh file: PLY, STL, OBJ, OFF, GLB, glTF or 3MF.", exists=True, dir_okay=False, readable=True),
 ]
 _PATCHES = "Patches"
+_FITTING = "Fitting a network to the mesh (--method cnn --model self)"
 _OUTPUT = "What comes back"
 
 
@@ -81,6 +82,14 @@ def repair(  # noqa: PLR0913 - one parameter per option of the command line
         int | None,
         typer.Option(help="k: a quad carries 1 + 4 k patches.", show_default="auto", rich_help_panel=_PATCHES),
     ] = None,
+    fit_steps: Annotated[
+        int | None,
+        typer.Option(help="Fit at most so many steps.", show_default="of the service", rich_help_panel=_FITTING),
+    ] = None,
+    fit_seconds: Annotated[
+        float | None,
+        typer.Option(help="Fit at most so long.", show_default="of the service", rich_help_panel=_FITTING),
+    ] = None,
     seed: Annotated[int, typer.Option(help="Starts every random choice.")] = 0,
     label: Annotated[str | None, typer.Option(help="A name for the job, for people.")] = None,
     format_: Annotated[
@@ -111,7 +120,7 @@ def repair(  # noqa: PLR0913 - one parameter per option of the command line
             source=mesh,
             output=output,
             holes=HoleChoice(max_diameter, max_perimeter, all_but_largest, hole),
-            method=MethodChoice(method, model, patch_length, resolution, overlap, recipe),
+            method=MethodChoice(method, model, patch_length, resolution, overlap, recipe, fit_steps, fit_seconds),
             rest={
                 "seed": seed,
                 "label": label,

@@ -7,7 +7,7 @@ import typer
 from pydantic import ValidationError
 
 from client.errors import UsageError
-from jobkit.schema import JobSpec, Recipe
+from jobkit.schema import SELF, JobSpec, Recipe
 
 DEFAULT_URL = "http://127.0.0.1:8000"
 MethodName = Literal["dictionary", "cnn", "smooth"]
@@ -61,6 +61,8 @@ class MethodChoice:
     resolution: int | None = None
     overlap: int | None = None
     recipe: Recipe | None = None
+    fit_steps: int | None = None
+    fit_seconds: float | None = None
 
 
 def make_spec(mesh_id: str, holes: HoleChoice, method: MethodChoice, **rest: Any) -> JobSpec:
@@ -81,13 +83,17 @@ def make_spec(mesh_id: str, holes: HoleChoice, method: MethodChoice, **rest: Any
 
 def _method(choice: MethodChoice) -> dict[str, Any]:
     patches = _given({"length": choice.length, "resolution": choice.resolution, "overlap": choice.overlap})
+    fitting = _given({"steps": choice.fit_steps, "seconds": choice.fit_seconds})
     if choice.method != "dictionary" and choice.recipe is not None:
         raise UsageError(f"the method {choice.method!r} takes no recipe; recipes go with dictionaries")
+    if fitting and (choice.method, choice.model) != ("cnn", SELF):
+        raise UsageError("only the method 'cnn' with the model 'self' fits a network; others take no time to fit")
     if choice.method == "smooth":
         if choice.model is not None or patches:
             raise UsageError("the method 'smooth' takes no model and no patch options")
         return {"method": "smooth"}
-    return {"method": choice.method, "patches": patches, **_given({"model": choice.model, "recipe": choice.recipe})}
+    rest = _given({"model": choice.model, "recipe": choice.recipe, "fitting": fitting})
+    return {"method": choice.method, "patches": patches, **rest}
 
 
 def _given(values: dict[str, Any]) -> dict[str, Any]:

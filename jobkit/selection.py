@@ -2,7 +2,17 @@
 
 from jobkit.errors import ModelKindError, NoNetworkError
 from jobkit.registry import Registry
-from jobkit.schema import SELF, CnnMethod, Method, ModelKind, ModelVersion, Recipe, ResolvedModel, SmoothMethod
+from jobkit.schema import (
+    SELF,
+    CnnMethod,
+    Fitting,
+    Method,
+    ModelKind,
+    ModelVersion,
+    Recipe,
+    ResolvedModel,
+    SmoothMethod,
+)
 
 # What cards of dictionaries that were learned for the recipe `paper` say of their normalisation.
 PAPER_NORMALISATION = "heights-mean"
@@ -16,7 +26,8 @@ def resolve_method(registry: Registry, method: Method) -> ResolvedModel:
     ModelNotFoundError
         If the reference means nothing.
     ModelKindError
-        If it means a model of the other kind, or one learned for another recipe than the method's.
+        If it means a model of the other kind, one learned for another recipe than the method's, or one that is taken
+        as it is while the method says how long to fit it.
     NoNetworkError
         If a network is asked for while none is registered.
     """
@@ -30,7 +41,12 @@ def resolve_method(registry: Registry, method: Method) -> ResolvedModel:
                 "no network is registered; upload one with POST /v1/models/{name}/versions, "
                 "or use the method 'dictionary' or 'smooth'"
             )
-        return _pinned(method.model, _of_kind(registry, method.model, "autoencoder"))
+        network = _of_kind(registry, method.model, "autoencoder")
+        if method.fitting != Fitting():
+            raise ModelKindError(
+                f"{network.name}@{network.version} is taken as it is; fitting goes with the model {SELF} only"
+            )
+        return _pinned(method.model, network)
     version = _of_kind(registry, method.model, "dictionary")
     _check_recipe(version, method.recipe)
     return _pinned(method.model, version)

@@ -21,10 +21,11 @@ from rich.text import Text
 from quadpatch import types
 from quadpatch.errors import QuadpatchError
 from quadpatch.files import check_outputs, write_whole
-from quadpatch.options import DictionaryOptions, HoleOptions, PatchOptions, Recipe, RepairOptions
+from quadpatch.options import DictionaryOptions, HoleOptions, NetworkOptions, PatchOptions, Recipe, RepairOptions
 
 app = typer.Typer(help="Repair holes in 3D scans.", no_args_is_help=True, add_completion=False)
 _errors = Console(stderr=True)
+FITTING = NetworkOptions()
 
 Source = Annotated[Path, typer.Argument(metavar="IN", help="Mesh: PLY, STL, OBJ, OFF, GLB/glTF or 3MF.")]
 
@@ -34,7 +35,11 @@ def fill(  # noqa: PLR0913, PLR0917  one argument per flag
     source: Source,
     output: Annotated[Path, typer.Option("--output", "-o", metavar="OUT", help="Its suffix says the format.")],
     model: Annotated[
-        str, typer.Option(help="self (learn from this mesh), smooth (geometry only), a shipped model, or a model file.")
+        str,
+        typer.Option(
+            help="self (learn a dictionary from this mesh), self-network (fit a network to it: minutes), "
+            "smooth (geometry only), a shipped model, or a model file."
+        ),
     ] = "self",
     recipe: Annotated[
         Recipe, typer.Option(help="How the model is put to use: our way, or exactly the paper's.")
@@ -52,6 +57,8 @@ def fill(  # noqa: PLR0913, PLR0917  one argument per flag
     nonzero: Annotated[
         int | None, typer.Option(help="Atoms that one patch may use (recipe paper, model self).")
     ] = None,
+    fit_steps: Annotated[int, typer.Option(help="Fit at most so many steps (model self-network).")] = FITTING.steps,
+    fit_seconds: Annotated[float, typer.Option(help="Fit at most so long (model self-network).")] = FITTING.seconds,
     seed: Annotated[int, typer.Option(help="Start of every random choice.")] = 0,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress, no summary.")] = False,
 ) -> None:
@@ -65,6 +72,7 @@ def fill(  # noqa: PLR0913, PLR0917  one argument per flag
             seed,
             recipe,
             DictionaryOptions(atoms, nonzero),
+            NetworkOptions(fit_steps, fit_seconds),
         )
         check_outputs(source, [path for path in (output, report, picture) if path])
         result = repair_file(source, output, model, options, progress)
@@ -102,7 +110,9 @@ def summary(report: dict[str, Any]) -> str:
     """One paragraph for people: what was found, filled and left open, and why."""
     counts = report["counts"]
     open_holes = counts["skipped"] + counts["refused"]
-    text = f"{_holes(counts['found'])}: {counts['filled']} filled by the model, {counts['filled_smooth']} by geometry"
+    base = report["model"].get("fitted_from")
+    model = f"{base}, fitted to this mesh" if base else "the model"
+    text = f"{_holes(counts['found'])}: {counts['filled']} filled by {model}, {counts['filled_smooth']} by geometry"
     text += _reasons(report, "filled_smooth") + f", {open_holes} left open" + _reasons(report, "skipped", "refused")
     seconds = sum(stage["seconds"] for stage in report["stages"])
     warnings = "".join(f" Warning: {warning}." for warning in report["warnings"])

@@ -18,7 +18,7 @@ from quadpatch.mesh.holes import find_holes, select_holes
 from quadpatch.mesh.measures import diagonal
 from quadpatch.mesh.weld import Weld, weld
 from quadpatch.model_file import Model, load_model, shipped_model
-from quadpatch.options import DictionaryOptions, RepairOptions
+from quadpatch.options import DictionaryOptions, NetworkOptions, RepairOptions
 from quadpatch.paper import NOTHING_TO_DO, inpaint_as_paper
 from quadpatch.pipeline import Repair, inpaint
 from quadpatch.report import UNKNOWN_UNIT, build_report, describe_hole, describe_mesh
@@ -124,10 +124,12 @@ def _resolve(model: str | Path, options: RepairOptions, progress: Progress) -> t
     """Turn a model's name or path into its inpainter, and what the report says of it."""
     if model == SMOOTH and options.recipe == "paper":
         raise OptionError(NOTHING_TO_DO)
-    if model in (SMOOTH, SELF):
-        return None, {"name": str(model)}
     if model == SELF_NETWORK:
         return _network_to_fit(options, progress)
+    if options.network != NetworkOptions():
+        raise OptionError(f"network.steps and network.seconds go with the model {SELF_NETWORK} only")
+    if model in (SMOOTH, SELF):
+        return None, {"name": str(model)}
     path = Path(model)
     if not path.is_file():
         path = shipped_model(str(model))
@@ -166,8 +168,8 @@ def _network_to_fit(options: RepairOptions, progress: Progress) -> tuple[Inpaint
         from quadpatch.networks.weights import load_residual  # noqa: PLC0415
     except ModuleNotFoundError as error:
         raise TorchMissingError(
-            "fitting a network to a mesh needs torch, which is not installed here: install quadpatch[networks], "
-            f"or take a model that is ready, such as {BASE_NETWORK}"
+            f"fitting a network to a mesh needs {error.name}, which is not installed here: "
+            f"install quadpatch[networks], or take a model that is ready, such as {BASE_NETWORK}"
         ) from error
     return FittingInpainter(load_residual(path), options.network, options.seed, progress), {
         "name": SELF_NETWORK,

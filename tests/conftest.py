@@ -93,6 +93,20 @@ def dictionary_bytes(tmp_path_factory: pytest.TempPathFactory) -> Callable[[int]
     return make
 
 
+@pytest.fixture(scope="session")
+def unlearned_models(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder of models whose `general-residual@1` has learned nothing yet: all that it may know is of the mesh."""
+    import torch  # noqa: PLC0415 - torch takes seconds to load, and few tests need it
+
+    from quadpatch.networks.residual import Residual  # noqa: PLC0415
+    from tests.quadpatch.networks.made import stirred, write_residual  # noqa: PLC0415
+
+    folder = tmp_path_factory.mktemp("unlearned")
+    torch.manual_seed(0)
+    write_residual(folder / "general-residual@1.onnx", stirred(Residual(), by=1e-5))
+    return folder
+
+
 @dataclass(frozen=True)
 class RunningService:
     """`python -m service` in a process of its own."""

@@ -4,13 +4,15 @@ from pathlib import PurePath
 from typing import Any, get_args
 
 from jobkit.meshes import MeshSource
-from jobkit.schema import CnnMethod, DictionaryMethod, Format, JobSpec, OutputFormat, SmoothMethod
+from jobkit.schema import SELF, CnnMethod, DictionaryMethod, Format, JobSpec, OutputFormat, SmoothMethod
 from worker.limits import EngineLimits
 from worker.request import MESH_FOLDER, EngineRequest
 
 # Formats that are read, but handed back as another one: a glTF with its side files is no single file.
 _WRITTEN_AS: dict[str, OutputFormat] = {"gltf": "glb"}
 _DEFAULT_OUTPUT: OutputFormat = "ply"
+# Of a job's time; what fitting a network may take of it. The rest is for the repair itself.
+_FITTING_SHARE = 2 / 3
 
 
 def source_name(source: MeshSource) -> str:
@@ -41,17 +43,18 @@ def repair_request(spec: JobSpec, source: MeshSource, model: str, limits: Engine
     source : MeshSource
         The job's mesh.
     model : str
-        `smooth`, `self`, or the path of the pinned version's file.
+        `smooth`, `self`, `self-network`, or the path of the pinned version's file.
     limits : EngineLimits
         Of the worker; the spec may only lower them.
     """
+    allowed = lowered(limits, spec)
     return EngineRequest(
         task="repair",
         source=source_name(source),
         output=f"repaired.{output_format(spec, source)}",
         model=model,
-        options=method_options(spec),
-        limits=lowered(limits, spec),
+        options=method_options(spec, allowed.time_s),
+        limits=allowed,
         with_preview=spec.output.preview,
     )
 
@@ -61,13 +64,21 @@ def inspect_request(source: MeshSource, limits: EngineLimits) -> EngineRequest:
     return EngineRequest(task="inspect", source=source_name(source), limits=limits)
 
 
-def method_options(spec: JobSpec) -> dict[str, Any]:
-    """Return the options as `quadpatch.options.RepairOptions.from_dict` reads them."""
+def method_options(spec: JobSpec, time_s: float) -> dict[str, Any]:
+    """Return the options as `quadpatch.options.RepairOptions.from_dict` reads them.
+
+    Parameters
+    ----------
+    spec : JobSpec
+    time_s : float
+        That the whole job may take.
+    """
     patches = {} if isinstance(spec.method, SmoothMethod) else spec.method.patches.model_dump()
     recipe = spec.method.recipe if isinstance(spec.method, DictionaryMethod) else "default"
     options = {"holes": spec.holes.model_dump(), "patches": patches, "seed": spec.seed, "recipe": recipe}
-    if isinstance(spec.method, CnnMethod):
-        options["network"] = spec.method.fitting.model_dump()
+    if isinstance(spec.method, CnnMethod) and spec.method.model == SELF:
+        fitting = spec.method.fitting
+        options["network"] = {"steps": fitting.steps, "seconds": min(fitting.seconds, _FITTING_SHARE * time_s)}
     return options
 
 

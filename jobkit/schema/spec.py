@@ -65,14 +65,16 @@ class DictionaryMethod(Request):
 
 
 class Fitting(Request):
-    """How long a network is fitted to the mesh itself; read with `self` alone."""
+    """How long a network is fitted to the mesh itself; goes with the model `self` alone."""
 
-    steps: FittingSteps = Field(default=1000, description="At most so many steps, of 64 patches each.")
+    steps: FittingSteps = Field(default=1000, description="At most so many steps, of 64 patches each.", examples=[1000])
     seconds: float = Field(
         default=600.0,
         gt=0,
         le=86_400,
-        description="At most so long. Where this ends before the steps do, another run may give other bytes.",
+        description="At most so long, and at most two thirds of the job's time limit. Where this ends before the steps "
+        "do, another run may give other bytes.",
+        examples=[300.0],
     )
 
 
@@ -87,7 +89,9 @@ class CnnMethod(Request):
         "undamaged part of the uploaded mesh, which takes minutes.",
         examples=["self"],
     )
-    fitting: Fitting = Field(default_factory=Fitting, description="How long `self` may take.")
+    fitting: Fitting = Field(
+        default_factory=Fitting, description="How long `self` may take; refused with any other model."
+    )
     patches: PatchOptions = Field(default_factory=PatchOptions, description="How patches are laid out.")
 
 

@@ -2,7 +2,7 @@ import pytest
 
 from client.errors import UsageError
 from client.options import HoleChoice, MethodChoice, MethodName, make_spec
-from jobkit.schema import DictionaryMethod
+from jobkit.schema import CnnMethod, DictionaryMethod, Fitting
 
 MESH_ID = "0" * 64
 
@@ -20,6 +20,23 @@ def test_a_recipe_goes_with_dictionaries_only(method: MethodName) -> None:
         make_spec(MESH_ID, HoleChoice(), MethodChoice(method, recipe="paper"))
 
 
+def test_how_long_to_fit_a_network_reaches_the_spec_and_is_the_services_default_otherwise() -> None:
+    chosen = make_spec(MESH_ID, HoleChoice(), MethodChoice("cnn", "self", fit_steps=30, fit_seconds=12.5))
+    assert chosen.method == CnnMethod(method="cnn", model="self", fitting=Fitting(steps=30, seconds=12.5))
+    usual = make_spec(MESH_ID, HoleChoice(), MethodChoice("cnn", "self"))
+    assert usual.method == CnnMethod(method="cnn", model="self")
+
+
+@pytest.mark.parametrize(
+    ("method", "model"),
+    [("cnn", None), ("cnn", "general-residual@1"), ("dictionary", "self"), ("dictionary", None), ("smooth", None)],
+)
+def test_only_a_network_can_be_told_how_long_to_be_fitted(method: MethodName, model: str | None) -> None:
+    for choice in (MethodChoice(method, model, fit_steps=30), MethodChoice(method, model, fit_seconds=5.0)):
+        with pytest.raises(UsageError, match="only the method 'cnn' with the model 'self' fits a network"):
+            make_spec(MESH_ID, HoleChoice(), choice)
+
+
 def test_smooth_takes_neither_a_model_nor_patch_options() -> None:
     for choice in (MethodChoice("smooth", model="self"), MethodChoice("smooth", overlap=1)):
         with pytest.raises(UsageError, match="takes no model and no patch options"):
@@ -29,3 +46,5 @@ def test_smooth_takes_neither_a_model_nor_patch_options() -> None:
 def test_an_option_out_of_its_range_is_named() -> None:
     with pytest.raises(UsageError, match="resolution"):
         make_spec(MESH_ID, HoleChoice(), MethodChoice(resolution=7))
+    with pytest.raises(UsageError, match=r"fitting\.steps"):
+        make_spec(MESH_ID, HoleChoice(), MethodChoice("cnn", "self", fit_steps=0))

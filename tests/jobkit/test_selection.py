@@ -6,7 +6,7 @@ import pytest
 from jobkit.database import Database
 from jobkit.errors import ModelKindError, ModelNotFoundError, NoNetworkError
 from jobkit.registry import Registry
-from jobkit.schema import CnnMethod, DictionaryMethod, SmoothMethod
+from jobkit.schema import CnnMethod, DictionaryMethod, Fitting, SmoothMethod
 from jobkit.selection import resolve_method
 from jobkit.store import ObjectStore
 
@@ -31,6 +31,21 @@ def test_a_reference_is_pinned_to_the_version_it_means_now(registry: Registry) -
 def test_self_and_smooth_need_no_registered_model(registry: Registry) -> None:
     assert resolve_method(registry, DictionaryMethod(method="dictionary", model="self")).kind == "self"
     assert resolve_method(registry, SmoothMethod(method="smooth")).kind == "none"
+
+
+def test_a_network_is_fitted_to_the_mesh_without_being_registered(registry: Registry) -> None:
+    method = CnnMethod(method="cnn", model="self", fitting=Fitting(steps=30))
+    pinned = resolve_method(registry, method)
+    assert (pinned.requested, pinned.kind, pinned.name, pinned.version) == ("self", "self_network", None, None)
+
+
+def test_a_network_that_is_taken_as_it_is_takes_no_time_to_be_fitted(registry: Registry, tmp_path: Path) -> None:
+    (tmp_path / "net").write_bytes(b"\x08\x0a")
+    registry.publish_file("small", tmp_path / "net")
+    for fitting in (Fitting(steps=30), Fitting(seconds=30.0)):
+        with pytest.raises(ModelKindError, match="small@1 is taken as it is; fitting goes with the model self only"):
+            resolve_method(registry, CnnMethod(method="cnn", model="small", fitting=fitting))
+    assert resolve_method(registry, CnnMethod(method="cnn", model="small", fitting=Fitting())).name == "small"
 
 
 def test_a_network_is_asked_for_in_vain_until_one_is_registered(registry: Registry, tmp_path: Path) -> None:

@@ -79,6 +79,7 @@ def test_flags_about_patches_reach_them(scan_file: Path, tmp_path: Path) -> None
         "seed": 3,
         "recipe": "default",
         "dictionary": {"atoms": None, "nonzero": None},
+        "network": {"steps": 1000, "seconds": 600.0},
     }
     assert content["patches"]["resolution"] == 18
     assert content["model"] == {"name": "self"}
@@ -123,6 +124,11 @@ def test_holes_are_listed_for_people(scan_file: Path) -> None:
         (["fill", "SCAN", "-o", "out.ply", "--resolution", "4"], "invalid_option"),
         (["fill", "SCAN", "-o", "out.ply", "--seed", "-1"], "invalid_option"),
         (["fill", "SCAN", "-o", "out.ply", "--model", "no-such-model"], "unusable_model"),
+        (["fill", "SCAN", "-o", "out.ply", "--fit-steps", "30"], "invalid_option"),
+        (["fill", "SCAN", "-o", "out.ply", "--model", "smooth", "--fit-seconds", "30"], "invalid_option"),
+        (["fill", "SCAN", "-o", "out.ply", "--model", "self-network", "--fit-steps", "0"], "invalid_option"),
+        (["fill", "SCAN", "-o", "out.ply", "--model", "self-network", "--fit-seconds", "nan"], "invalid_option"),
+        (["fill", "SCAN", "-o", "out.ply", "--model", "self-network", "--recipe", "paper"], "invalid_option"),
         (["fill", "SCAN", "-o", "no/such/folder/out.ply", "--model", "smooth"], "not_writable"),
         (["fill", "SCAN", "-o", "out.ply", "--model", "smooth", "--report", "no/such/out.json"], "not_writable"),
         (["fill", "SCAN", "-o", "out.ply", "--model", "smooth", "--picture", "no/such/out.png"], "not_writable"),
@@ -164,6 +170,7 @@ def test_wrong_usage_has_its_own_exit_code(arguments: list[str]) -> None:
 def test_the_summary_counts_reasons() -> None:
     row = {"verdict": "skipped", "reason": "too wide"}
     report = {
+        "model": {"name": "self"},
         "counts": {"found": 5, "filled": 1, "filled_smooth": 1, "skipped": 2, "refused": 1},
         "holes": [
             row,
@@ -180,6 +187,8 @@ def test_the_summary_counts_reasons() -> None:
         "3 left open (2 × too wide; 1 × no way). 1.8 s. Warning: beware."
     )
     assert summary(report) == expected
+    fitted = {**report, "model": {"name": "self-network", "fitted_from": "general-residual@1"}}
+    assert summary(fitted) == expected.replace("the model", "general-residual@1, fitted to this mesh")
 
 
 def test_the_module_runs_as_a_process(scan_file: Path, tmp_path: Path) -> None:

@@ -3,7 +3,7 @@ from typing import Any
 import pytest
 
 from quadpatch.errors import OptionError
-from quadpatch.options import DictionaryOptions, HoleOptions, PatchOptions, RepairOptions
+from quadpatch.options import DictionaryOptions, HoleOptions, NetworkOptions, PatchOptions, RepairOptions
 
 
 def test_nothing_given_means_every_automatic_rule() -> None:
@@ -27,10 +27,11 @@ def test_plain_values_become_options() -> None:
             "seed": 7,
             "recipe": "paper",
             "dictionary": {"atoms": 50, "nonzero": 5},
+            "network": {"steps": 30, "seconds": 4},
         }
     )
     holes, patches = HoleOptions(max_diameter=2, ids=(3, 1)), PatchOptions(0.5, 24, 0)
-    assert options == RepairOptions(holes, patches, 7, "paper", DictionaryOptions(50, 5))
+    assert options == RepairOptions(holes, patches, 7, "paper", DictionaryOptions(50, 5), NetworkOptions(30, 4))
 
 
 @pytest.mark.parametrize(
@@ -66,6 +67,14 @@ def test_plain_values_become_options() -> None:
         {"recipe": "paper", "dictionary": {"nonzero": 0}},
         {"recipe": "paper", "dictionary": {"size": 3}},
         {"recipe": "paper", "dictionary": [3]},
+        {"network": {"steps": 0}},
+        {"network": {"steps": 100_001}},
+        {"network": {"steps": 2.5}},
+        {"network": {"seconds": 0}},
+        {"network": {"seconds": float("inf")}},
+        {"network": {"seconds": float("nan")}},
+        {"network": {"seconds": "long"}},
+        {"network": {"hours": 1}},
     ],
 )
 def test_what_can_not_be_meant_is_refused_with_a_code(values: dict[str, Any]) -> None:
@@ -83,6 +92,8 @@ def test_what_can_not_be_meant_is_refused_with_a_code(values: dict[str, Any]) ->
         ({"colour": "red"}, "colour"),
         ({"recipe": "ours"}, "recipe must be one of default, paper; it is 'ours'"),
         ({"dictionary": {"atoms": 9}}, r"dictionary\.atoms and dictionary\.nonzero go with the recipe paper only"),
+        ({"network": {"steps": 0}}, r"network\.steps must be a whole number between 1 and 100000; it is 0"),
+        ({"network": {"seconds": -1}}, r"network\.seconds must be finite and greater than 0; it is -1"),
         ({"dictionary": {"atoms": 1}}, r"dictionary\.atoms must be a whole number between 2 and 4096; it is 1"),
     ],
 )

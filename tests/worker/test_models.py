@@ -41,7 +41,7 @@ def pinned(version: ModelVersion) -> ResolvedModel:
     )
 
 
-@pytest.mark.parametrize(("kind", "argument"), [("none", "smooth"), ("self", "self")])
+@pytest.mark.parametrize(("kind", "argument"), [("none", "smooth"), ("self", "self"), ("self_network", "self-network")])
 def test_methods_without_a_file_have_a_name(
     registry: Registry, store: ObjectStore, tmp_path: Path, kind: str, argument: str
 ) -> None:

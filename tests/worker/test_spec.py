@@ -5,10 +5,10 @@ import pytest
 import jobkit.schema
 import quadpatch.options
 from jobkit.meshes import MeshSource
-from jobkit.schema import JobSpec
+from jobkit.schema import Fitting, JobSpec
 from jobkit.selection import PAPER_NORMALISATION
 from quadpatch.model_file import RECIPES
-from quadpatch.options import HoleOptions, PatchOptions, RepairOptions
+from quadpatch.options import HoleOptions, NetworkOptions, PatchOptions, RepairOptions
 from worker.limits import EngineLimits
 from worker.spec import inspect_request, method_options, output_format, repair_request, source_name
 
@@ -25,8 +25,13 @@ def spec(**fields: Any) -> JobSpec:
 
 
 def test_a_job_without_wishes_is_a_repair_with_all_defaults() -> None:
-    assert RepairOptions.from_dict(method_options(spec())) == RepairOptions()
-    assert RepairOptions.from_dict(method_options(spec(method={"method": "smooth"}))) == RepairOptions()
+    for method in (
+        {"method": "dictionary"},
+        {"method": "smooth"},
+        {"method": "cnn"},
+        {"method": "cnn", "model": "self"},
+    ):
+        assert RepairOptions.from_dict(method_options(spec(method=method), LIMITS.time_s)) == RepairOptions()
 
 
 def test_every_option_of_a_job_reaches_the_method() -> None:
@@ -38,9 +43,22 @@ def test_every_option_of_a_job_reaches_the_method() -> None:
         holes={"max_diameter": 9.0, "max_perimeter": 30.0, "all_but_largest": True, "ids": [4, 1]},
         seed=7,
     )
-    assert RepairOptions.from_dict(method_options(job)) == RepairOptions(
+    assert RepairOptions.from_dict(method_options(job, LIMITS.time_s)) == RepairOptions(
         HoleOptions(9.0, 30.0, True, (4, 1)), PatchOptions(2.5, 16, 3), 7, "paper"
     )
+
+
+def test_how_long_to_fit_a_network_reaches_the_method() -> None:
+    method = {"method": "cnn", "model": "self", "fitting": {"steps": 30, "seconds": 45.0}, "patches": {"length": 2.0}}
+    options = RepairOptions.from_dict(method_options(spec(method=method), LIMITS.time_s))
+    assert options == RepairOptions(patches=PatchOptions(length=2.0), network=NetworkOptions(30, 45.0))
+
+
+def test_fitting_leaves_a_third_of_the_time_to_the_rest_of_the_job() -> None:
+    job = spec(method={"method": "cnn", "model": "self"}, limits={"time_s": 90.0})
+    request = repair_request(job, source(), "self-network", LIMITS)
+    assert request.options["network"] == {"steps": NetworkOptions().steps, "seconds": pytest.approx(60.0)}
+    RepairOptions.from_dict(request.options)
 
 
 def test_the_recipes_of_the_contract_are_those_of_the_method() -> None:
@@ -50,9 +68,10 @@ def test_the_recipes_of_the_contract_are_those_of_the_method() -> None:
 
 
 def test_every_field_of_the_contract_is_one_of_the_method() -> None:
-    options = method_options(spec())
+    options = method_options(spec(), LIMITS.time_s)
     assert set(options["holes"]) == set(vars(HoleOptions()))
     assert set(options["patches"]) == set(vars(PatchOptions()))
+    assert set(Fitting.model_fields) == set(vars(NetworkOptions()))
 
 
 @pytest.mark.parametrize(

@@ -14,11 +14,11 @@ def random_tensor(seed: int, *shape: int) -> Tensor:
     return torch.randn(shape, generator=torch.Generator().manual_seed(seed))
 
 
-def stirred(network: Residual) -> Residual:
+def stirred(network: Residual, by: float = 0.1) -> Residual:
     """Away from its start, where the last layer answers zero whatever the others do."""
     with torch.no_grad():
         for parameter in network.last.parameters():
-            parameter.copy_(0.1 * random_tensor(0, *parameter.shape))
+            parameter.copy_(by * random_tensor(0, *parameter.shape))
     return network
 
 

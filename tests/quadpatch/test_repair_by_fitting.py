@@ -1,0 +1,145 @@
+"""Repairs by a network that is fitted to the mesh itself."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from quadpatch import model_file
+from quadpatch.cli import app
+from quadpatch.errors import ModelError, OptionError
+from quadpatch.formats.reading import read_scan
+from quadpatch.mesh.distance import distance_to_mesh
+from quadpatch.options import NetworkOptions, PatchOptions, RepairOptions
+from quadpatch.repair import BASE_NETWORK, SELF_NETWORK, repair_file
+from tests.quadpatch.shapes import punched, relief, write_ply
+
+ROOT = Path(__file__).resolve().parents[2]
+WHOLE = relief(100, 2.8, 0.04, 11)
+SCAN = punched(WHOLE, (-0.6, -0.65, 0), (0.35, 0.4, 0), radius=0.13)
+OPTIONS = RepairOptions(patches=PatchOptions(overlap=1), network=NetworkOptions(steps=70, seconds=500.0))
+
+
+@pytest.fixture
+def unlearned(unlearned_models: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nothing ships but a network that has learned nothing yet."""
+    monkeypatch.setattr(model_file, "SHIPPED_MODELS", unlearned_models)
+
+
+@pytest.fixture(scope="module")
+def scan_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return write_ply(tmp_path_factory.mktemp("scan") / "relief.ply", SCAN)
+
+
+def error_of(output: Path) -> float:
+    """Mean distance of the new vertices to the surface that was there."""
+    new = read_scan(output).vertices[len(SCAN.vertices) :]
+    return float(distance_to_mesh(new, WHOLE).mean())
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("unlearned")
+def test_a_network_that_is_fitted_to_a_relief_fills_it_better_than_geometry_and_repeats(
+    scan_file: Path, tmp_path: Path
+) -> None:
+    fitted, again, smooth = (tmp_path / name for name in ("fitted.ply", "again.ply", "smooth.ply"))
+    heard: list[float] = []
+    report = repair_file(
+        scan_file, fitted, SELF_NETWORK, OPTIONS, lambda stage, share: heard.append(share) if stage == "learn" else None
+    )
+    repair_file(scan_file, smooth, "smooth")
+    assert report["counts"]["filled"] == 2
+    assert report["patches"]["believed_share"] >= 0.5
+    assert error_of(fitted) < 0.8 * error_of(smooth)
+
+    before, after = read_scan(scan_file), read_scan(fitted)
+    assert after.vertices[: len(before.vertices)].tobytes() == before.vertices.tobytes()
+    assert after.triangles[: len(before.triangles)].tobytes() == before.triangles.tobytes()
+
+    assert report["model"] == {"name": SELF_NETWORK, "fitted_from": f"{BASE_NETWORK}@1"}
+    assert report["options"]["network"] == {"steps": 70, "seconds": 500.0}
+    assert len(set(heard)) > 60
+
+    assert repair_file(scan_file, again, SELF_NETWORK, OPTIONS)["model"] == report["model"]
+    assert again.read_bytes() == fitted.read_bytes()
+
+
+@pytest.mark.usefixtures("unlearned")
+def test_without_time_to_learn_the_fill_stays_as_it_is(scan_file: Path, tmp_path: Path) -> None:
+    """The network of these tests knows nothing, so practice believes nothing of what it says."""
+    no_time = RepairOptions(network=NetworkOptions(steps=1, seconds=1e-6))
+    report = repair_file(scan_file, tmp_path / "out.ply", SELF_NETWORK, no_time)
+    repair_file(scan_file, tmp_path / "smooth.ply", "smooth")
+    assert {hole["code"] for hole in report["holes"] if hole["verdict"] == "filled_smooth"} == {"no_gain"}
+    new, smooth = (read_scan(tmp_path / name).vertices for name in ("out.ply", "smooth.ply"))
+    np.testing.assert_array_equal(new, smooth)
+
+
+@pytest.mark.usefixtures("unlearned")
+def test_the_command_line_says_how_long_to_fit_and_what_was_fitted(scan_file: Path, tmp_path: Path) -> None:
+    files = ["fill", str(scan_file), "-o", str(tmp_path / "out.ply"), "--report", str(tmp_path / "report.json")]
+    flags = ["--model", SELF_NETWORK, "--fit-steps", "2", "--fit-seconds", "90", "--overlap", "0"]
+    ended = CliRunner().invoke(app, [*files, *flags])
+    assert ended.exit_code == 0, ended.output
+    assert f"filled by {BASE_NETWORK}@1, fitted to this mesh" in " ".join(ended.stderr.split())
+    assert json.loads((tmp_path / "report.json").read_text())["options"]["network"] == {"steps": 2, "seconds": 90.0}
+
+
+@pytest.mark.parametrize("model", ["smooth", "self", "general-dictionary@1"])
+@pytest.mark.parametrize("network", [NetworkOptions(steps=5), NetworkOptions(seconds=5.0)])
+def test_only_a_network_that_is_fitted_takes_steps_and_seconds(
+    scan_file: Path, tmp_path: Path, model: str, network: NetworkOptions
+) -> None:
+    with pytest.raises(OptionError, match=r"network\.steps and network\.seconds go with the model self-network only"):
+        repair_file(scan_file, tmp_path / "out.ply", model, RepairOptions(network=network))
+
+
+def test_the_recipe_paper_fits_no_network(scan_file: Path, tmp_path: Path) -> None:
+    with pytest.raises(OptionError, match="self-network has a recipe of its own"):
+        repair_file(scan_file, tmp_path / "out.ply", SELF_NETWORK, RepairOptions(recipe="paper"))
+
+
+def test_a_box_without_the_network_to_start_from_says_so(
+    scan_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(model_file, "SHIPPED_MODELS", tmp_path)
+    with pytest.raises(ModelError, match=f"'{BASE_NETWORK}' is no file and no shipped model"):
+        repair_file(scan_file, tmp_path / "out.ply", SELF_NETWORK)
+
+
+def run_without(package: str, models: Path, *arguments: str | Path) -> subprocess.CompletedProcess[str]:
+    """Run the command line in a process that can not import a package."""
+    program = (
+        f"import sys; sys.modules[{package!r}] = None; from pathlib import Path; from quadpatch import model_file; "
+        f"model_file.SHIPPED_MODELS = Path({str(models)!r}); from quadpatch.cli import app; app(sys.argv[1:])"
+    )
+    command = [sys.executable, "-c", program, *map(str, arguments)]
+    return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+
+
+@pytest.mark.parametrize("package", ["torch", "onnx"])
+def test_without_torch_the_answer_says_how_to_install_it(
+    scan_file: Path, unlearned_models: Path, tmp_path: Path, package: str
+) -> None:
+    output = tmp_path / "out.ply"
+    ended = run_without(package, unlearned_models, "fill", scan_file, "-o", output, "--model", SELF_NETWORK)
+    assert ended.returncode == 1
+    assert ended.stderr.startswith(f"torch_missing: fitting a network to a mesh needs {package}, which is not")
+    assert "install quadpatch[networks]" in ended.stderr
+    assert f"or take a model that is ready, such as {BASE_NETWORK}" in ended.stderr
+    assert not output.exists()
+
+
+def test_without_torch_a_network_that_is_ready_does_its_work(
+    scan_file: Path, unlearned_models: Path, tmp_path: Path
+) -> None:
+    files = ["-o", tmp_path / "out.ply", "--report", tmp_path / "report.json"]
+    ended = run_without("torch", unlearned_models, "fill", scan_file, *map(str, files), "--model", BASE_NETWORK)
+    assert ended.returncode == 0, ended.stderr
+    report: dict[str, Any] = json.loads((tmp_path / "report.json").read_text())
+    assert (report["model"]["kind"], report["patches"]["resolution"]) == ("autoencoder", 32)

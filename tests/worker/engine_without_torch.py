@@ -1,0 +1,13 @@
+"""The engine as it is, in a worker that was installed without torch."""
+
+import os
+import sys
+from pathlib import Path
+
+from quadpatch import model_file
+from worker import engine
+
+# What an import of it meets from now on is an ImportError.
+sys.modules["torch"] = None  # type: ignore[assignment]
+model_file.SHIPPED_MODELS = Path(os.environ["TEST_MODELS"])
+run_request = engine.run_request

@@ -1,0 +1,55 @@
+import json
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from tests.quadpatch.shapes import bumpy_plate, punched, write_ply
+from worker.failures import EngineFailedError
+from worker.limits import EngineLimits
+from worker.nursing import Nursery
+from worker.request import MESH_FOLDER, REPORT_NAME, EngineRequest
+from worker.watch import Observer, run_engine
+
+LIMITS = EngineLimits(time_s=300.0, memory_mb=4096, n_threads=1)
+
+
+@pytest.fixture(scope="module")
+def nursery(unlearned_models: Path) -> Iterator[Nursery]:
+    """Of a worker that was installed without torch."""
+    with pytest.MonkeyPatch.context() as environment:
+        environment.setenv("PYTHONPATH", str(Path(__file__).parent))
+        environment.setenv("TEST_MODELS", str(unlearned_models))
+        with Nursery(n_threads=1, engine="engine_without_torch") as nursery:
+            yield nursery
+
+
+def repair_request(folder: Path, model: str) -> EngineRequest:
+    """A plate with a hole, and a request to repair it."""
+    (folder / MESH_FOLDER).mkdir()
+    write_ply(folder / MESH_FOLDER / "source.ply", punched(bumpy_plate(40, 2.0), (0, 0, 0), radius=0.2))
+    return EngineRequest(
+        task="repair", source=f"{MESH_FOLDER}/source.ply", output="repaired.ply", model=model, limits=LIMITS
+    )
+
+
+def test_a_worker_without_torch_fails_a_job_that_needs_it_for_good_and_says_how_to_install_it(
+    nursery: Nursery, tmp_path: Path
+) -> None:
+    heard: list[str] = []
+    observer = Observer(lambda stage, fraction: heard.append(stage), lambda: None)
+    with pytest.raises(EngineFailedError) as caught:
+        run_engine(nursery, repair_request(tmp_path, "self-network"), tmp_path, observer)
+    failure = caught.value.failure
+    assert (failure.code, failure.retryable) == ("torch_missing", False)
+    assert "install quadpatch[networks]" in failure.message
+    # Before any work is done.
+    assert heard == []
+    assert not (tmp_path / "repaired.ply").exists()
+
+
+def test_a_worker_without_torch_runs_networks_that_are_ready(nursery: Nursery, tmp_path: Path) -> None:
+    request = repair_request(tmp_path, "general-residual@1")
+    run_engine(nursery, request, tmp_path, Observer(lambda stage, fraction: None, lambda: None))
+    assert json.loads((tmp_path / REPORT_NAME).read_text())["model"]["kind"] == "autoencoder"
+    assert (tmp_path / "repaired.ply").is_file()
