@@ -10,6 +10,7 @@ experiments
     atoms         the paper's local dictionary, by its number of atoms
     patch-length  the paper's local dictionary and our `self`, by the ratio of hole to patch
     shapes        the paper's global dictionary, by the number of shapes that it was learned from
+    networks      the paper's networks, trained on the spot, beside its dictionaries
 """
 
 import argparse
@@ -18,6 +19,7 @@ from pathlib import Path
 
 from benchmarks.quality.bench import RADII, Bench, BenchError
 from benchmarks.quality.measurement import Method
+from benchmarks.quality.network_options import PROTOCOLS, Budget, NetworkOptions
 from benchmarks.quality.own_meshes import own_shapes
 from benchmarks.quality.results import ALL_KINDS, OF_THE_METHOD, Results
 from benchmarks.quality.session import EXPERIMENTS, REPAIR, Session
@@ -52,10 +54,23 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--radius", action="append", help=f"hole radius; repeat for more, or all: {', '.join(RADII)}")
     parser.add_argument("--model", action="append", help="smooth, self, or a model; repeat for more")
     parser.add_argument("--output", type=Path, default=Path("var/quality"), help="folder for meshes and results")
-    parser.add_argument("--fresh", action="store_true", help="measure again; keep the paper's dictionaries and peers")
-    parser.add_argument("--fresh-all", action="store_true", help="learn the dictionaries and run the peers again, too")
-    parser.add_argument("--no-pictures", action="store_true", help="draw no worst and best holes")
+    parser.add_argument("--fresh", action="store_true", help="measure again; keep the paper's models and peers")
+    parser.add_argument(
+        "--fresh-all", action="store_true", help="learn dictionaries, train networks and run peers again, too"
+    )
+    parser.add_argument("--no-pictures", action="store_true", help="draw no worst and best holes, and no patches")
+    _add_network_options(parser)
     return parser
+
+
+def _add_network_options(parser: argparse.ArgumentParser) -> None:
+    usual = NetworkOptions()
+    networks = parser.add_argument_group("networks")
+    networks.add_argument("--arch", action="append", help="network; repeat for more; default small_4x")
+    networks.add_argument("--protocol", action="append", choices=PROTOCOLS, help="repeat for more; default local")
+    networks.add_argument("--minutes", type=float, help=f"of training, each; default {usual.budget.minutes}")
+    networks.add_argument("--steps", type=int, help="of training, each, at most; without --minutes the only limit")
+    networks.add_argument("--threads", type=int, default=usual.budget.threads, help="for training; default 1")
 
 
 def _open(arguments: argparse.Namespace) -> Session:
@@ -71,7 +86,16 @@ def _open(arguments: argparse.Namespace) -> Session:
         methods=[Method.of(model) for model in arguments.model or MODELS],
         output=arguments.output,
         is_drawing=not arguments.no_pictures,
+        networks=_network_options(arguments),
     )
+
+
+def _network_options(arguments: argparse.Namespace) -> NetworkOptions:
+    usual = NetworkOptions()
+    is_endless = arguments.minutes is None and arguments.steps is None
+    minutes = usual.budget.minutes if is_endless else arguments.minutes
+    budget = Budget(minutes, arguments.steps, arguments.threads)
+    return NetworkOptions(arguments.arch or usual.architectures, arguments.protocol or usual.protocols, budget)
 
 
 if __name__ == "__main__":

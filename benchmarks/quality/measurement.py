@@ -57,8 +57,9 @@ def measure(bench: Bench, case: Case, method: Method, results: Results) -> dict[
     Returns
     -------
     dict
-        What ``bench.score`` says, `seconds` of the repair, and `per_hole`: id, verdict, confidence, expected and true
-        error, and centre of each punched hole that got new vertices.
+        What ``bench.score`` says, `seconds` of the repair, `stages`: seconds by stage, `n_patches` that were completed,
+        and `per_hole`: id, verdict, confidence, expected and true error, and centre of each punched hole that got new
+        vertices.
     """
     key = {"mesh": case.shape.name, "radius": case.radius, "sha256": case.shape.sha256, **method.key()}
     return results.get(REPAIRS, key, lambda: _repair(bench, case, method))
@@ -75,8 +76,13 @@ def _repair(bench: Bench, case: Case, method: Method) -> dict[str, Any]:
     start = time.perf_counter()
     report = repair_file(case.punched, repaired, method.model, options)
     seconds = time.perf_counter() - start
-    holes = _per_hole(bench, case, repaired, report)
-    return {"model": method.model, "seconds": seconds, **bench.score(case, repaired), "per_hole": holes}
+    facts = {
+        "model": method.model,
+        "seconds": seconds,
+        "stages": {stage["name"]: stage["seconds"] for stage in report["stages"]},
+        "n_patches": (report["patches"] or {"count": 0})["count"],
+    }
+    return {**facts, **bench.score(case, repaired), "per_hole": _per_hole(bench, case, repaired, report)}
 
 
 def new_vertices(repaired: Path) -> tuple[Vertices, IntArray]:

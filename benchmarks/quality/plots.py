@@ -62,3 +62,23 @@ def curve_plot(
     axes.grid(alpha=0.3)
     axes.legend(fontsize="small", ncols=2)
     return figure
+
+
+def labelled_plot(
+    title: str, labels: tuple[str, str], points: Mapping[str, tuple[float, float]], lines: Mapping[str, float]
+) -> Figure:
+    """Draw named points over a logarithmic axis, and values to compare them with as lines across."""
+    figure = Figure(figsize=(_WIDTH, _HEIGHT), layout="constrained")
+    axes = figure.add_subplot()
+    for name, (x, y) in points.items():
+        axes.semilogx([x], [y], marker="o", color="tab:blue")
+        axes.annotate(name, (x, y), xytext=(5, 5), textcoords="offset points", fontsize="small")
+    for k, (name, y) in enumerate(lines.items()):
+        axes.axhline(y, color=f"C{k + 1}", linewidth=0.8, linestyle="--", label=name)
+    axes.set_xlabel(labels[0])
+    axes.set_ylabel(labels[1])
+    axes.set_title(title, fontsize="medium")
+    axes.margins(x=0.15)
+    axes.grid(alpha=0.3)
+    axes.legend(fontsize="small")
+    return figure

@@ -12,10 +12,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-REPAIRS, CODINGS, MODELS, PEERS = "repairs", "codings", "models", "peers"
+REPAIRS, CODINGS, MODELS, NETWORKS, PEERS = "repairs", "codings", "models", "networks", "peers"
 # What a change of the method makes stale, and what only a change of the paper's recipe or of the peers does.
 OF_THE_METHOD = (REPAIRS, CODINGS)
-ALL_KINDS = (*OF_THE_METHOD, MODELS, PEERS)
+ALL_KINDS = (*OF_THE_METHOD, MODELS, NETWORKS, PEERS)
 
 Key = Mapping[str, str | int | float]
 

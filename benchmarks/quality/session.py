@@ -8,6 +8,7 @@ from rich.console import Console
 
 from benchmarks.quality.bench import Bench, Case, Shape, named
 from benchmarks.quality.measurement import Method
+from benchmarks.quality.network_options import NetworkOptions
 from benchmarks.quality.outcome import Outcome, Progress
 from benchmarks.quality.paper_dictionaries import Learner
 from benchmarks.quality.paper_experiments import (
@@ -50,7 +51,9 @@ class Session:
     methods : sequence of Method
     output : Path
     is_drawing : bool
-        Whether pictures of holes are wanted.
+        Whether pictures of holes and patches are wanted.
+    networks : NetworkOptions
+        For the paper's networks.
     """
 
     bench: Bench
@@ -61,6 +64,7 @@ class Session:
     methods: Sequence[Method]
     output: Path
     is_drawing: bool
+    networks: NetworkOptions
 
     def cases(self, radii: Sequence[str], otherwise: Sequence[str] = ()) -> list[Case]:
         """Punch the shapes asked for, otherwise some or all, and see to it that there are figures of peers."""
@@ -116,10 +120,29 @@ def _shapes(session: Session) -> None:
     session.publish(shapes_experiment(paper, cases, session.every))
 
 
+def _networks(session: Session) -> None:
+    # Torch is slow to load, and no other experiment needs it.
+    from benchmarks.quality.network_experiment import (  # noqa: PLC0415
+        Networks,
+        find_architectures,
+        networks_experiment,
+    )
+    from benchmarks.quality.paper_networks import NetworkTrainer  # noqa: PLC0415
+
+    options = session.networks
+    architectures = find_architectures(options.architectures)
+    cases = session.cases(session.radii)
+    paper = session.paper(len(cases) * len(options.protocols) * (len(architectures) + 1))
+    trainer = NetworkTrainer(session.bench, session.results, session.output / "networks", options.budget)
+    networks = Networks(paper, trainer, session.every, architectures)
+    session.publish(networks_experiment(networks, cases, options, session.is_drawing))
+
+
 EXPERIMENTS: dict[str, Callable[[Session], None]] = {
     REPAIR: _repair,
     "dictionaries": _dictionaries,
     "atoms": _atoms,
     "patch-length": _patch_length,
     "shapes": _shapes,
+    "networks": _networks,
 }

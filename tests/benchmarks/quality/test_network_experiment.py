@@ -1,0 +1,67 @@
+from pathlib import Path
+
+import pytest
+
+from benchmarks.quality.bench import BenchError
+from benchmarks.quality.measurement import measure
+from benchmarks.quality.network_experiment import Networks, find_architectures, networks_experiment
+from benchmarks.quality.network_options import PROTOCOLS, Budget, NetworkOptions
+from benchmarks.quality.outcome import Progress
+from benchmarks.quality.paper_dictionaries import Learner
+from benchmarks.quality.paper_experiments import Paper
+from benchmarks.quality.paper_networks import NetworkTrainer
+from benchmarks.quality.results import Results
+from quadpatch.errors import OptionError
+from tests.benchmarks.quality.small_bench import SHAPES, small_bench
+from training.architectures import ARCHITECTURES, Architecture
+
+BUDGET = Budget(None, 2)
+SMALL = ARCHITECTURES["small_4x"]
+# The same network by another name, so that there are two to compare.
+TWIN = Architecture("twin", SMALL.resolution, SMALL.recipe, SMALL.channels, SMALL.build, SMALL.output)
+
+
+@pytest.fixture(scope="module")
+def networks(tmp_path_factory: pytest.TempPathFactory) -> Networks:
+    folder = tmp_path_factory.mktemp("networks")
+    bench, results = small_bench(folder / "bench"), Results(folder / "results")
+    paper = Paper(bench, results, Learner(bench, results, folder / "models"), Progress(1))
+    trainer = NetworkTrainer(bench, results, folder / "networks", BUDGET)
+    return Networks(paper, trainer, bench.shapes(), [SMALL, TWIN])
+
+
+def test_every_protocol_gives_its_tables_its_plot_and_its_picture(networks: Networks, tmp_path: Path) -> None:
+    bench = networks.paper.bench
+    cases = [bench.case(networks.every[0], "0.1", tmp_path)]
+    outcome = networks_experiment(networks, cases, NetworkOptions(protocols=PROTOCOLS, budget=BUDGET), is_drawing=True)
+    assert [sum(name in table.title for table in outcome.tables) for name in PROTOCOLS] == [3, 3, 3]
+    assert set(outcome.plots) == {
+        *(f"parameters_{name}_0.1" for name in PROTOCOLS),
+        *(f"patches_{name}" for name in PROTOCOLS),
+    }
+    rows = outcome.data["rows"]
+    assert [(row["protocol"], row["mesh"]) for row in rows] == [(name, SHAPES[0]) for name in PROTOCOLS]
+    assert all(row["errors"]["small_4x"] == 0.5 for row in rows)
+    of_one, of_all, of_others = (row["networks"]["small_4x"]["n_patches"] for row in rows)
+    assert of_all == of_one + of_others
+    assert rows[0]["networks"]["small_4x"]["n_completed"] > 0
+
+
+def test_a_network_repairs_by_the_recipe_of_the_paper(networks: Networks, tmp_path: Path) -> None:
+    case = networks.paper.bench.case(networks.every[0], "0.1", tmp_path)
+    trained = networks.trained("local", case)
+    found = measure(networks.paper.bench, case, trained["small_4x"].method, networks.paper.results)
+    assert "inpaint" in found["stages"]
+    assert "smooth" in found["stages"]
+    assert found["per_hole"][0]["confidence"] is None
+
+
+def test_only_the_papers_networks_are_compared() -> None:
+    assert [found.name for found in find_architectures(["long_12x", "small_4x", "long_12x"])] == [
+        "long_12x",
+        "small_4x",
+    ]
+    with pytest.raises(BenchError, match="residual is none of the paper's networks"):
+        find_architectures(["residual"])
+    with pytest.raises(OptionError, match="no network is called 'huge'"):
+        find_architectures(["huge"])
