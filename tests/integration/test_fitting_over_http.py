@@ -1,0 +1,92 @@
+"""A network that is fitted to the uploaded mesh, from upload to repaired mesh."""
+
+import json
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from client.cli import app
+from client.errors import RefusedError
+from client.exits import ExitCode
+from client.sdk import Client
+from jobkit.schema import Job, JobSpec, JobState
+from quadpatch.formats.reading import read_scan
+from quadpatch.model_file import SHIPPED_MODELS
+from quadpatch.repair import BASE_NETWORK
+
+pytestmark = pytest.mark.skipif(
+    not any(SHIPPED_MODELS.glob(f"{BASE_NETWORK}@*.onnx")), reason=f"{BASE_NETWORK} does not ship yet"
+)
+FITTED = {"method": "cnn", "model": "self", "fitting": {"steps": 12, "seconds": 500.0}, "patches": {"overlap": 0}}
+
+
+def spec(mesh_id: str, method: dict[str, Any]) -> JobSpec:
+    return JobSpec.model_validate({"mesh_id": mesh_id, "output": {"preview": False}, "method": method})
+
+
+def percents_until_the_end(client: Client, job: Job) -> dict[str | None, set[float]]:
+    """Follow a job to its end: every percentage that was seen, by stage."""
+    seen: dict[str | None, set[float]] = {}
+    deadline = time.monotonic() + 300
+    while not (job := client.job(job.id)).state.is_terminal:
+        assert time.monotonic() < deadline
+        seen.setdefault(job.stage, set()).add(job.percent)
+        time.sleep(0.1)
+    return seen
+
+
+@pytest.mark.slow
+def test_a_network_is_fitted_to_the_uploaded_mesh_and_tells_how_far_it_is(
+    client: Client, relief_file: Callable[[str], Path], tmp_path: Path
+) -> None:
+    source, output = relief_file("float.ply"), tmp_path / "repaired.ply"
+    mesh = client.upload(source)
+    job = client.create_job(spec(mesh.id, FITTED))
+    seen = percents_until_the_end(client, job)
+    job = client.job(job.id)
+    assert job.state == JobState.SUCCEEDED, job.error
+    assert (job.model.requested, job.model.kind) == ("self", "self_network")
+    assert len(seen["learn"]) >= 3
+
+    client.download(job, "result", output)
+    client.download(job, "report", tmp_path / "report.json")
+    before, after = read_scan(source), read_scan(output)
+    assert np.array_equal(after.vertices[: len(before.vertices)], before.vertices)
+    assert np.array_equal(after.triangles[: len(before.triangles)], before.triangles)
+    report = json.loads((tmp_path / "report.json").read_text())
+    assert report["counts"]["filled"] + report["counts"]["filled_smooth"] == 4
+    assert report["model"]["name"] == "self-network"
+    assert report["model"]["fitted_from"].startswith(BASE_NETWORK)
+    assert report["options"]["network"] == FITTED["fitting"]
+
+
+def test_a_job_that_may_take_no_time_to_fit_ends_all_the_same(
+    client: Client, relief_file: Callable[[str], Path]
+) -> None:
+    hurried = {**FITTED, "fitting": {"steps": 100_000, "seconds": 0.01}}
+    job = client.create_job(spec(client.upload(relief_file("float.ply")).id, hurried))
+    assert client.wait(job.id, timeout_s=200).state == JobState.SUCCEEDED
+
+
+def test_a_network_that_is_taken_as_it_is_can_not_be_told_how_long_to_be_fitted(
+    client: Client, relief_file: Callable[[str], Path]
+) -> None:
+    method = {"method": "cnn", "model": BASE_NETWORK, "fitting": {"steps": 12}}
+    with pytest.raises(RefusedError, match="is taken as it is; fitting goes with the model self only") as caught:
+        client.create_job(spec(client.upload(relief_file("float.ply")).id, method))
+    assert caught.value.problem.code == "model_kind_mismatch"
+
+
+def test_the_client_says_how_long_to_fit(box: Any, relief_file: Callable[[str], Path], tmp_path: Path) -> None:
+    flags = ["--method", "cnn", "--model", "self", "--fit-steps", "2", "--fit-seconds", "60", "--overlap", "0"]
+    arguments = ["repair", str(relief_file("float.ply")), "-o", str(tmp_path / "out.ply"), "--json", "--quiet", *flags]
+    done = CliRunner().invoke(app, arguments, env={"QUADPATCH_CLIENT_URL": box.url})
+    assert done.exit_code == ExitCode.OK, done.stderr
+    job = json.loads(done.stdout)
+    assert job["spec"]["method"]["fitting"] == {"steps": 2, "seconds": 60.0}
+    assert (tmp_path / "out.ply").is_file()
