@@ -56,6 +56,21 @@ def test_a_job_that_cannot_work_is_refused_at_once(
     assert client.get("/v1/jobs").json()["items"] == []
 
 
+def test_a_network_can_be_fitted_to_the_mesh_and_one_that_is_taken_as_it_is_can_not(
+    client: TestClient, mesh_id: str
+) -> None:
+    client.post("/v1/models/small/versions", content=b"\x08\x0a", headers={"Content-Type": "application/octet-stream"})
+    fitting = {"steps": 30, "seconds": 20.0}
+    method = {"method": "cnn", "model": "self", "fitting": fitting}
+    accepted = client.post("/v1/jobs", json={"mesh_id": mesh_id, "method": method})
+    assert accepted.status_code == 202
+    assert accepted.json()["spec"]["method"]["fitting"] == fitting
+    assert (accepted.json()["model"]["kind"], accepted.json()["model"]["name"]) == ("self_network", None)
+    refused = client.post("/v1/jobs", json={"mesh_id": mesh_id, "method": {**method, "model": "small"}})
+    assert (refused.status_code, refused.json()["code"]) == (409, "model_kind_mismatch")
+    assert "fitting goes with the model self only" in refused.json()["detail"]
+
+
 def test_a_hole_that_is_not_there_is_refused_once_the_holes_are_known(
     client: TestClient, mesh_id: str, analyse: Callable[[str], None]
 ) -> None:
