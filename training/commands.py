@@ -66,9 +66,7 @@ def corpus(  # noqa: PLR0913 - one parameter for each option of the command line
 
 def network(  # noqa: PLR0913 - one parameter for each option of the command line
     *,
-    arch: Annotated[
-        str, typer.Option(help="residual, small_4x, multi_6x, 6x_128, 6x_128_FC, long_12x, long_12x_SC.")
-    ],
+    arch: Annotated[str, typer.Option(help="residual, small_4x, multi_6x, 6x_128, 6x_128_FC, long_12x, long_12x_SC.")],
     corpus: Annotated[Path, typer.Option(help="Folder that `corpus` wrote.")],
     name: Annotated[str, typer.Option(help="Name of the model, or name@version.")],
     output: Annotated[Path | None, typer.Option(help="File to write; NAME.onnx if not given.")] = None,

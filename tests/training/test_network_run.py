@@ -125,7 +125,7 @@ def test_a_run_that_was_stopped_goes_on_to_the_same_bytes(corpus: Path, tmp_path
 
 @pytest.mark.slow
 def test_ctrl_c_writes_a_checkpoint_and_says_how_to_go_on(corpus: Path, tmp_path: Path) -> None:
-    arguments = network(corpus, "--name", "x", "--output", tmp_path / "x.onnx", "--steps", "4000", "--patience", "99")
+    arguments = network(corpus, "--name", "x", "--output", tmp_path / "x.onnx", "--steps", "1000", "--patience", "99")
     command = [sys.executable, "-m", "training", *map(str, arguments)]
     environment = {**os.environ, "OMP_NUM_THREADS": "1"}
     process = subprocess.Popen(command, cwd=ROOT, stderr=subprocess.PIPE, text=True, env=environment)
