@@ -57,14 +57,21 @@ class FittingInpainter:
     def fitted_to(self, surroundings: Surroundings) -> "FittingInpainter":
         """See `Inpainter`. Leaves the weights as they are where the mesh has no room for lessons."""
         started = time.monotonic()
-        lessons = gather_lessons(surroundings, self.seed, LESSONS_SHARE * self.options.seconds)
+        for_lessons = LESSONS_SHARE * self.options.seconds
+        lessons = gather_lessons(surroundings, self.seed, for_lessons, self._first_part)
         if len(lessons) < MIN_LESSONS:
             return self
         network = Residual()
         network.load_state_dict(self.network.state_dict())
         left = self.options.seconds - (time.monotonic() - started)
-        fit(network, lessons, replace(self.options, seconds=max(left, 1e-3)), self.seed, self.progress)
+        fit(network, lessons, replace(self.options, seconds=max(left, 1e-3)), self.seed, self._second_part)
         return replace(self, network=network)
+
+    def _first_part(self, stage: str, fraction: float) -> None:
+        self.progress(stage, LESSONS_SHARE * fraction)
+
+    def _second_part(self, stage: str, fraction: float) -> None:
+        self.progress(stage, LESSONS_SHARE + (1.0 - LESSONS_SHARE) * fraction)
 
     def predict(self, patches: Patches, outline: FloatArray) -> FloatArray:
         """See `Inpainter`."""
@@ -77,12 +84,16 @@ class FittingInpainter:
         return corrected(patches, seen.spread, np.concatenate(answers).astype(np.float64))
 
 
-def gather_lessons(surroundings: Surroundings, seed: int, seconds: float = np.inf) -> Lessons:
+def gather_lessons(
+    surroundings: Surroundings, seed: int, seconds: float = np.inf, progress: Progress = no_progress
+) -> Lessons:
     """Cut lessons until there are enough, or another round would come too often to the same places, or too late."""
     started, parts = time.monotonic(), list[Lessons]()
     for part in islice(give_lessons(surroundings.ground, np.random.default_rng([seed, 3])), MAX_ROUNDS):
         parts.append(part)
-        if sum(len(part) for part in parts) >= ENOUGH_LESSONS or time.monotonic() - started > seconds:
+        done = max(sum(len(part) for part in parts) / ENOUGH_LESSONS, (time.monotonic() - started) / seconds)
+        progress("learn", min(done, 1.0))
+        if done >= 1.0:
             break
     return Lessons.joined(parts, RESOLUTION)
 

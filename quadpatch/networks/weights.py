@@ -4,6 +4,7 @@ from pathlib import Path
 
 import onnx
 import torch
+from google.protobuf.message import DecodeError
 from onnx import numpy_helper
 
 from quadpatch.errors import ModelError
@@ -26,6 +27,6 @@ def load_residual(path: Path) -> Residual:
         weights = {t.name.removeprefix(_PREFIX): torch.from_numpy(numpy_helper.to_array(t).copy()) for t in tensors}
         network = Residual()
         network.load_state_dict({name: weights[name] for name in network.state_dict()})
-    except (OSError, ValueError, KeyError, RuntimeError) as error:
+    except (DecodeError, OSError, ValueError, KeyError, RuntimeError) as error:
         raise ModelError(f"{path.name} holds no network 'residual' that could be trained further: {error}") from error
     return network

@@ -6,7 +6,7 @@ import torch
 
 from quadpatch.inpainters.corrections import RESOLUTION, corrected, network_input
 from quadpatch.lessons import Ground, Lessons, give_lessons
-from quadpatch.networks.fitting import MAX_ROUNDS, FittingInpainter, fit, gather_lessons
+from quadpatch.networks.fitting import LESSONS_SHARE, MAX_ROUNDS, FittingInpainter, fit, gather_lessons
 from quadpatch.networks.residual import Errors, Residual, errors
 from quadpatch.options import NetworkOptions
 from quadpatch.types import Patches
@@ -114,7 +114,12 @@ def test_fitting_makes_another_network_and_tells_how_far_it_is(small_ground: Gro
     fitted = inpainter.fitted_to(surroundings_of(small_ground))
     assert weights(inpainter.network) == before != weights(fitted.network)
     assert {stage for stage, _ in heard} == {"learn"}
-    assert [share for _, share in heard] == pytest.approx([0.0, 0.25, 0.5, 0.75], abs=1e-6)
+    shares = [share for _, share in heard]
+    assert shares == sorted(shares)
+    # Lessons come first and take a fixed share; then every step is told.
+    of_steps = LESSONS_SHARE + (1 - LESSONS_SHARE) * np.array([0.0, 0.25, 0.5, 0.75])
+    assert shares[-4:] == pytest.approx(of_steps, abs=1e-6)
+    assert 0 < shares[0] < LESSONS_SHARE
     assert (fitted.resolution, fitted.options) == (inpainter.resolution, inpainter.options)
 
 

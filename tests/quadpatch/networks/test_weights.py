@@ -48,7 +48,7 @@ def test_what_was_read_back_can_be_trained_further(file: Path) -> None:
     assert all(parameter.grad is not None for parameter in network.parameters())
 
 
-@pytest.fixture(params=["another architecture", "another width", "an empty file", "nothing"])
+@pytest.fixture(params=["another architecture", "another width", "an empty file", "half a file", "nothing"])
 def unusable(request: pytest.FixtureRequest, tmp_path: Path) -> Path:
     path = tmp_path / "other.onnx"
     if request.param == "another architecture":
@@ -57,6 +57,9 @@ def unusable(request: pytest.FixtureRequest, tmp_path: Path) -> Path:
         write_network(path, to_onnx(module, small.channels, small.resolution), {"recipe": "paper"})
     elif request.param == "another width":
         write_residual(path, Residual((8, 16)), 16)
+    elif request.param == "half a file":
+        write_residual(path, Residual(), 32)
+        path.write_bytes(path.read_bytes()[:10_000])
     elif request.param == "an empty file":
         path.write_bytes(b"")
     return path
