@@ -12,7 +12,7 @@ import copy
 import torch
 from torch import Tensor, nn
 
-# With a kernel of 3, four ninths of the wider convolution's taps are 0, and onnxruntime is slower than with the
+# With a kernel of 3, three quarters of the wider convolution's taps are 0, and onnxruntime is slower than with the
 # transposed one; with 5 it is as fast, or faster by up to a twentieth.
 LEAST_KERNEL = 5
 
