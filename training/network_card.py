@@ -15,12 +15,13 @@ INTENDED_USE = (
     "as evidence of what a damaged object looked like."
 )
 
-WORDING = PageWording(
+_REPEATING = (
+    "Paths are shortened to their last part; the meshes are those listed below. The same commands come to the same",
+    "quality; bit for bit they repeat only on the same kind of processor, with as many threads and the same torch.",
+)
+_PAPER = PageWording(
     "autoencoder",
-    (
-        "Paths are shortened to their last part; the meshes are those listed below. The same commands come to the same",
-        "quality; bit for bit they repeat only on the same kind of processor, with as many threads and the same torch.",
-    ),
+    _REPEATING,
     (
         "Held-out scans (`scan_`) and procedural reliefs from another seed (`relief_`). A disk in the middle of each",
         "patch is hidden (its width in percent of the patch's side stands in the name) and completed by this file.",
@@ -30,6 +31,18 @@ WORDING = PageWording(
         "`validation_loss`: what training minimised, over random holes in the same held-out patches.",
     ),
 )
+_RESIDUAL = PageWording(
+    "autoencoder",
+    _REPEATING,
+    (
+        "Holes cut into held-out scans (`scan_`) and procedural reliefs from another seed (`relief_`), filled as a",
+        "repair fills them. `to_fill`: mean absolute error of the corrected fill in the invented bins of patches,",
+        "divided by that of the fill itself; 1 is a network that leaves every fill as it is. A network fitted to the",
+        "mesh at hand (model `self-network`) starts from this one. `validation_loss`: what training minimised.",
+    ),
+)
+# By recipe.
+WORDINGS = {"paper": _PAPER, "residual": _RESIDUAL}
 
 
 def network_card(

@@ -23,16 +23,20 @@ from training.curve import text_curve, write_curve
 from training.export import to_onnx, write_network
 from training.int8 import to_int8
 from training.interruption import stop_on_signal
-from training.network_card import WORDING, network_card
+from training.network_card import WORDINGS, network_card
 from training.network_evaluation import evaluate_network
 from training.processes import Place, take_place
 from training.publish import parse_reference, publish
+from training.residual_evaluation import evaluate_residual
 from training.shards import Corpus
 from training.task import Task
 from training.tasks import open_task
 from training.trainer import Interrupted, Status, Trainer, TrainOptions
 
-EVALUATIONS: dict[str, Callable[[Path, Corpus], dict[str, float]]] = {"paper": evaluate_network}
+EVALUATIONS: dict[str, Callable[[Path, Corpus], dict[str, float]]] = {
+    "paper": evaluate_network,
+    "residual": evaluate_residual,
+}
 CALIBRATION_PATCHES = 512
 
 
@@ -156,7 +160,7 @@ def _publish(trainer: Trainer, architecture: Architecture, corpus: Corpus, reque
     name, version = parse_reference(request.name)
     card = _write(trainer, architecture, corpus, request)
     digest = hashlib.sha256(request.output.read_bytes()).hexdigest()
-    write_card_page(request.output.with_suffix(".md"), card, digest, WORDING)
+    write_card_page(request.output.with_suffix(".md"), card, digest, WORDINGS[architecture.recipe])
     losses = np.array([loss for _, loss in trainer.state.validation])
     console.print(f"{trainer.state.step} steps; held-out loss {text_curve(losses)}", highlight=False)
     for key, value in card["metrics"].items():
@@ -172,7 +176,7 @@ def _publish(trainer: Trainer, architecture: Architecture, corpus: Corpus, reque
 def _write(trainer: Trainer, architecture: Architecture, corpus: Corpus, request: Request) -> Card:
     """Export the network, measure what was exported, and write it with its card."""
     facts = {**trainer.task.card_facts(), "command": f"{corpus.facts['command']}\n{request.command}".strip()}
-    evaluate = EVALUATIONS.get(architecture.recipe, _no_measures)
+    evaluate = EVALUATIONS[architecture.recipe]
 
     def write(model: Any, metrics: dict[str, float]) -> Card:
         told = {**facts, "metrics": metrics}
@@ -192,10 +196,6 @@ def _write(trainer: Trainer, architecture: Architecture, corpus: Corpus, request
         exact = {f"float32_{key}": value for key, value in metrics.items() if "error" in key}
         metrics = {**evaluate(request.output, corpus), **exact}
     return write(model, {"validation_loss": round(trainer.state.best_loss, 7), **metrics})
-
-
-def _no_measures(path: Path, corpus: Corpus) -> dict[str, float]:
-    return {}
 
 
 def _calibration(task: Task, place: Place) -> "np.ndarray[Any, np.dtype[np.float32]]":

@@ -89,7 +89,7 @@ class AutoencoderInpainter:
         if self.scale is not None:
             return self._predict_heights(patches, self.scale)
         seen = network_input(patches, outline)
-        return corrected(patches, seen.spread, self._run(seen.channels))
+        return corrected(patches, seen.spread, self.answer(seen.channels))
 
     def _predict_heights(self, patches: Patches, scale: PaperScale) -> FloatArray:
         mean = _mean_of_known(patches.heights, patches.known)[:, None, None]
@@ -97,10 +97,10 @@ class AutoencoderInpainter:
         low = scale.low * patches.length
         scaled = (patches.heights - mean - low) / span * scale.scaled_high
         scaled = np.where(patches.known, np.clip(scaled, 0.0, scale.scaled_high), 1.0)
-        clean = self._run(scaled[:, None].astype(np.float32))
+        clean = self.answer(scaled[:, None].astype(np.float32))
         return mean + low + clean / scale.scaled_high * span
 
-    def _run(self, inputs: "np.ndarray[Any, np.dtype[np.float32]]") -> FloatArray:
+    def answer(self, inputs: "np.ndarray[Any, np.dtype[np.float32]]") -> FloatArray:
         """Run (n, c, N, N) float32 in batches: (n, N, N) float64."""
         name = self.session.get_inputs()[0].name
         outputs = [np.zeros((0, self.resolution, self.resolution))]

@@ -6,6 +6,7 @@ first convolution that halves the resolution: full resolution took most of the t
 starts at zero, so an untrained network leaves every fill as it is.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -21,8 +22,10 @@ WIDTHS = (32, 64, 96)
 # Weight of the error's slopes beside the error itself. The error is zero on measured bins, so its slopes also tell how
 # well the rim is met.
 SLOPES = 0.5
-# Fills this close to the truth, in spreads, leave nothing to be learned but noise.
-LEAST_ERROR = 0.03
+# Added to the fill's error, in spreads, before a loss is divided by it.
+LEAST_ERROR = 0.3
+# Errors up to about this, in spreads, count by their square, larger ones by their size.
+ROUNDING = 0.3
 
 # Dimensions of one patch in (n, 1, N, N).
 _PATCH = (1, 2, 3)
@@ -86,8 +89,9 @@ class Errors:
     loss : Tensor
         Errors and their slopes, in spreads: to be made small on one mesh.
     relative_loss : Tensor
-        The same in shares of the fill's error, patch by patch: over many meshes, a smooth one, where errors are small,
-        counts as much as a rough one.
+        The same with large errors in charge, and divided by the fill's error, patch by patch, so that a smooth mesh
+        among many counts for something. Plain shares would not do: errors of smooth surfaces are next to unpredictable,
+        and a network that is paid for those alone learns to answer nothing at all.
     """
 
     network: Tensor
@@ -100,11 +104,20 @@ def errors(answer: Tensor, correction: Tensor, asked: Tensor) -> Errors:
     """Compare answers (n, 1, N, N) with true corrections (n, 1, N, N) in the bins asked for."""
     count = asked.sum(dim=_PATCH).clamp(min=1.0)
     wrong = (answer - correction) * asked
-    across = (wrong[..., 1:] - wrong[..., :-1]).abs().sum(dim=_PATCH)
-    along = (wrong[..., 1:, :] - wrong[..., :-1, :]).abs().sum(dim=_PATCH)
     network, fill = wrong.abs().sum(dim=_PATCH) / count, (correction * asked).abs().sum(dim=_PATCH) / count
-    loss = network + SLOPES * (across + along) / count
-    return Errors(network.mean(), fill.mean(), loss.mean(), (loss / (fill + LEAST_ERROR)).mean())
+    plain = _with_slopes(wrong, torch.abs) / count
+    rounded = _with_slopes(wrong, _rounded) / count
+    return Errors(network.mean(), fill.mean(), plain.mean(), (rounded / (fill + LEAST_ERROR)).mean())
+
+
+def _with_slopes(wrong: Tensor, size: Callable[[Tensor], Tensor]) -> Tensor:
+    across, along = wrong[..., 1:] - wrong[..., :-1], wrong[..., 1:, :] - wrong[..., :-1, :]
+    slopes = size(across).sum(dim=_PATCH) + size(along).sum(dim=_PATCH)
+    return size(wrong).sum(dim=_PATCH) + SLOPES * slopes
+
+
+def _rounded(values: Tensor) -> Tensor:
+    return torch.sqrt(values**2 + ROUNDING**2) - ROUNDING
 
 
 def turned(tensors: tuple[Tensor, ...], turns: int, *, mirrored: bool) -> tuple[Tensor, ...]:

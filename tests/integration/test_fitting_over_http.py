@@ -16,12 +16,8 @@ from client.exits import ExitCode
 from client.sdk import Client
 from jobkit.schema import Job, JobSpec, JobState
 from quadpatch.formats.reading import read_scan
-from quadpatch.model_file import SHIPPED_MODELS
 from quadpatch.repair import BASE_NETWORK
 
-pytestmark = pytest.mark.skipif(
-    not any(SHIPPED_MODELS.glob(f"{BASE_NETWORK}@*.onnx")), reason=f"{BASE_NETWORK} does not ship yet"
-)
 FITTED = {"method": "cnn", "model": "self", "fitting": {"steps": 12, "seconds": 500.0}, "patches": {"overlap": 0}}
 
 
