@@ -39,7 +39,6 @@ bench: $(READY)           ## speed of the method's stages
 	@$(BIN)/python -m benchmarks.stages
 
 bench-quality: $(READY)   ## repair quality beside the peers: make bench-quality BENCH=folder ARGS="--radius all"
-	@$(PIP) install --constraint constraints.txt --editable '.[bench]'
 	@$(BIN)/python -m benchmarks.quality $(BENCH) $(ARGS)
 
 clean:

@@ -1,7 +1,6 @@
 """Checkpoints: everything that a training run needs to go on as if it had never stopped."""
 
 import io
-import pickle
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -13,8 +12,6 @@ from quadpatch.files import write_whole
 from training.errors import CheckpointError
 
 FORMAT = 1
-# What torch and the lines after it raise over bytes that are something else.
-_BROKEN = (OSError, EOFError, pickle.UnpicklingError, RuntimeError, ValueError, TypeError, KeyError, AttributeError)
 
 
 @dataclass
@@ -97,16 +94,10 @@ def load_checkpoint(path: Path, identity: dict[str, Any], device: torch.device) 
         best = {name: tensor.cpu() for name, tensor in content["state"].pop("best").items()}
         state = TrainingState(**content.pop("state"), best=best)
         checkpoint = Checkpoint(**content, state=state)
-    except (
-        OSError,
-        EOFError,
-        pickle.UnpicklingError,
-        RuntimeError,
-        ValueError,
-        TypeError,
-        KeyError,
-        AttributeError,
-    ) as e:
+    except CheckpointError:
+        raise
+    except Exception as e:
+        # Damaged bytes make torch's reader raise a dozen classes, index and struct errors among them.
         raise CheckpointError(f"{path} is no checkpoint: {e}") from e
     for key in identity.keys() | checkpoint.identity.keys():
         was, wanted = checkpoint.identity.get(key), identity.get(key)
