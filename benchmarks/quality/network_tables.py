@@ -14,9 +14,9 @@ from benchmarks.quality.tables import NOTHING, Table, figure, geometric_mean, ra
 DICTIONARY = "dictionary"
 # What a table must say of where the networks have their knowledge from.
 TOLD: dict[Protocol, str] = {
-    "local": "local (learned from the undamaged mesh itself: training and test share the mesh)",
-    "global": "global (learned from all undamaged meshes, that of the test among them)",
-    "leave-one-out": "leave-one-out (learned from all undamaged meshes but that of the test)",
+    "local": "local (training and test share the mesh)",
+    "global": "global (all meshes, that of the test among them)",
+    "leave-one-out": "leave-one-out (all meshes but that of the test)",
 }
 
 
@@ -75,7 +75,7 @@ def _costs(how: str, found: Sequence[Finding]) -> Table:
     columns = ["network", "bins", "parameters", "patches", "steps", "held-out loss"]
     columns += ["training s", "of them CPU s", "completion s", "ms a patch"]
     rows = [_cost(name, [f.networks[name] for f in found if name in f.networks]) for name in names]
-    return Table(f"networks, means over the meshes, {how}", columns, rows)
+    return Table(f"networks (for measuring only), means over the meshes, {how}", columns, rows)
 
 
 def _cost(name: str, facts: Sequence[dict[str, Any]]) -> list[str]:
