@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from quadpatch.blending import Blend
 from quadpatch.completion import Completion
 from quadpatch.errors import NoQuadsError, OptionError, StageError
 from quadpatch.filling.fairing import Energy
@@ -48,7 +49,7 @@ NOTHING_TO_DO = (
 )
 
 # Nothing is faired.
-NO_FAIRING = Energy()
+NO_FAIRING = Blend.of_one(Energy())
 
 
 @dataclass(frozen=True)
