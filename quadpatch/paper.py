@@ -12,9 +12,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from quadpatch.blending import Blend
 from quadpatch.completion import Completion
 from quadpatch.errors import NoQuadsError, OptionError, StageError
+from quadpatch.fill_rule import FillRule
 from quadpatch.filling.fairing import Energy
 from quadpatch.filling.fill import FilledMesh, close_flat
 from quadpatch.inpainters.heights import GLOBAL_ATOMS, HeightsInpainter, learn_heights
@@ -49,7 +49,7 @@ NOTHING_TO_DO = (
 )
 
 # Nothing is faired.
-NO_FAIRING = Blend.of_one(Energy())
+NO_FAIRING = FillRule.of_one(Energy())
 
 
 @dataclass(frozen=True)

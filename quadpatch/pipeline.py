@@ -8,10 +8,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from quadpatch.blending import Blend, learn_blend
 from quadpatch.completion import Completion, Problem, complete
 from quadpatch.errors import NoQuadsError
 from quadpatch.expectation import UNTRIED, Expectation
+from quadpatch.fill_rule import FillRule, learn_fill_rule
 from quadpatch.filling.fairing import THIN_PLATE, Energy
 from quadpatch.filling.fill import FilledMesh
 from quadpatch.inpainters.inpainter import Inpainter
@@ -49,7 +49,7 @@ class Repair:
         In the order of the filled loops.
     results : list of HoleResult
         One per hole, by id.
-    blend : Blend
+    rule : FillRule
         What the fill was faired by.
     completion : Completion or None
         None where geometry alone filled the holes.
@@ -59,7 +59,7 @@ class Repair:
     filled: FilledMesh
     chosen: list[Hole]
     results: list[HoleResult]
-    blend: Blend
+    rule: FillRule
     completion: Completion | None
     warnings: list[str]
 
@@ -114,7 +114,7 @@ def inpaint(
             expectation = completion.expectation
         results = judge(holes, selection, problem.filled, completion, expectation)
     filled = completion.filled if completion else problem.filled
-    return Repair(filled, selection.chosen, results, problem.blend, completion, warnings)
+    return Repair(filled, selection.chosen, results, problem.rule, completion, warnings)
 
 
 def _fill(mesh: TriangleMesh, chosen: list[Hole], rng: np.random.Generator) -> tuple[Problem, Expectation]:
@@ -122,16 +122,16 @@ def _fill(mesh: TriangleMesh, chosen: list[Hole], rng: np.random.Generator) -> t
     edge = mean_edge_length(mesh)
     diameters = [hole.diameter for hole in chosen]
     practice = practise(mesh, float(np.median(diameters)), edge, rng) if chosen else None
-    blend, filled_again = suitable_blend(practice)
+    rule, filled_again = suitable_rule(practice)
     expectation = UNTRIED
     if practice is not None and filled_again is not None:
         expectation = expect(practice, filled_again)
-    filled = blend.fill(mesh, [hole.loop for hole in chosen])
-    return Problem(filled, blend, diameters, edge, practice, filled_again), expectation
+    filled = rule.fill(mesh, [hole.loop for hole in chosen])
+    return Problem(filled, rule, diameters, edge, practice, filled_again), expectation
 
 
-def suitable_blend(practice: Practice | None) -> tuple[Blend, FilledMesh | None]:
+def suitable_rule(practice: Practice | None) -> tuple[FillRule, FilledMesh | None]:
     """Learn how this surface is continued best, as far as practice on it can tell; also the practice holes, filled."""
     if practice is None:
-        return Blend.of_one(UNTRIED_ENERGY), None
-    return learn_blend(practice, ENERGIES, USUAL_ENERGY)
+        return FillRule.of_one(UNTRIED_ENERGY), None
+    return learn_fill_rule(practice, ENERGIES, USUAL_ENERGY)

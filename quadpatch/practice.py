@@ -31,7 +31,7 @@ _ENOUGH = 24
 _MARGIN_EDGES = 4.0
 
 # Errors that differ by less than this share of a hole's diameter are the same.
-_ROUNDING = 1e-9
+ROUNDING = 1e-9
 
 # Shares of the predicted displacement that are tried, and what a share must gain over none to be believed.
 SHARES = (0.0, 0.25, 0.5, 0.75, 1.0)
@@ -114,7 +114,7 @@ def choose_energy(errors: FloatArray, diameter: float, energies: Sequence[Energy
     """
     best = int(errors.mean(axis=1).argmin())
     lost = errors[energies.index(usual)] - errors[best]
-    is_tie = float(lost.mean()) <= float(lost.std()) / np.sqrt(len(lost)) + _ROUNDING * diameter
+    is_tie = float(lost.mean()) <= float(lost.std()) / np.sqrt(len(lost)) + ROUNDING * diameter
     return usual if is_tie else energies[best]
 
 

@@ -17,7 +17,7 @@ from quadpatch.filling.fill import FilledMesh, close_holes, fair_holes
 from quadpatch.mesh.averages import mean_by
 from quadpatch.mesh.boundary import boundary_loops
 from quadpatch.mesh.distance import distance_to_mesh
-from quadpatch.practice import Practice, choose_energy, error_per_hole
+from quadpatch.practice import ROUNDING, Practice, choose_energy, error_per_hole
 from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh
 
 # Weights of fills fall with this power of their expected error: at 8, one that is 10 % worse counts half.
@@ -27,7 +27,7 @@ _LEAST_MISS = 1e-6
 
 
 @dataclass(frozen=True)
-class Blend:
+class FillRule:
     """How to fill holes of one mesh.
 
     Attributes
@@ -45,7 +45,7 @@ class Blend:
     log_miss: FloatArray
 
     @classmethod
-    def of_one(cls, energy: Energy) -> "Blend":
+    def of_one(cls, energy: Energy) -> "FillRule":
         """Fill every hole by the same energy."""
         return cls((energy,), np.zeros(1), np.zeros(1))
 
@@ -68,12 +68,12 @@ class Blend:
         return np.asarray(weights / weights.sum(axis=1, keepdims=True))
 
 
-def learn_blend(practice: Practice, energies: Sequence[Energy], usual: Energy) -> tuple[Blend, FilledMesh]:
-    """Learn from practice holes how to fill; the energy that `choose_energy` picks where no blend beats it.
+def learn_fill_rule(practice: Practice, energies: Sequence[Energy], usual: Energy) -> tuple[FillRule, FilledMesh]:
+    """Learn from practice holes how to fill: by one energy, as `choose_energy` picks it, unless weighing beats it.
 
     Returns
     -------
-    Blend
+    FillRule
     FilledMesh
         The practice holes, filled by it.
     """
@@ -83,11 +83,12 @@ def learn_blend(practice: Practice, energies: Sequence[Energy], usual: Energy) -
     best = energies.index(choose_energy(errors, practice.diameter, energies, usual))
     typical = np.nanmean(misses, axis=0) if np.isfinite(misses).any() else np.ones(len(energies))
     tiny = np.finfo(np.float64).tiny
-    blend = Blend(energies, np.log(errors.mean(axis=1) + tiny), np.log(typical + tiny))
-    blended = _blended(fills, blend.weights(misses))
-    if error_per_hole(practice, blended).mean() < errors[best].mean():
-        return blend, blended
-    return Blend.of_one(energies[best]), fills[best]
+    rule = FillRule(energies, np.log(errors.mean(axis=1) + tiny), np.log(typical + tiny))
+    blended = _blended(fills, rule.weights(misses))
+    gain = errors[best].mean() - error_per_hole(practice, blended).mean()
+    if gain > ROUNDING * practice.diameter:
+        return rule, blended
+    return FillRule.of_one(energies[best]), fills[best]
 
 
 def rim_misses(mesh: TriangleMesh, loops: list[IntArray], energies: Sequence[Energy]) -> FloatArray:
