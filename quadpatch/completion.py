@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from quadpatch.expectation import Expectation
-from quadpatch.filling.fairing import Energy
+from quadpatch.fill_rule import FillRule
 from quadpatch.filling.fill import FilledMesh
 from quadpatch.inpainters.dictionary import learn_from_patches
 from quadpatch.inpainters.inpainter import Inpainter, Surroundings
@@ -64,7 +64,7 @@ class Problem:
     Attributes
     ----------
     filled : FilledMesh
-    energy : Energy
+    rule : FillRule
         That it was faired by.
     diameters : list of float
         Of the filled holes, in mesh units.
@@ -76,7 +76,7 @@ class Problem:
     """
 
     filled: FilledMesh
-    energy: Energy
+    rule: FillRule
     diameters: list[float]
     edge_length: float
     practice: Practice | None
@@ -174,7 +174,7 @@ def _ground(problem: Problem, seeds: Seeds, scale: PatchScale) -> Ground:
     measured = filled.mesh.triangles[: filled.n_measured_triangles]
     triangles = measured if practice is None else measured[~practice.cut_away]
     mesh = TriangleMesh(filled.mesh.vertices[: filled.n_measured_vertices], triangles)
-    return Ground(mesh, seeds, scale, problem.energy, np.array(problem.diameters), problem.edge_length)
+    return Ground(mesh, seeds, scale, problem.rule, np.array(problem.diameters), problem.edge_length)
 
 
 def _some(count: int, rng: np.random.Generator) -> BoolArray:

@@ -9,8 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from quadpatch.filling.fairing import Energy
-from quadpatch.filling.fill import close_holes, fair_holes
+from quadpatch.fill_rule import FillRule
 from quadpatch.inpainters.corrections import in_spreads, network_input
 from quadpatch.mesh.smoothing import laplacian_smooth
 from quadpatch.patches.folding import is_unfolded
@@ -39,7 +38,7 @@ class Ground:
     seeds : Seeds
         Where patches may lie.
     scale : PatchScale
-    energy : Energy
+    rule : FillRule
         That the holes are filled by.
     diameters : (k,) float64
         Of the holes to prepare for, in mesh units.
@@ -50,7 +49,7 @@ class Ground:
     mesh: TriangleMesh
     seeds: Seeds
     scale: PatchScale
-    energy: Energy
+    rule: FillRule
     diameters: FloatArray
     edge_length: float
 
@@ -110,7 +109,7 @@ def _round(ground: Ground, diameter: float, rng: np.random.Generator) -> Lessons
     scale = ground.scale
     spacing = Spacing(ground.edge_length, _MARGIN_EDGES * ground.edge_length)
     punched = punch(ground.mesh, diameter, spacing, rng)
-    filled = fair_holes(close_holes(punched.mesh, punched.loops), ground.energy)
+    filled = ground.rule.fill(punched.mesh, punched.loops)
     outline = laplacian_smooth(filled.mesh, outline_iterations(scale.length, ground.edge_length))
     invented = filled.mesh.vertices[filled.n_measured_vertices :]
     near = take(ground.seeds, seeds_near(ground.seeds, invented, scale.length))

@@ -14,6 +14,7 @@ import numpy as np
 
 from quadpatch.completion import Completion
 from quadpatch.errors import NoQuadsError, OptionError, StageError
+from quadpatch.fill_rule import FillRule
 from quadpatch.filling.fairing import Energy
 from quadpatch.filling.fill import FilledMesh, close_flat
 from quadpatch.inpainters.heights import GLOBAL_ATOMS, HeightsInpainter, learn_heights
@@ -48,7 +49,7 @@ NOTHING_TO_DO = (
 )
 
 # Nothing is faired.
-NO_FAIRING = Energy()
+NO_FAIRING = FillRule.of_one(Energy())
 
 
 @dataclass(frozen=True)

@@ -11,14 +11,15 @@ import numpy as np
 from quadpatch.completion import Completion, Problem, complete
 from quadpatch.errors import NoQuadsError
 from quadpatch.expectation import UNTRIED, Expectation
+from quadpatch.fill_rule import FillRule, learn_fill_rule
 from quadpatch.filling.fairing import THIN_PLATE, Energy
-from quadpatch.filling.fill import FilledMesh, close_holes, fair_holes
+from quadpatch.filling.fill import FilledMesh
 from quadpatch.inpainters.inpainter import Inpainter
 from quadpatch.judge import HoleResult, judge
 from quadpatch.mesh.holes import Hole, find_holes, select_holes
 from quadpatch.mesh.measures import diagonal, mean_edge_length
 from quadpatch.options import RepairOptions
-from quadpatch.practice import Practice, choose_energy, expect, practise
+from quadpatch.practice import Practice, expect, practise
 from quadpatch.stages import Stages
 from quadpatch.types import TriangleMesh
 
@@ -48,7 +49,7 @@ class Repair:
         In the order of the filled loops.
     results : list of HoleResult
         One per hole, by id.
-    energy : Energy
+    rule : FillRule
         What the fill was faired by.
     completion : Completion or None
         None where geometry alone filled the holes.
@@ -58,7 +59,7 @@ class Repair:
     filled: FilledMesh
     chosen: list[Hole]
     results: list[HoleResult]
-    energy: Energy
+    rule: FillRule
     completion: Completion | None
     warnings: list[str]
 
@@ -113,23 +114,24 @@ def inpaint(
             expectation = completion.expectation
         results = judge(holes, selection, problem.filled, completion, expectation)
     filled = completion.filled if completion else problem.filled
-    return Repair(filled, selection.chosen, results, problem.energy, completion, warnings)
+    return Repair(filled, selection.chosen, results, problem.rule, completion, warnings)
 
 
 def _fill(mesh: TriangleMesh, chosen: list[Hole], rng: np.random.Generator) -> tuple[Problem, Expectation]:
-    """Fill the holes by the energy that suits this surface; also the error to expect of that."""
+    """Fill the holes as suits this surface; also the error to expect of that."""
     edge = mean_edge_length(mesh)
     diameters = [hole.diameter for hole in chosen]
-    expectation, filled_again = UNTRIED, None
     practice = practise(mesh, float(np.median(diameters)), edge, rng) if chosen else None
-    energy = suitable_energy(practice)
-    if practice is not None:
-        filled_again = fair_holes(practice.closed, energy)
+    rule, filled_again = suitable_rule(practice)
+    expectation = UNTRIED
+    if practice is not None and filled_again is not None:
         expectation = expect(practice, filled_again)
-    filled = fair_holes(close_holes(mesh, [hole.loop for hole in chosen]), energy)
-    return Problem(filled, energy, diameters, edge, practice, filled_again), expectation
+    filled = rule.fill(mesh, [hole.loop for hole in chosen])
+    return Problem(filled, rule, diameters, edge, practice, filled_again), expectation
 
 
-def suitable_energy(practice: Practice | None) -> Energy:
-    """Choose the energy that continues a surface best, as far as practice on it can tell."""
-    return UNTRIED_ENERGY if practice is None else choose_energy(practice, ENERGIES, USUAL_ENERGY)
+def suitable_rule(practice: Practice | None) -> tuple[FillRule, FilledMesh | None]:
+    """Learn how this surface is continued best, as far as practice on it can tell; also the practice holes, filled."""
+    if practice is None:
+        return FillRule.of_one(UNTRIED_ENERGY), None
+    return learn_fill_rule(practice, ENERGIES, USUAL_ENERGY)

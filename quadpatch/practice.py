@@ -13,12 +13,12 @@ from scipy.spatial import cKDTree
 
 from quadpatch.expectation import Expectation, learn_expectation
 from quadpatch.filling.fairing import Energy, triangles_around
-from quadpatch.filling.fill import ClosedMesh, FilledMesh, close_holes, fair_holes
+from quadpatch.filling.fill import ClosedMesh, FilledMesh, close_holes
 from quadpatch.mesh.averages import mean_by
 from quadpatch.mesh.distance import distance_to_mesh
 from quadpatch.mesh.holes import loop_diameter
 from quadpatch.punching import Punched, Spacing, punch
-from quadpatch.types import BoolArray, FloatArray, TriangleMesh, Vertices
+from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Vertices
 
 MAX_HOLES = 64
 # Fewer holes than this decide nothing.
@@ -31,7 +31,7 @@ _ENOUGH = 24
 _MARGIN_EDGES = 4.0
 
 # Errors that differ by less than this share of a hole's diameter are the same.
-_ROUNDING = 1e-9
+ROUNDING = 1e-9
 
 # Shares of the predicted displacement that are tried, and what a share must gain over none to be believed.
 SHARES = (0.0, 0.25, 0.5, 0.75, 1.0)
@@ -50,6 +50,8 @@ class Practice:
         Vertices that were cut away.
     cut_away : (n_triangles,) bool
         Triangles of the mesh that practice holes took.
+    loops : list of (n_loop,) int64
+        Rims of the practice holes.
     closed : ClosedMesh
     diameter : float
         That the practice holes were meant to have, in mesh units.
@@ -60,6 +62,7 @@ class Practice:
     truth: TriangleMesh
     removed: Vertices
     cut_away: BoolArray
+    loops: list[IntArray]
     closed: ClosedMesh
     diameter: float
     diameters: FloatArray
@@ -98,19 +101,20 @@ def practise(mesh: TriangleMesh, diameter: float, edge_length: float, rng: np.ra
     truth = TriangleMesh(mesh.vertices, mesh.triangles[around])
     diameters = np.array([loop_diameter(mesh.vertices[loop]) for loop in punched.loops])
     closed = close_holes(punched.mesh, punched.loops)
-    return Practice(truth, mesh.vertices[punched.gone], punched.cut_away, closed, used, diameters)
+    return Practice(truth, mesh.vertices[punched.gone], punched.cut_away, punched.loops, closed, used, diameters)
 
 
-def choose_energy(practice: Practice, energies: Sequence[Energy], usual: Energy) -> Energy:
-    """Choose the energy that leaves the practice holes closest to the truth.
+def choose_energy(errors: FloatArray, diameter: float, energies: Sequence[Energy], usual: Energy) -> Energy:
+    """Choose the energy that leaves the practice holes, of some diameter, closest to the truth.
+
+    Takes errors (n_energies, n_holes) as `error_per_hole` measures them, in mesh units as the diameter.
 
     The usual one stays unless the best is better by more than a standard error: a few dozen holes can't tell more
     (L. Breiman et al., "Classification and Regression Trees", 1984, the rule of one standard error).
     """
-    errors = np.array([error_per_hole(practice, fair_holes(practice.closed, energy)) for energy in energies])
     best = int(errors.mean(axis=1).argmin())
     lost = errors[energies.index(usual)] - errors[best]
-    is_tie = float(lost.mean()) <= float(lost.std()) / np.sqrt(len(lost)) + _ROUNDING * practice.diameter
+    is_tie = float(lost.mean()) <= float(lost.std()) / np.sqrt(len(lost)) + ROUNDING * diameter
     return usual if is_tie else energies[best]
 
 

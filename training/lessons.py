@@ -16,7 +16,7 @@ from quadpatch.mesh.smoothing import laplacian_smooth
 from quadpatch.options import PatchOptions
 from quadpatch.patches.layout import lay_out
 from quadpatch.patches.scale import choose_scale, outline_iterations
-from quadpatch.pipeline import suitable_energy
+from quadpatch.pipeline import suitable_rule
 from quadpatch.practice import practise
 from quadpatch.types import TriangleMesh
 from training.shards import Arrays
@@ -55,12 +55,12 @@ def cut_lessons(mesh: TriangleMesh, most: int, rng: np.random.Generator) -> Arra
 def _of_diameter(mesh: TriangleMesh, diameter: float, most: int, rng: np.random.Generator) -> Lessons:
     edge_length = mean_edge_length(mesh)
     scale = choose_scale([diameter], edge_length, PatchOptions(), RESOLUTION)
-    energy = suitable_energy(practise(mesh, diameter, edge_length, rng))
+    rule, _ = suitable_rule(practise(mesh, diameter, edge_length, rng))
     try:
         seeds = lay_out(laplacian_smooth(mesh, outline_iterations(scale.length, edge_length)), scale)
     except NoQuadsError:
         return Lessons.joined([], RESOLUTION)
-    ground = Ground(mesh, seeds, scale, energy, np.array([diameter]), edge_length)
+    ground = Ground(mesh, seeds, scale, rule, np.array([diameter]), edge_length)
     parts: list[Lessons] = []
     for part in islice(give_lessons(ground, rng), ROUNDS):
         parts.append(part)

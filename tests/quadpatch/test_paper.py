@@ -95,7 +95,7 @@ def test_nothing_is_faired_gated_or_joined() -> None:
     atoms = np.full((256, 1), 1 / 16)
     mesh = punched(sphere(4), (0, 0, 1), radius=0.3)
     repair = inpaint_as_paper(mesh, HeightsInpainter(Dictionary(atoms, 16, 1)), RepairOptions())
-    assert repair.energy == NO_FAIRING
+    assert repair.rule is NO_FAIRING
     assert repair.completion is not None
     assert repair.completion.believed == 1.0
     assert verdicts(repair) == [("filled", "")]

@@ -100,7 +100,7 @@ def test_measured_vertices_and_triangles_come_first_bit_for_bit(
 def test_a_smooth_repair_moves_with_its_mesh(smooth_relief: Repair) -> None:
     mesh, rotation, shift = moved(RELIEF, 1)
     there = inpaint(mesh, None, RepairOptions())
-    assert there.energy == smooth_relief.energy
+    assert there.rule.energies == smooth_relief.rule.energies
     assert (there.filled.mesh.triangles == smooth_relief.filled.mesh.triangles).all()
     expected = smooth_relief.filled.mesh.vertices @ rotation.T + shift
     assert np.abs(there.filled.mesh.vertices - expected).max() < 1e-9

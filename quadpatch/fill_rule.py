@@ -1,0 +1,156 @@
+"""Which energy fills which hole: what practice says of the whole surface, and what its own rim says of a hole.
+
+Practice ranks the energies on average. Which of them is best differs from hole to hole: a groove that runs into a hole
+wants another than the flat beside it. So every hole is opened once more, one ring wider, and closed by each
+energy: how far the vertices of its rim then lie from the fill says which energy carries on this very surface. The fills
+of a hole are blended by weights that fall with the expected error, a product of both.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from quadpatch.filling.fairing import Energy, triangles_around
+from quadpatch.filling.fill import FilledMesh, close_holes, fair_holes
+from quadpatch.mesh.averages import mean_by
+from quadpatch.mesh.boundary import boundary_loops
+from quadpatch.mesh.distance import distance_to_mesh
+from quadpatch.practice import ROUNDING, Practice, choose_energy, error_per_hole
+from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh
+
+# Weights of fills fall with this power of their expected error: at 8, one that is 10 % worse counts half.
+SHARPNESS = 8.0
+# Smaller misses of a rim, in shares of the largest, are rounding.
+_LEAST_MISS = 1e-6
+
+
+@dataclass(frozen=True)
+class FillRule:
+    """How to fill holes of one mesh.
+
+    Attributes
+    ----------
+    energies : sequence of Energy
+        One alone needs no weights.
+    log_error : (n_energies,) float64
+        Logarithm of each one's mean error on practice holes.
+    log_miss : (n_energies,) float64
+        Logarithm of how far each one misses the rims of practice holes on average, opened one ring wider.
+    """
+
+    energies: Sequence[Energy]
+    log_error: FloatArray
+    log_miss: FloatArray
+
+    @classmethod
+    def of_one(cls, energy: Energy) -> "FillRule":
+        """Fill every hole by the same energy."""
+        return cls((energy,), np.zeros(1), np.zeros(1))
+
+    def fill(self, mesh: TriangleMesh, loops: list[IntArray]) -> FilledMesh:
+        """Close boundary loops of a mesh, given as `boundary_loops` gives them."""
+        closed = close_holes(mesh, loops)
+        fills = [fair_holes(closed, energy) for energy in self.energies]
+        if len(fills) == 1 or not loops:
+            return fills[0]
+        return _blended(fills, self.weights(rim_misses(mesh, loops, self.energies)))
+
+    def weights(self, misses: FloatArray) -> FloatArray:
+        """Turn misses (n_holes, n_energies), NaN where unknown, into weights of the fills: rows sum to 1."""
+        largest = np.nanmax(misses, initial=0.0)
+        log_miss = np.log(np.maximum(misses, _LEAST_MISS * largest + np.finfo(np.float64).tiny))
+        own = log_miss - self.log_miss
+        own = np.nan_to_num(own - own.mean(axis=1, keepdims=True))
+        expected = self.log_error + own
+        weights = np.exp(-SHARPNESS * (expected - expected.min(axis=1, keepdims=True)))
+        return np.asarray(weights / weights.sum(axis=1, keepdims=True))
+
+
+def learn_fill_rule(practice: Practice, energies: Sequence[Energy], usual: Energy) -> tuple[FillRule, FilledMesh]:
+    """Learn from practice holes how to fill: by one energy, as `choose_energy` picks it, unless weighing beats it.
+
+    Returns
+    -------
+    FillRule
+    FilledMesh
+        The practice holes, filled by it.
+    """
+    fills = [fair_holes(practice.closed, energy) for energy in energies]
+    errors = np.array([error_per_hole(practice, fill) for fill in fills])
+    misses = rim_misses(practice.closed.mesh, practice.loops, energies)
+    best = energies.index(choose_energy(errors, practice.diameter, energies, usual))
+    typical = np.nanmean(misses, axis=0) if np.isfinite(misses).any() else np.ones(len(energies))
+    tiny = np.finfo(np.float64).tiny
+    rule = FillRule(energies, np.log(errors.mean(axis=1) + tiny), np.log(typical + tiny))
+    blended = _blended(fills, rule.weights(misses))
+    gain = errors[best].mean() - error_per_hole(practice, blended).mean()
+    if gain > ROUNDING * practice.diameter:
+        return rule, blended
+    return FillRule.of_one(energies[best]), fills[best]
+
+
+def rim_misses(mesh: TriangleMesh, loops: list[IntArray], energies: Sequence[Energy]) -> FloatArray:
+    """Open holes one ring wider, close them by each energy, and measure how far it misses the vertices that were there.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+        With the holes open.
+    loops : list of (n_loop,) int64
+    energies : sequence of Energy
+
+    Returns
+    -------
+    (n_holes, n_energies) float64
+        Mean distance, in mesh units; NaN for a hole that can't be opened wider without running into something else.
+    """
+    rim = np.concatenate(loops)
+    hole = np.repeat(np.arange(len(loops)), [len(loop) for loop in loops])
+    n_vertices = len(mesh.vertices)
+    ring = np.zeros(len(mesh.triangles), bool)
+    ring[triangles_around(mesh.triangles, rim, n_vertices, 1)] = True
+    left = mesh.triangles[~ring]
+    gone = np.flatnonzero(_used(mesh.triangles, n_vertices) & ~_used(left, n_vertices))
+    rim_tree = cKDTree(mesh.vertices[rim])
+    wider = _new_loops(mesh, left)
+    closed = close_holes(TriangleMesh(mesh.vertices, left), wider)
+    opened = np.zeros(len(loops), bool)
+    for number, loop in enumerate(wider):
+        if number not in closed.unfilled:
+            opened[hole[rim_tree.query(mesh.vertices[loop])[1]]] = True
+    hole_of_gone = hole[rim_tree.query(mesh.vertices[gone])[1]]
+    misses = np.full((len(loops), len(energies)), np.nan)
+    told = np.zeros(len(loops), bool)
+    told[hole_of_gone] = True
+    told &= opened
+    if told.any():
+        for number, energy in enumerate(energies):
+            filled = fair_holes(closed, energy)
+            new = TriangleMesh(filled.mesh.vertices, filled.mesh.triangles[filled.n_measured_triangles :])
+            distance = distance_to_mesh(mesh.vertices[gone], new)
+            misses[told, number] = mean_by(hole_of_gone, distance, len(loops))[told]
+    return misses
+
+
+def _blended(fills: list[FilledMesh], weights: FloatArray) -> FilledMesh:
+    invented = np.stack([fill.mesh.vertices[fill.n_measured_vertices :] for fill in fills], axis=1)
+    of_vertex = weights[fills[0].vertex_hole]
+    return fills[0].with_vertices(np.einsum("vek,ve->vk", invented, of_vertex))
+
+
+def _new_loops(mesh: TriangleMesh, left: IntArray) -> list[IntArray]:
+    """Find simple loops of what is left that touch no border that was there before."""
+    before = np.zeros(len(mesh.vertices), bool)
+    for loop in boundary_loops(mesh.triangles).loops:
+        before[loop] = True
+    boundary = boundary_loops(left)
+    pairs = zip(boundary.loops, boundary.is_manifold, strict=True)
+    return [loop for loop, is_manifold in pairs if is_manifold and not before[loop].any()]
+
+
+def _used(triangles: IntArray, n_vertices: int) -> BoolArray:
+    used = np.zeros(n_vertices, bool)
+    used[triangles] = True
+    return used

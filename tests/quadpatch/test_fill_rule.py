@@ -1,0 +1,139 @@
+import numpy as np
+import pytest
+
+from quadpatch.fill_rule import SHARPNESS, FillRule, learn_fill_rule, rim_misses
+from quadpatch.filling.fairing import THIN_PLATE, Energy
+from quadpatch.filling.fill import close_holes, fair_holes
+from quadpatch.mesh.holes import find_holes
+from quadpatch.mesh.measures import mean_edge_length
+from quadpatch.pipeline import ENERGIES, USUAL_ENERGY
+from quadpatch.practice import choose_energy, error_per_hole, practise
+from quadpatch.types import FloatArray, IntArray, TriangleMesh
+from tests.quadpatch.shapes import bumpy_plate, open_grid, punched, sphere
+
+SMOOTH = Energy(plate=1.0, variation=40.0)
+PAIR = (THIN_PLATE, SMOOTH)
+
+
+def rule_of(log_error: list[float], log_miss: list[float]) -> FillRule:
+    return FillRule(PAIR, np.array(log_error), np.array(log_miss))
+
+
+def rims(mesh: TriangleMesh) -> list[IntArray]:
+    return [hole.loop for hole in find_holes(mesh)]
+
+
+def roof(n: int = 100) -> TriangleMesh:
+    """One half is smooth and curved, the other is rough: no energy suits both."""
+    flat = open_grid(n, 2.0)
+    x, y = flat.vertices[:, 0], flat.vertices[:, 1]
+    noise = np.random.default_rng(0).normal(0.0, 0.02, len(x))
+    height = np.where(x < 0, 0.5 * x**2 + 0.4 * x * y, noise)
+    return TriangleMesh(np.stack([x, y, height], axis=1), flat.triangles)
+
+
+def test_without_a_rim_that_tells_weights_follow_practice_alone() -> None:
+    weights = rule_of([np.log(1.0), np.log(1.1)], [0.0, 0.0]).weights(np.full((3, 2), np.nan))
+    assert weights.sum(axis=1) == pytest.approx(1.0)
+    assert weights[0, 1] / weights[0, 0] == pytest.approx(1.1**-SHARPNESS)
+    assert (weights == weights[0]).all()
+
+
+def test_an_energy_that_misses_its_rim_by_more_than_usual_counts_less() -> None:
+    rule = rule_of([0.0, 0.0], [np.log(2.0), np.log(1.0)])
+    as_usual, worse, unknown = rule.weights(np.array([[0.02, 0.01], [0.02, 0.02], [np.nan, np.nan]]))
+    assert as_usual == pytest.approx([0.5, 0.5])
+    assert worse[0] > 0.99
+    assert unknown == pytest.approx([0.5, 0.5])
+
+
+def test_weights_do_not_depend_on_the_unit_of_length() -> None:
+    misses = np.abs(np.random.default_rng(0).normal(1, 0.2, (20, 2)))
+    rule = rule_of([0.1, 0.0], [0.0, 0.1])
+    metres, millimetres = rule.weights(misses), rule_of([0.1, 0.0], np.log(1000) + rule.log_miss).weights(1000 * misses)
+    assert metres == pytest.approx(millimetres)
+
+
+def test_a_rim_that_no_energy_misses_tells_nothing() -> None:
+    weights = rule_of([0.0, 0.0], [0.0, 0.0]).weights(np.array([[0.0, 0.0], [0.1, 0.1]]))
+    assert weights == pytest.approx(0.5)
+
+
+def test_on_a_sphere_the_smoother_energy_misses_the_rim_by_less() -> None:
+    mesh = punched(sphere(4), (0, 0, 1), (1, 0, 0), radius=0.3)
+    misses = rim_misses(mesh, rims(mesh), PAIR)
+    assert misses.shape == (2, 2)
+    assert (misses[:, 1] < 0.7 * misses[:, 0]).all()
+
+
+def test_a_hole_beside_a_border_can_not_be_opened_wider() -> None:
+    # The disk at the left leaves one row of squares to the border of the sheet.
+    mesh = punched(open_grid(41, 4.0), (-1.4, 0, 0), (0.8, 0, 0), radius=0.45)
+    loops = [hole.loop for hole in find_holes(mesh) if hole.diameter < 2.0]
+    misses = rim_misses(mesh, loops, PAIR)
+    known = np.isfinite(misses).all(axis=1)
+    left = np.array([mesh.vertices[loop, 0].mean() < 0 for loop in loops])
+    assert sorted(known.tolist()) == [False, True]
+    assert (known == ~left).all()
+
+
+def test_holes_on_a_rough_and_on_a_smooth_half_are_filled_by_other_weights() -> None:
+    mesh = roof()
+    practice = practise(mesh, 0.3, mean_edge_length(mesh), np.random.default_rng(0))
+    assert practice is not None
+    misses = rim_misses(practice.closed.mesh, practice.loops, ENERGIES)
+    rule = FillRule(ENERGIES, np.zeros(len(ENERGIES)), np.log(np.nanmean(misses, axis=0)))
+    weights = rule.weights(misses)
+    middles = np.array([mesh.vertices[loop, 0].mean() for loop in practice.loops])
+    on_smooth, on_rough = weights[middles < -0.2].mean(axis=0), weights[middles > 0.2].mean(axis=0)
+    # A plate under tension cuts off what is curved; of noise no energy knows more than another.
+    assert on_smooth[0] < 0.01
+    assert on_rough == pytest.approx(1 / len(ENERGIES), abs=0.05)
+
+
+def test_learning_takes_what_fills_the_practice_holes_best() -> None:
+    mesh = bumpy_plate(100, 2.0)
+    practice = practise(mesh, 0.3, mean_edge_length(mesh), np.random.default_rng(0))
+    assert practice is not None
+    _, filled = learn_fill_rule(practice, ENERGIES, USUAL_ENERGY)
+    errors = np.array([error_per_hole(practice, fair_holes(practice.closed, energy)) for energy in ENERGIES])
+    chosen = ENERGIES.index(choose_energy(errors, practice.diameter, ENERGIES, USUAL_ENERGY))
+    assert error_per_hole(practice, filled).mean() <= errors[chosen].mean()
+
+
+def test_where_weighing_gains_nothing_one_energy_fills_all_holes() -> None:
+    mesh = open_grid(100, 2.0)
+    practice = practise(mesh, 0.3, mean_edge_length(mesh), np.random.default_rng(0))
+    assert practice is not None
+    rule, _ = learn_fill_rule(practice, ENERGIES, USUAL_ENERGY)
+    assert tuple(rule.energies) == (USUAL_ENERGY,)
+
+
+def corners(mesh: TriangleMesh) -> FloatArray:
+    return mesh.vertices[mesh.triangles]
+
+
+def test_a_weighed_fill_keeps_what_was_measured_and_lies_between_the_fills() -> None:
+    mesh = punched(bumpy_plate(50, 2.0), (0.4, 0.4, 0), (-0.4, 0.2, 0), radius=0.2)
+    loops = [hole.loop for hole in find_holes(mesh) if hole.diameter < 1.0]
+    filled = rule_of([0.0, 0.0], [0.0, 0.0]).fill(mesh, loops)
+    assert filled.mesh.vertices[: len(mesh.vertices)].tobytes() == mesh.vertices.tobytes()
+    assert corners(filled.mesh)[: len(mesh.triangles)].tobytes() == corners(mesh).tobytes()
+    closed = close_holes(mesh, loops)
+    first, second = (fair_holes(closed, energy).mesh.vertices for energy in PAIR)
+    low, high = np.minimum(first, second), np.maximum(first, second)
+    assert (filled.mesh.vertices >= low - 1e-12).all()
+    assert (filled.mesh.vertices <= high + 1e-12).all()
+    assert not np.array_equal(filled.mesh.vertices, first)
+
+
+def test_one_energy_alone_is_that_energy() -> None:
+    mesh = punched(sphere(4), (0, 0, 1), radius=0.3)
+    loops = rims(mesh)
+    expected = fair_holes(close_holes(mesh, loops), SMOOTH)
+    assert FillRule.of_one(SMOOTH).fill(mesh, loops).mesh.vertices.tobytes() == expected.mesh.vertices.tobytes()
+
+
+def test_without_holes_nothing_is_filled() -> None:
+    mesh = sphere(2)
+    assert rule_of([0.0, 0.0], [0.0, 0.0]).fill(mesh, []).n_measured_triangles == len(mesh.triangles)
