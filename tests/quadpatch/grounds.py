@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from quadpatch.fill_rule import FillRule
 from quadpatch.filling.fairing import THIN_PLATE
 from quadpatch.inpainters.corrections import RESOLUTION
 from quadpatch.inpainters.inpainter import Surroundings
@@ -20,7 +21,7 @@ def ground_of(mesh: TriangleMesh, diameter: float, overlap: int | None = None) -
     edge_length = mean_edge_length(mesh)
     scale = choose_scale([diameter], edge_length, PatchOptions(overlap=overlap), RESOLUTION)
     seeds = lay_out(laplacian_smooth(mesh, outline_iterations(scale.length, edge_length)), scale)
-    return Ground(mesh, seeds, scale, THIN_PLATE, np.array([diameter]), edge_length)
+    return Ground(mesh, seeds, scale, FillRule.of_one(THIN_PLATE), np.array([diameter]), edge_length)
 
 
 def looking_down(*places: tuple[float, float, float]) -> Seeds:

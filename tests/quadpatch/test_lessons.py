@@ -4,6 +4,7 @@ from itertools import islice
 import numpy as np
 import pytest
 
+from quadpatch.fill_rule import FillRule
 from quadpatch.filling.fairing import Energy
 from quadpatch.inpainters.corrections import LARGEST, RESOLUTION
 from quadpatch.lessons import Ground, Lessons, give_lessons
@@ -78,7 +79,7 @@ def test_a_fill_without_error_leaves_nothing_to_correct() -> None:
 
 def test_the_true_surface_of_a_ball_lies_above_a_fill_that_is_drawn_tight() -> None:
     ball = ground_of(sphere(5), 0.4)
-    (given,) = rounds(replace(ball, energy=Energy(membrane=1.0)), 1)
+    (given,) = rounds(replace(ball, rule=FillRule.of_one(Energy(membrane=1.0))), 1)
     corrections = given.correction[given.asked > 0]
     assert np.mean(corrections > 0) > 0.97
     assert np.median(corrections) > 0.5
@@ -127,7 +128,12 @@ def test_where_there_is_no_room_for_a_hole_there_is_no_lesson() -> None:
     small = open_grid(12, 0.3)
     edge_length = mean_edge_length(small)
     ground = Ground(
-        small, looking_down((0, 0, 0)), PatchScale(0.6, RESOLUTION, 0), Energy(plate=1.0), np.array([0.5]), edge_length
+        small,
+        looking_down((0, 0, 0)),
+        PatchScale(0.6, RESOLUTION, 0),
+        FillRule.of_one(Energy(plate=1.0)),
+        np.array([0.5]),
+        edge_length,
     )
     assert [len(given) for given in rounds(ground, 2)] == [0, 0]
     nothing = TriangleMesh(small.vertices, small.triangles[:0])

@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
 
+from quadpatch.fill_rule import FillRule
 from quadpatch.filling.fairing import THIN_PLATE
 from quadpatch.inpainters.dictionary import (
     LEAST_KNOWN,
@@ -32,7 +33,7 @@ def surroundings(patches: Patches) -> Surroundings:
     """Surface over a flat outline; dictionaries don't look at the ground."""
     flat = TriangleMesh(np.zeros((0, 3)), np.zeros((0, 3), np.int64))
     nowhere = Seeds(np.zeros((0, 3)), np.zeros((0, 3, 3)), np.zeros(0, np.int64))
-    ground = Ground(flat, nowhere, PatchScale(1.0, N, 1), THIN_PLATE, np.ones(1), 0.1)
+    ground = Ground(flat, nowhere, PatchScale(1.0, N, 1), FillRule.of_one(THIN_PLATE), np.ones(1), 0.1)
     return Surroundings(patches, 0 * patches.heights, ground)
 
 
