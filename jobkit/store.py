@@ -4,23 +4,20 @@ Uploads are content-addressed: their key follows from their sha256, so the same 
 `results/{job}/{attempt}/{name}`: a late twin of an attempt can't write over another one's files.
 """
 
-import hashlib
-import os
 import re
-import shutil
-import uuid
 from collections.abc import Iterator
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
+from datetime import datetime
 from pathlib import Path
 from types import TracebackType
-from typing import BinaryIO, Protocol, Self
+from typing import NamedTuple, Protocol, Self
 from urllib.parse import unquote, urlsplit
 
-from jobkit.errors import ObjectNotFoundError, SettingsError, StoreUnavailableError, TooLargeError
+from jobkit.errors import ObjectNotFoundError, SettingsError
 
 CHUNK_BYTES = 1 << 20
-_KEY = re.compile(r"^[A-Za-z0-9_][A-Za-z0-9._-]*(/[A-Za-z0-9_][A-Za-z0-9._-]*)*$")
+_KEY = re.compile(r"^[A-Za-z0-9_][A-Za-z0-9._-]*(/[A-Za-z0-9_][A-Za-z0-9._-]*)*\Z")
 
 
 @dataclass(frozen=True)
@@ -32,11 +29,19 @@ class StoredObject:
     sha256: str
 
 
+class ListedObject(NamedTuple):
+    """An object as a listing tells of it; `modified_at` is in UTC, by the clock of the store."""
+
+    key: str
+    size_bytes: int
+    modified_at: datetime
+
+
 class ObjectWriter(Protocol):
     """A sink for one object; leaving it without a commit leaves nothing behind."""
 
     def write(self, chunk: bytes) -> None:
-        """Append bytes; raise TooLargeError beyond the limit."""
+        """Append bytes; raise TooLargeError beyond the limit, StoreUnavailableError where there is no room."""
         ...
 
     def commit(self, key: str | None = None) -> StoredObject:
@@ -55,7 +60,7 @@ class ObjectWriter(Protocol):
 
 
 class ObjectStore(Protocol):
-    """Where meshes, results and models lie."""
+    """Where meshes, results and models lie; everything may raise StoreUnavailableError."""
 
     def writer(self, prefix: str, max_bytes: int | None = None) -> ObjectWriter:
         """Open a sink; content-addressed keys start with `prefix`."""
@@ -77,6 +82,10 @@ class ObjectStore(Protocol):
         """Give the object as a file that must not be changed, for the length of a with block."""
         ...
 
+    def keys(self, prefix: str = "") -> Iterator[ListedObject]:
+        """List what lies below `prefix/`, or everything, in no order; what is still being written does not show."""
+        ...
+
     def check(self) -> None:
         """Raise StoreUnavailableError if objects can't be written."""
         ...
@@ -90,152 +99,46 @@ class ObjectStore(Protocol):
         ...
 
 
-def result_key(job_id: str, attempt: int, name: str) -> str:
-    """Return the key of one file of an attempt's result."""
-    return f"results/{job_id}/{attempt}/{name}"
-
-
-def open_store(url: str) -> ObjectStore:
+def open_store(url: str, scratch: Path | None = None) -> ObjectStore:
     """Open the store that the URL names: `file:///a/folder`.
+
+    Parameters
+    ----------
+    url : str
+    scratch : Path, optional
+        Folder on a local disk for what comes from a remote store or goes there; None: one for temporary files.
 
     Raises
     ------
     SettingsError
         If the URL names another kind of store.
     """
+    # The modules of the kinds know this one.
+    from jobkit.local_store import LocalStore  # noqa: PLC0415
+
     parts = urlsplit(url)
-    if parts.scheme != "file" or parts.netloc not in ("", "localhost"):
-        raise SettingsError(f"object store {url!r} is not supported; use file:///a/folder")
-    return LocalStore(Path(unquote(parts.path)))
+    if parts.scheme == "file" and parts.netloc in ("", "localhost"):
+        return LocalStore(Path(unquote(parts.path)))
+    raise SettingsError(f"object store {url!r} is not supported; use file:///a/folder")
 
 
-class LocalStore:
-    """A store in a folder. Files appear by an atomic rename after their bytes have reached the disk."""
-
-    def __init__(self, folder: Path) -> None:
-        self._folder = folder
-        self._incoming = folder / "incoming"
-        self._incoming.mkdir(parents=True, exist_ok=True)
-
-    def writer(self, prefix: str, max_bytes: int | None = None) -> "LocalWriter":
-        """Open a sink."""
-        return LocalWriter(self, prefix, max_bytes)
-
-    def put_file(self, key: str, path: Path) -> StoredObject:
-        """Keep a copy of a local file under that key."""
-        with path.open("rb") as source, self.writer("") as writer:
-            while chunk := source.read(CHUNK_BYTES):
-                writer.write(chunk)
-            return writer.commit(key)
-
-    def size(self, key: str) -> int:
-        """Return the size in bytes."""
-        return self._existing(key).stat().st_size
-
-    def read(self, key: str, start: int = 0, length: int | None = None) -> Iterator[bytes]:
-        """Yield the bytes of a range."""
-        return _read_range(self._existing(key).open("rb"), start, length)
-
-    @contextmanager
-    def local_file(self, key: str) -> Iterator[Path]:
-        """Give the file itself."""
-        yield self._existing(key)
-
-    def check(self) -> None:
-        """Write and remove a byte."""
-        path = self.new_incoming()
-        try:
-            path.write_bytes(b"0")
-            path.unlink()
-        except OSError as error:
-            raise StoreUnavailableError("the object store can't be written") from error
-
-    def delete(self, key: str) -> None:
-        """Remove the object."""
-        self.path(key).unlink(missing_ok=True)
-
-    def delete_prefix(self, prefix: str) -> None:
-        """Remove everything below the prefix."""
-        shutil.rmtree(self.path(prefix), ignore_errors=True)
-
-    def path(self, key: str) -> Path:
-        """Return where the object lies, or would lie; a key can't lead out of the folder."""
-        if not _KEY.match(key):
-            raise ObjectNotFoundError(f"{key!r} is no key of an object")
-        return self._folder / key
-
-    def new_incoming(self) -> Path:
-        """Return a fresh path for bytes that are still on their way."""
-        return self._incoming / uuid.uuid4().hex
-
-    def _existing(self, key: str) -> Path:
-        path = self.path(key)
-        if not path.is_file():
-            raise ObjectNotFoundError(f"the store holds nothing under {key!r}")
-        return path
+def result_key(job_id: str, attempt: int, name: str) -> str:
+    """Return the key of one file of an attempt's result."""
+    return f"results/{job_id}/{attempt}/{name}"
 
 
-class LocalWriter:
-    """Bytes on their way into a LocalStore."""
-
-    def __init__(self, store: LocalStore, prefix: str, max_bytes: int | None) -> None:
-        self._store = store
-        self._prefix = prefix
-        self._max_bytes = max_bytes
-        self._path = store.new_incoming()
-        self._file: BinaryIO = self._path.open("xb")
-        self._hash = hashlib.sha256()
-        self._size = 0
-
-    def write(self, chunk: bytes) -> None:
-        """Append bytes."""
-        if self._max_bytes is not None and self._size + len(chunk) > self._max_bytes:
-            raise TooLargeError(f"the body has more than {self._max_bytes} bytes, which is the limit")
-        self._file.write(chunk)
-        self._hash.update(chunk)
-        self._size += len(chunk)
-
-    def commit(self, key: str | None = None) -> StoredObject:
-        """Flush, sync and rename."""
-        digest = self._hash.hexdigest()
-        final = key or f"{self._prefix}/{digest[:2]}/{digest}"
-        target = self._store.path(final)
-        self._file.flush()
-        os.fsync(self._file.fileno())
-        self._file.close()
-        target.parent.mkdir(parents=True, exist_ok=True)
-        self._path.replace(target)
-        _sync_folder(target.parent)
-        return StoredObject(final, self._size, digest)
-
-    def __enter__(self) -> Self:
-        """Start."""
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        """Throw away what was not committed."""
-        self._file.close()
-        self._path.unlink(missing_ok=True)
+def content_key(prefix: str, sha256: str) -> str:
+    """Return the key that follows from the bytes."""
+    return f"{prefix}/{sha256[:2]}/{sha256}"
 
 
-def _read_range(file: BinaryIO, start: int, length: int | None) -> Iterator[bytes]:
-    with file:
-        file.seek(start)
-        left = length
-        while left is None or left > 0:
-            chunk = file.read(CHUNK_BYTES if left is None else min(CHUNK_BYTES, left))
-            if not chunk:
-                return
-            left = None if left is None else left - len(chunk)
-            yield chunk
+def checked_key(key: str) -> str:
+    """Return the key if it is one; a key can't lead out of the store. Raises ObjectNotFoundError."""
+    if not _KEY.match(key):
+        raise ObjectNotFoundError(f"{key!r} is no key of an object")
+    return key
 
 
-def _sync_folder(folder: Path) -> None:
-    # The rename itself lives in the folder: without this a power cut may undo it.
-    descriptor = os.open(folder, os.O_RDONLY)
-    try:
-        os.fsync(descriptor)
-    finally:
-        os.close(descriptor)
+def missing(key: str) -> ObjectNotFoundError:
+    """Make the error of a key with nothing under it."""
+    return ObjectNotFoundError(f"the store holds nothing under {key!r}")

@@ -1,12 +1,14 @@
 """Jobs and meshes to start from."""
 
+from pathlib import Path
+
 import pytest
 
 from jobkit.database import Database
 from jobkit.jobs import Jobs, NewJob
 from jobkit.meshes import Meshes
 from jobkit.schema import Job, JobSpec, Mesh, ResolvedModel
-from jobkit.store import ObjectStore
+from jobkit.store import ObjectStore, open_store
 
 
 @pytest.fixture
@@ -25,3 +27,9 @@ def new_job(mesh: Mesh) -> NewJob:
 @pytest.fixture
 def job(database: Database, new_job: NewJob) -> Job:
     return Jobs(database).create(new_job)[0]
+
+
+@pytest.fixture
+def any_store(tmp_path: Path) -> ObjectStore:
+    """An empty store of either kind."""
+    return open_store(f"file://{tmp_path}/objects")

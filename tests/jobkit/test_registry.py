@@ -7,7 +7,8 @@ import pytest
 from jobkit.database import Database
 from jobkit.errors import ModelNotFoundError, NameTakenError, UnusableModelError
 from jobkit.registry import Registry
-from jobkit.store import LocalStore, ObjectStore
+from jobkit.local_store import LocalStore
+from jobkit.store import ObjectStore
 
 Make = Callable[[int], bytes]
 NETWORK = b"\x08\x0a\x12\x07pytorch"
