@@ -5,50 +5,42 @@ refused with StaleAttemptError.
 """
 
 from dataclasses import dataclass
-from datetime import datetime, timedelta
+from datetime import timedelta
 from typing import Any
 
-from sqlalchemy import select, update
-from sqlalchemy.orm import Session
+from sqlalchemy import func, or_, select, update
 
-from jobkit.clock import utc_now
+from jobkit.clock import shared_now, utc_now
 from jobkit.database import Database
+from jobkit.endings import (
+    Attempt,
+    Ending,
+    another_try,
+    cancel_attempt,
+    counts_out,
+    end_attempt,
+    failure,
+    forgiven_try,
+    stale,
+    success,
+)
 from jobkit.errors import StaleAttemptError
 from jobkit.events import append_event
 from jobkit.jobs import existing_job, to_job
-from jobkit.schema import EventType, Job, JobError, JobResult, JobState
+from jobkit.schema import Job, JobError, JobResult, JobState
 from jobkit.tables import AttemptRow, JobRow
 from jobkit.transitions import Move, make_move, update_job
 
-_AT_WORK = (JobState.RUNNING.value, JobState.CANCELING.value)
-
-
-@dataclass(frozen=True)
-class Attempt:
-    """The right to write to a job, until a later attempt starts."""
-
-    job_id: str
-    number: int
+AT_WORK = (JobState.RUNNING.value, JobState.CANCELING.value)
 
 
 @dataclass(frozen=True)
 class StartedAttempt:
-    """An attempt, and the job as it was when it started."""
+    """An attempt, and the job as it was when it started; `is_last` where a failure of it ends the job."""
 
     attempt: Attempt
     job: Job
-
-
-@dataclass(frozen=True)
-class _Ending:
-    """How an attempt ends: the target if it runs undisturbed, and what is written then."""
-
-    target: JobState
-    event: EventType
-    values: dict[str, Any]
-    data: dict[str, Any]
-    outcome: str
-    error: JobError | None = None
+    is_last: bool
 
 
 class Attempts:
@@ -73,10 +65,10 @@ class Attempts:
         JobNotFoundError
             If there is no such job.
         StaleAttemptError
-            If the job is not queued: another worker has it, or it has ended.
+            If the job is not queued, or not to be started yet: another worker has it, or it has ended.
         """
-        now = utc_now()
         with self._database.write() as session:
+            now = shared_now(session)
             row = existing_job(session, job_id)
             number = row.attempt + 1
             values = {
@@ -88,16 +80,32 @@ class Attempts:
                 "percent": 0.0,
             }
             move = Move(JobState.QUEUED, JobState.RUNNING, "started", values)
-            if not make_move(session, job_id, move, now, JobRow.attempt == number - 1):
-                raise StaleAttemptError(f"job {job_id} is {row.state} and can't be started")
+            is_due = or_(JobRow.not_before.is_(None), JobRow.not_before <= now)
+            if not make_move(session, job_id, move, now, JobRow.attempt == number - 1, is_due):
+                raise StaleAttemptError(f"job {job_id} is {row.state} and can't be started now")
             session.add(AttemptRow(job_id=job_id, number=number, worker=worker, started_at=now))
-            return StartedAttempt(Attempt(job_id, number), to_job(existing_job(session, job_id)))
+            started = existing_job(session, job_id)
+            return StartedAttempt(Attempt(job_id, number), to_job(started), counts_out(started))
 
-    def heartbeat(self, attempt: Attempt, lease_s: float) -> bool:
-        """Renew the lease; return whether the job is to be canceled. Raise StaleAttemptError."""
+    def heartbeat(self, attempt: Attempt, lease_s: float, memory_mb: int = 0) -> bool:
+        """Renew the lease and note the most memory seen; return whether the job is to be canceled.
+
+        Raises
+        ------
+        StaleAttemptError
+            If the attempt is not the latest any more.
+        """
         with self._database.write() as session:
-            values = {"lease_until": utc_now() + timedelta(seconds=lease_s)}
-            _require(update_job(session, attempt.job_id, values, *_fences(attempt)), attempt)
+            values = {"lease_until": shared_now(session) + timedelta(seconds=lease_s)}
+            if not update_job(session, attempt.job_id, values, *_fences(attempt)):
+                raise stale(attempt)
+            if memory_mb:
+                session.execute(
+                    update(AttemptRow)
+                    .where(AttemptRow.job_id == attempt.job_id, AttemptRow.number == attempt.number)
+                    .where(func.coalesce(AttemptRow.peak_memory_mb, 0) < memory_mb)
+                    .values(peak_memory_mb=memory_mb)
+                )
             state = session.scalars(select(JobRow.state).where(JobRow.id == attempt.job_id)).one()
             return state == JobState.CANCELING
 
@@ -106,7 +114,8 @@ class Attempts:
         now = utc_now()
         with self._database.write() as session:
             values = {"stage": stage, "percent": percent, "revision": JobRow.revision + 1, "updated_at": now}
-            _require(update_job(session, attempt.job_id, values, *_fences(attempt)), attempt)
+            if not update_job(session, attempt.job_id, values, *_fences(attempt)):
+                raise stale(attempt)
             append_event(session, attempt.job_id, "progress", now, {"stage": stage, "percent": percent})
 
     def publish(self, attempt: Attempt, result: JobResult) -> JobState:
@@ -123,13 +132,11 @@ class Attempts:
         StaleAttemptError
             If the attempt is not the latest any more.
         """
-        target = JobState.SUCCEEDED_WITH_WARNINGS if result.warnings else JobState.SUCCEEDED
-        values = {"result": result.model_dump(mode="json"), "percent": 100.0}
-        return self._end(attempt, _Ending(target, "succeeded", values, {}, target.value))
+        return self._end(attempt, success(result))
 
     def fail(self, attempt: Attempt, error: JobError) -> JobState:
         """End the job without a result; return `failed`, or `canceled`. Raise StaleAttemptError."""
-        return self._end(attempt, _failure(error))
+        return self._end(attempt, failure(error))
 
     def requeue(self, attempt: Attempt, error: JobError) -> JobState:
         """Give the job back so that another attempt starts; where none is left, fail it.
@@ -144,84 +151,43 @@ class Attempts:
         StaleAttemptError
             If the attempt is not the latest any more.
         """
-        with self._database.read() as session:
-            row = existing_job(session, attempt.job_id)
-            is_last = row.attempt >= row.max_attempts
-        return self._end(attempt, _failure(error) if is_last else _return_to_queue(error))
+        with self._database.write() as session:
+            is_last = counts_out(existing_job(session, attempt.job_id))
+            return end_attempt(session, attempt, failure(error) if is_last else another_try(error), utc_now())
+
+    def hand_back(self, attempt: Attempt, error: JobError, delay_s: float = 0.0) -> JobState:
+        """Give the job back, and don't count the attempt: the reason lies outside of the job.
+
+        Parameters
+        ----------
+        attempt : Attempt
+        error : JobError
+            The reason, for people.
+        delay_s : float
+            Seconds before which no other attempt starts.
+
+        Returns
+        -------
+        JobState
+            `queued` or `canceled`.
+
+        Raises
+        ------
+        StaleAttemptError
+            If the attempt is not the latest any more.
+        """
+        with self._database.write() as session:
+            return end_attempt(session, attempt, forgiven_try(error, shared_now(session), delay_s), utc_now())
 
     def acknowledge_cancel(self, attempt: Attempt) -> None:
         """Say that the attempt has stopped as asked; raise StaleAttemptError."""
         with self._database.write() as session:
-            _require(_cancel(session, attempt, utc_now()), attempt)
+            cancel_attempt(session, attempt, utc_now())
 
-    def take_back_expired(self, now: datetime) -> list[tuple[str, JobState]]:
-        """End every attempt whose lease ran out before `now`; return each job with its new state."""
-        with self._database.read() as session:
-            query = select(JobRow.id, JobRow.attempt).where(JobRow.state.in_(_AT_WORK), JobRow.lease_until < now)
-            expired = [Attempt(job_id, number) for job_id, number in session.execute(query)]
-        error = JobError(code="worker_lost", message="the worker went silent in the middle of the job", retryable=True)
-        taken = []
-        for attempt in expired:
-            try:
-                taken.append((attempt.job_id, self._requeue_if_expired(attempt, error, now)))
-            except StaleAttemptError:
-                continue  # a heartbeat or an ending came in between
-        return taken
-
-    def _requeue_if_expired(self, attempt: Attempt, error: JobError, now: datetime) -> JobState:
+    def _end(self, attempt: Attempt, ending: Ending) -> JobState:
         with self._database.write() as session:
-            row = existing_job(session, attempt.job_id)
-            if row.lease_until is None or row.lease_until >= now or row.attempt != attempt.number:
-                raise StaleAttemptError(f"attempt {attempt.number} of job {attempt.job_id} is not expired")
-            is_last = row.attempt >= row.max_attempts
-            return _end(session, attempt, _failure(error) if is_last else _return_to_queue(error))
-
-    def _end(self, attempt: Attempt, ending: _Ending) -> JobState:
-        with self._database.write() as session:
-            return _end(session, attempt, ending)
-
-
-def _end(session: Session, attempt: Attempt, ending: _Ending) -> JobState:
-    now = utc_now()
-    move = Move(JobState.RUNNING, ending.target, ending.event, ending.values, ending.data)
-    if make_move(session, attempt.job_id, move, now, JobRow.attempt == attempt.number):
-        _close_attempt(session, attempt, ending.outcome, now, ending.error)
-        return ending.target
-    _require(_cancel(session, attempt, now), attempt)
-    return JobState.CANCELED
-
-
-def _cancel(session: Session, attempt: Attempt, now: datetime) -> bool:
-    move = Move(JobState.CANCELING, JobState.CANCELED, "canceled")
-    if not make_move(session, attempt.job_id, move, now, JobRow.attempt == attempt.number):
-        return False
-    _close_attempt(session, attempt, JobState.CANCELED.value, now, None)
-    return True
-
-
-def _failure(error: JobError) -> _Ending:
-    wire = error.model_dump(mode="json")
-    return _Ending(JobState.FAILED, "failed", {"error": wire}, {"error": wire}, JobState.FAILED.value, error)
-
-
-def _return_to_queue(error: JobError) -> _Ending:
-    values = {"stage": None, "percent": 0.0, "enqueued_at": None}
-    data = {"error": error.model_dump(mode="json")}
-    return _Ending(JobState.QUEUED, "requeued", values, data, "requeued", error)
-
-
-def _close_attempt(session: Session, attempt: Attempt, outcome: str, now: datetime, error: JobError | None) -> None:
-    session.execute(
-        update(AttemptRow)
-        .where(AttemptRow.job_id == attempt.job_id, AttemptRow.number == attempt.number)
-        .values(outcome=outcome, finished_at=now, error=None if error is None else error.model_dump(mode="json"))
-    )
+            return end_attempt(session, attempt, ending, utc_now())
 
 
 def _fences(attempt: Attempt) -> tuple[Any, Any]:
-    return JobRow.attempt == attempt.number, JobRow.state.in_(_AT_WORK)
-
-
-def _require(is_written: bool, attempt: Attempt) -> None:
-    if not is_written:
-        raise StaleAttemptError(f"attempt {attempt.number} of job {attempt.job_id} may write no more")
+    return JobRow.attempt == attempt.number, JobRow.state.in_(AT_WORK)

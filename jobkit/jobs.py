@@ -198,6 +198,7 @@ def _new_row(new: NewJob) -> JobRow:
         spec=new.spec.model_dump(mode="json"),
         model=new.model.model_dump(mode="json"),
         rerun_of=new.rerun_of,
+        queued_at=now,
         created_at=now,
         updated_at=now,
     )

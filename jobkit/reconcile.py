@@ -7,11 +7,11 @@ database and is not in the queue is put there again; twins are harmless, since o
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 
-from sqlalchemy import select, update
+from sqlalchemy import or_, select, update
 
-from jobkit.attempts import Attempts
-from jobkit.clock import utc_now
+from jobkit.clock import shared_now, utc_now
 from jobkit.database import Database
+from jobkit.overdue import TimeLimits, end_overdue
 from jobkit.queue import TaskQueue, job_entry, mesh_entry
 from jobkit.schema import JobState, MeshProblem, MeshState
 from jobkit.tables import JobRow, MeshRow
@@ -25,26 +25,26 @@ MAX_ANALYSES = 3
 class Reconciled:
     """What one look found."""
 
-    expired: int
+    ended: int
     enqueued_jobs: int
     enqueued_meshes: int
 
 
-def reconcile(database: Database, queue: TaskQueue, now: datetime | None = None) -> Reconciled:
-    """Take back expired leases and refill the queue.
+def reconcile(database: Database, queue: TaskQueue, limits: TimeLimits, now: datetime | None = None) -> Reconciled:
+    """End what is overdue and refill the queue.
 
     Raises
     ------
     QueueUnavailableError
         If Redis does not answer; leases have been taken back even so.
     """
-    moment = now or utc_now()
-    expired = Attempts(database).take_back_expired(moment)
+    moment = now or _shared_moment(database)
+    ended = end_overdue(database, limits, moment)
     _give_up_analyses(database, moment)
     waiting = queue.waiting()
     jobs = _enqueue_jobs(database, queue, waiting, moment)
     meshes = _enqueue_meshes(database, queue, waiting, moment)
-    return Reconciled(len(expired), jobs, meshes)
+    return Reconciled(ended, jobs, meshes)
 
 
 def submit_job(database: Database, queue: TaskQueue, job_id: str, attempt: int) -> None:
@@ -78,11 +78,12 @@ def submit_analysis(database: Database, queue: TaskQueue, mesh_id: str) -> None:
 
 def _enqueue_jobs(database: Database, queue: TaskQueue, waiting: set[str], now: datetime) -> int:
     with database.read() as session:
-        query = select(JobRow.id, JobRow.attempt, JobRow.enqueued_at, JobRow.updated_at)
-        rows = session.execute(query.where(JobRow.state == JobState.QUEUED.value).order_by(JobRow.id)).all()
+        is_due = or_(JobRow.not_before.is_(None), JobRow.not_before <= now)
+        query = select(JobRow.id, JobRow.attempt, JobRow.enqueued_at)
+        rows = session.execute(query.where(JobRow.state == JobState.QUEUED.value, is_due).order_by(JobRow.id)).all()
     lost = [
         (job_id, attempt)
-        for job_id, attempt, enqueued_at, updated_at in rows
+        for job_id, attempt, enqueued_at in rows
         if job_entry(job_id, attempt + 1) not in waiting and _is_overdue(enqueued_at, now)
     ]
     for job_id, attempt in lost:
@@ -122,3 +123,8 @@ def _give_up_analyses(database: Database, now: datetime) -> None:
 
 def _is_overdue(enqueued_at: datetime | None, now: datetime) -> bool:
     return enqueued_at is None or enqueued_at < now - timedelta(seconds=GRACE_S)
+
+
+def _shared_moment(database: Database) -> datetime:
+    with database.read() as session:
+        return shared_now(session)

@@ -51,9 +51,20 @@ class Settings(BaseSettings):
     job_time_limit_s: float = Field(default=900.0, ge=1, description="Most wall-clock seconds of one attempt.")
     job_memory_limit_mb: int = Field(default=4096, ge=256, description="Most memory of one attempt, in MiB.")
     max_attempts: int = Field(default=3, ge=1, le=20, description="Attempts before a job is given up.")
-    lease_s: float = Field(default=30.0, ge=1, description="Seconds without a heartbeat until an attempt is lost.")
+    queue_time_limit_s: float = Field(
+        default=604_800.0, ge=1, description="Most seconds that a job waits for a worker until it is given up."
+    )
+    total_time_limit_s: float = Field(
+        default=1_209_600.0, ge=1, description="Most seconds from the acceptance of a job to its end."
+    )
+    lease_s: float = Field(default=15.0, ge=1, description="Seconds without a heartbeat until an attempt is lost.")
     heartbeat_s: float = Field(default=5.0, gt=0, description="Seconds between two heartbeats of an attempt.")
-    reconcile_s: float = Field(default=5.0, gt=0, description="Seconds between two looks for lost jobs.")
+    dispatch_s: float = Field(
+        default=1.0, gt=0, le=60, description="Seconds between two looks of the dispatcher for what is due."
+    )
+    leader_lease_s: float = Field(
+        default=6.0, ge=1, description="Seconds without a sign from the leading dispatcher until another one leads."
+    )
     models_dir: Path | None = Field(
         default=None, description="Folder of models to register at start; empty: those that ship with the project."
     )

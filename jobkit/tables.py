@@ -67,13 +67,19 @@ class MeshRow(Base):
     enqueued_at: Mapped[datetime | None]
     facts: Mapped[dict[str, Any] | None]
     problem: Mapped[dict[str, Any] | None]
+    pinned: Mapped[bool] = mapped_column(default=False)
     created_at: Mapped[datetime]
     updated_at: Mapped[datetime]
     __table_args__ = (Index(None, "state"),)
 
 
 class JobRow(Base):
-    """A repair. This row is the truth; the queue is a hint."""
+    """A repair. This row is the truth; the queue is a hint.
+
+    `attempt` fences and never falls; `forgiven` says how many attempts ended for reasons that lie outside of the job (a
+    drained worker, a store that refused writes) and don't count towards `max_attempts`. A queued job that waits for
+    such a reason to pass is not started before `not_before`. `queued_at` is when it last began to wait.
+    """
 
     __tablename__ = "jobs"
     id: Mapped[str] = mapped_column(String(40), primary_key=True)
@@ -81,6 +87,7 @@ class JobRow(Base):
     state: Mapped[str] = mapped_column(String(32))
     attempt: Mapped[int] = mapped_column(default=0)
     max_attempts: Mapped[int]
+    forgiven: Mapped[int] = mapped_column(default=0)
     revision: Mapped[int] = mapped_column(default=1)
     stage: Mapped[str | None] = mapped_column(String(64))
     percent: Mapped[float] = mapped_column(default=0.0)
@@ -92,11 +99,17 @@ class JobRow(Base):
     worker: Mapped[str | None] = mapped_column(String(128))
     lease_until: Mapped[datetime | None]
     enqueued_at: Mapped[datetime | None]
+    queued_at: Mapped[datetime]
+    not_before: Mapped[datetime | None]
+    cancel_requested_at: Mapped[datetime | None]
+    pinned: Mapped[bool] = mapped_column(default=False)
+    request_id: Mapped[str | None] = mapped_column(String(64))
+    traceparent: Mapped[str | None] = mapped_column(String(64))
     created_at: Mapped[datetime]
     updated_at: Mapped[datetime]
     started_at: Mapped[datetime | None]
     finished_at: Mapped[datetime | None]
-    __table_args__ = (Index(None, "state", "id"), Index(None, "mesh_id"))
+    __table_args__ = (Index(None, "state", "id"), Index(None, "mesh_id"), Index(None, "finished_at"))
 
 
 class AttemptRow(Base):
@@ -108,6 +121,7 @@ class AttemptRow(Base):
     worker: Mapped[str] = mapped_column(String(128))
     outcome: Mapped[str | None] = mapped_column(String(32))
     error: Mapped[dict[str, Any] | None]
+    peak_memory_mb: Mapped[int | None]
     started_at: Mapped[datetime]
     finished_at: Mapped[datetime | None]
 
@@ -160,3 +174,70 @@ class IdempotencyRow(Base):
     request_sha256: Mapped[str] = mapped_column(String(64))
     job_id: Mapped[str] = mapped_column(String(40), ForeignKey("jobs.id"))
     created_at: Mapped[datetime]
+
+
+class LeaderRow(Base):
+    """Who leads among processes of one kind, and until when unless it says so again."""
+
+    __tablename__ = "leaders"
+    name: Mapped[str] = mapped_column(String(32), primary_key=True)
+    holder: Mapped[str] = mapped_column(String(128))
+    until: Mapped[datetime]
+    since: Mapped[datetime]
+
+
+class StageRow(Base):
+    """How often a stage has run in published repairs, and how long in all."""
+
+    __tablename__ = "stages"
+    stage: Mapped[str] = mapped_column(String(64), primary_key=True)
+    method: Mapped[str] = mapped_column(String(32), primary_key=True)
+    count: Mapped[int] = mapped_column(BigInteger)
+    seconds: Mapped[float]
+
+
+class WebhookRow(Base):
+    """A subscription: where to send which events."""
+
+    __tablename__ = "webhooks"
+    id: Mapped[str] = mapped_column(String(40), primary_key=True)
+    url: Mapped[str] = mapped_column(String(2048))
+    secret: Mapped[str] = mapped_column(String(128))
+    events: Mapped[list[str]] = mapped_column(JSON(none_as_null=True))
+    description: Mapped[str | None] = mapped_column(String(255))
+    enabled: Mapped[bool] = mapped_column(default=True)
+    failing_since: Mapped[datetime | None]
+    created_at: Mapped[datetime]
+    updated_at: Mapped[datetime]
+
+
+class DeliveryRow(Base):
+    """A message on its way to a subscriber, written in the transaction of the change that it tells of."""
+
+    __tablename__ = "deliveries"
+    id: Mapped[str] = mapped_column(String(40), primary_key=True)
+    webhook_id: Mapped[str] = mapped_column(String(40), ForeignKey("webhooks.id", ondelete="CASCADE"))
+    job_id: Mapped[str | None] = mapped_column(String(40))
+    type: Mapped[str] = mapped_column(String(64))
+    payload: Mapped[dict[str, Any]]
+    state: Mapped[str] = mapped_column(String(16))
+    tries: Mapped[int] = mapped_column(default=0)
+    next_try_at: Mapped[datetime | None]
+    replay_of: Mapped[str | None] = mapped_column(String(40))
+    created_at: Mapped[datetime]
+    finished_at: Mapped[datetime | None]
+    __table_args__ = (Index(None, "state", "next_try_at"), Index(None, "webhook_id", "id"))
+
+
+class DeliveryTryRow(Base):
+    """One try at a delivery, and what came back."""
+
+    __tablename__ = "delivery_tries"
+    delivery_id: Mapped[str] = mapped_column(
+        String(40), ForeignKey("deliveries.id", ondelete="CASCADE"), primary_key=True
+    )
+    number: Mapped[int] = mapped_column(primary_key=True, autoincrement=False)
+    at: Mapped[datetime]
+    status: Mapped[int | None]
+    error: Mapped[str | None] = mapped_column(String(500))
+    milliseconds: Mapped[int]

@@ -45,6 +45,10 @@ def make_move(session: Session, job_id: str, move: Move, at: datetime, *fences: 
     values: dict[str, Any] = {"state": move.target.value, "revision": JobRow.revision + 1, "updated_at": at}
     if move.source in (JobState.RUNNING, JobState.CANCELING) and move.target != JobState.CANCELING:
         values |= {"lease_until": None, "worker": None}
+    if move.target is JobState.QUEUED:
+        values |= {"queued_at": at}
+    if move.target is JobState.CANCELING:
+        values |= {"cancel_requested_at": at}
     if move.target.is_terminal:
         values |= {"finished_at": at, "stage": None}
     if not update_job(session, job_id, {**values, **move.values}, JobRow.state == move.source.value, *fences):

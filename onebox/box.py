@@ -13,11 +13,11 @@ from dataclasses import dataclass
 from http import HTTPStatus
 from pathlib import Path
 
+from jobkit.readiness import READY_FILE_VARIABLE
 from onebox.errors import StartError
 from onebox.processes import Program
 from onebox.valkey import answers, prepare_valkey
 from worker.limits import thread_environment
-from worker.readiness import READY_FILE_VARIABLE
 
 LOCK_NAME = "box.lock"
 # Below the data folder; holds the address while the whole box is up.
@@ -73,23 +73,24 @@ def programs(box: Box) -> list[Program]:
         "QUADPATCH_PORT": str(box.port),
     }
     n_threads = max(min(2, _n_cores()), _n_cores() // box.n_workers)
-    workers = [
-        _worker(box.data / "run" / f"worker-{number}.ready", {**shared, **thread_environment(n_threads)})
-        for number in range(1, box.n_workers + 1)
-    ]
+    threads = {**shared, **thread_environment(n_threads)}
+    workers = [_program(f"worker-{number}", box, threads) for number in range(1, box.n_workers + 1)]
     return [
         Program("valkey", valkey.command, ready=lambda: answers(valkey.socket_path)),
+        _program("dispatcher", box, shared),
         Program("api", (sys.executable, "-m", "service"), shared, ready=ready_check(f"{box.url}/readyz")),
         *workers,
     ]
 
 
-def _worker(ready_file: Path, environment: dict[str, str]) -> Program:
+def _program(name: str, box: Box, environment: dict[str, str]) -> Program:
+    """Describe a process that says by a file that it is ready: the dispatcher, or a worker by its number."""
+    ready_file = box.data / "run" / f"{name}.ready"
     ready_file.parent.mkdir(parents=True, exist_ok=True)
     ready_file.unlink(missing_ok=True)
     return Program(
-        ready_file.stem,
-        (sys.executable, "-m", "worker"),
+        name,
+        (sys.executable, "-m", name.partition("-")[0]),
         {**environment, READY_FILE_VARIABLE: str(ready_file.resolve())},
         ready=ready_file.exists,
         stop_timeout_s=_WORKER_STOP_S,

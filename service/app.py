@@ -1,24 +1,18 @@
 """The HTTP application."""
 
-import asyncio
-import logging
 from collections.abc import AsyncIterator
-from contextlib import asynccontextmanager, suppress
+from contextlib import asynccontextmanager
 
 import anyio.to_thread
 from fastapi import FastAPI
 
-from jobkit.errors import JobkitError
-from jobkit.reconcile import reconcile
 from jobkit.settings import Settings
 from service.auth import AuthMiddleware, check_exposure
 from service.document import TITLE, VERSION, install_document, operation_id
 from service.frame import FrameMiddleware
 from service.handlers import install_handlers
 from service.routes import health, jobs, meshes, models, repairs, results
-from service.services import Services, open_services
-
-_logger = logging.getLogger("service")
+from service.services import open_services
 
 
 def create_app(settings: Settings) -> FastAPI:
@@ -57,21 +51,7 @@ def create_app(settings: Settings) -> FastAPI:
 async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     services = await anyio.to_thread.run_sync(open_services, app.state.settings)
     app.state.services = services
-    task = asyncio.create_task(_keep_reconciling(services))
     try:
         yield
     finally:
-        task.cancel()
-        with suppress(asyncio.CancelledError):
-            await task
         services.close()
-
-
-async def _keep_reconciling(services: Services) -> None:
-    """Look for lost jobs again and again; an outage of the queue or the database is waited out."""
-    while True:
-        try:
-            await anyio.to_thread.run_sync(reconcile, services.database, services.queue)
-        except JobkitError as error:
-            _logger.warning("lost jobs can't be looked for now: %s", error)
-        await asyncio.sleep(services.settings.reconcile_s)

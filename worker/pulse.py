@@ -12,7 +12,7 @@ from typing import Self
 
 from sqlalchemy.exc import SQLAlchemyError
 
-from jobkit.errors import StaleAttemptError
+from jobkit.errors import DatabaseUnavailableError, StaleAttemptError
 from worker.failures import StopReason
 from worker.progress import Progress
 
@@ -29,7 +29,7 @@ class Vitals:
     Attributes
     ----------
     renew : callable
-        Renews the lease; raises StaleAttemptError.
+        Renews the lease, given the most memory that was seen, in MiB; raises StaleAttemptError.
     is_canceled : callable
         Reads whether somebody asked for the end.
     report : callable
@@ -38,7 +38,7 @@ class Vitals:
         Time between two renewals, and how long one lasts.
     """
 
-    renew: Callable[[], object]
+    renew: Callable[[int], object]
     is_canceled: Callable[[], bool]
     report: Callable[[str, float], None]
     heartbeat_s: float
@@ -52,6 +52,7 @@ class Pulse:
         self._vitals = vitals
         self._progress = Progress()
         self._written = ("", 0.0)
+        self._peak_mb = 0
         self._ended = threading.Event()
         self._renewed_at = time.monotonic()
         self._thread = threading.Thread(target=self._beat, name="pulse", daemon=True)
@@ -60,6 +61,10 @@ class Pulse:
     def reach(self, stage: str, fraction: float) -> None:
         """Take note of progress; it is written with the next beat."""
         self._progress.reach(stage, fraction)
+
+    def note_memory(self, memory_mb: float) -> None:
+        """Take note of the engine's memory, in MiB; a new peak goes out with the next heartbeat."""
+        self._peak_mb = max(self._peak_mb, int(memory_mb))
 
     def __enter__(self) -> Self:
         """Start beating."""
@@ -78,14 +83,14 @@ class Pulse:
             except StaleAttemptError as error:
                 _log.warning("the attempt was taken away: %s", error)
                 self.stop_reason = StopReason.LOST
-            except SQLAlchemyError:
-                _log.warning("a heartbeat failed", exc_info=True)
+            except (DatabaseUnavailableError, SQLAlchemyError) as error:
+                _log.warning("a heartbeat failed: %s", error)
                 if time.monotonic() - self._renewed_at > self._vitals.lease_s:
                     self.stop_reason = StopReason.LOST
 
     def _keep_alive(self) -> None:
         if time.monotonic() - self._renewed_at >= self._vitals.heartbeat_s:
-            self._vitals.renew()
+            self._vitals.renew(self._peak_mb)
             self._renewed_at = time.monotonic()
         if self._vitals.is_canceled():
             self.stop_reason = StopReason.CANCELED

@@ -6,9 +6,15 @@ nothing left of it.
 
 import logging
 import time
+from collections.abc import Callable
 
 from jobkit.attempts import StartedAttempt
-from jobkit.errors import QueueUnavailableError, StaleAttemptError
+from jobkit.errors import (
+    DatabaseUnavailableError,
+    QueueUnavailableError,
+    StaleAttemptError,
+    StoreUnavailableError,
+)
 from jobkit.reconcile import submit_job
 from jobkit.schema import JobError, JobResult, JobState
 from worker.context import Context
@@ -23,6 +29,11 @@ from worker.watch import Observer, run_engine
 
 # A repair that is nearly done may finish when its worker is asked to stop; the others are handed back.
 _DRAIN_GRACE_S = 2.0
+# A full disk or a store that is away comes back by itself or by somebody's hand; asking every moment helps neither.
+_OUTAGE_DELAY_S = 10.0
+# How long an ended attempt waits for the database to take its result.
+_PATIENCE_S = 120.0
+_PAUSE_S = 1.0
 _DRAINED = JobError(code="worker_drained", message="the worker was stopped in the middle of the job", retryable=True)
 
 _log = logging.getLogger("quadpatch.worker.repairs")
@@ -32,18 +43,39 @@ def repair(context: Context, started: StartedAttempt) -> None:
     """Work on a started attempt and settle it."""
     outcome = outcome_of(lambda: _run(context, started), f"job {started.attempt.job_id}")
     if not isinstance(outcome, JobResult):
-        drop_result(started.attempt, context.store)
+        _drop(context, started)
     try:
-        state = _settle(context, started, outcome)
+        state = _patiently(lambda: _settle(context, started, outcome))
     except StaleAttemptError as error:
         _log.warning("the attempt may write no more: %s", error)
-        drop_result(started.attempt, context.store)
+        _drop(context, started)
         return
     if isinstance(outcome, JobResult) and not state.has_result:
-        drop_result(started.attempt, context.store)
+        _drop(context, started)
     _log.info("job %s, attempt %d: %s", started.attempt.job_id, started.attempt.number, state.value)
-    if state == JobState.QUEUED:
+    if state == JobState.QUEUED and not (isinstance(outcome, Failure) and outcome.is_outside):
         _resubmit(context, started)
+
+
+def _patiently(settle: Callable[[], JobState]) -> JobState:
+    """Settle, and wait for a database that is away: work that is done is not to be done again for that."""
+    deadline = time.monotonic() + _PATIENCE_S
+    while True:
+        try:
+            return settle()
+        except DatabaseUnavailableError as error:
+            if time.monotonic() > deadline:
+                raise
+            _log.warning("the attempt waits to be settled: %s", error)
+            time.sleep(_PAUSE_S)
+
+
+def _drop(context: Context, started: StartedAttempt) -> None:
+    """Remove the files of an attempt that published nothing; what a store that is away keeps is swept up later."""
+    try:
+        drop_result(started.attempt, context.store)
+    except (StoreUnavailableError, OSError) as error:
+        _log.warning("files of %s are left to the sweep: %s", started.attempt, error)
 
 
 def _run(context: Context, started: StartedAttempt) -> JobResult:
@@ -58,7 +90,7 @@ def _work(context: Context, started: StartedAttempt, pulse: Pulse) -> JobResult:
     settings = context.settings
     limits = EngineLimits(settings.job_time_limit_s, settings.job_memory_limit_mb, n_threads=context.n_threads)
     request = repair_request(job.spec, source, model, limits)
-    observer = Observer(pulse.reach, _StopRule(context, started, pulse))
+    observer = Observer(pulse.reach, _StopRule(context, pulse), pulse.note_memory)
     with folder_with_mesh(context, source) as folder:
         run_engine(context.nursery, request, folder, observer)
         return store_result(folder, request, started.attempt, context.store, time.monotonic() - began)
@@ -67,17 +99,15 @@ def _work(context: Context, started: StartedAttempt, pulse: Pulse) -> JobResult:
 class _StopRule:
     """Tells the watch whether to end the engine."""
 
-    def __init__(self, context: Context, started: StartedAttempt, pulse: Pulse) -> None:
+    def __init__(self, context: Context, pulse: Pulse) -> None:
         self._draining = context.draining
         self._pulse = pulse
-        # Handing back the last attempt would fail the job: better to finish it if there is time.
-        self._may_hand_back = started.attempt.number < started.job.max_attempts
         self._drained_at: float | None = None
 
     def __call__(self) -> StopReason | None:
         if self._pulse.stop_reason is not None:
             return self._pulse.stop_reason
-        if not self._draining.is_set() or not self._may_hand_back:
+        if not self._draining.is_set():
             return None
         now = time.monotonic()
         self._drained_at = self._drained_at or now
@@ -87,7 +117,7 @@ class _StopRule:
 def _vitals(context: Context, started: StartedAttempt) -> Vitals:
     attempts, jobs, attempt, settings = context.attempts, context.jobs, started.attempt, context.settings
     return Vitals(
-        renew=lambda: attempts.heartbeat(attempt, settings.lease_s),
+        renew=lambda memory_mb: attempts.heartbeat(attempt, settings.lease_s, memory_mb),
         is_canceled=lambda: jobs.get(attempt.job_id).state == JobState.CANCELING,
         report=lambda stage, percent: attempts.report_progress(attempt, stage, percent),
         heartbeat_s=settings.heartbeat_s,
@@ -103,9 +133,11 @@ def _settle(context: Context, started: StartedAttempt, outcome: JobResult | Fail
         error = JobError(
             code=outcome.code, message=outcome.message, stage=outcome.stage or None, retryable=outcome.retryable
         )
+        if outcome.is_outside:
+            return attempts.hand_back(attempt, error, _OUTAGE_DELAY_S)
         return attempts.requeue(attempt, error) if outcome.retryable else attempts.fail(attempt, error)
     if outcome is StopReason.DRAINED:
-        return attempts.requeue(attempt, _DRAINED)
+        return attempts.hand_back(attempt, _DRAINED)
     if outcome is StopReason.LOST:
         raise StaleAttemptError(f"attempt {attempt.number} of job {attempt.job_id} lost its lease")
     attempts.acknowledge_cancel(attempt)

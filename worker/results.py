@@ -4,7 +4,7 @@ import json
 from pathlib import Path
 from typing import Any, Literal
 
-from jobkit.attempts import Attempt
+from jobkit.endings import Attempt
 from jobkit.schema import HoleCounts, JobResult, ResultFile
 from jobkit.store import ObjectStore, result_key
 from worker.request import PREVIEW_NAME, REPORT_NAME, EngineRequest

@@ -24,6 +24,7 @@ _CHUNK_BYTES = 65536
 # A report is some hundred bytes; a child that sends endless lines is out of its mind.
 _LINE_LIMIT_BYTES = 1 << 20
 _LOG_TAIL_BYTES = 8000
+_FULL_MEMORY = 0.9
 # The child closes its pipe in its last breath; the kernel then frees its memory, which takes a while for gigabytes.
 _EXIT_TIMEOUT_S = 30.0
 
@@ -40,10 +41,13 @@ class Observer:
         Called with the stage and the done fraction of that stage.
     stop_reason : callable
         Asked ten times a second whether to end the engine, and why.
+    on_memory : callable
+        Called ten times a second with the engine's resident memory, in MiB.
     """
 
     on_progress: Callable[[str, float], None]
     stop_reason: Callable[[], StopReason | None]
+    on_memory: Callable[[float], None] = lambda _: None
 
 
 def run_engine(nursery: Nursery, request: EngineRequest, folder: Path, observer: Observer) -> None:
@@ -72,7 +76,7 @@ def run_engine(nursery: Nursery, request: EngineRequest, folder: Path, observer:
     if watch.failure is not None:
         raise EngineFailedError(watch.failure)
     if not watch.is_done:
-        raise EngineFailedError(_diagnose(status, watch.stage, request.limits, folder / LOG_NAME))
+        raise EngineFailedError(_diagnose(status, watch, request.limits, folder / LOG_NAME))
 
 
 class _Watch:
@@ -86,6 +90,7 @@ class _Watch:
         self.stage: str | None = None
         self.failure: Failure | None = None
         self.is_done = False
+        self.peak_mb = 0.0
 
     def listen(self) -> None:
         """Read reports until the child hangs up or has to be ended."""
@@ -139,7 +144,11 @@ class _Watch:
     def _keep_limits(self) -> None:
         if time.monotonic() > self._deadline:
             self.failure = over_time(self._limits.time_s, self.stage)
-        elif _resident_mb(self._child.pid) > self._limits.memory_mb:
+            return
+        resident_mb = _resident_mb(self._child.pid)
+        self.peak_mb = max(self.peak_mb, resident_mb)
+        self._observer.on_memory(resident_mb)
+        if resident_mb > self._limits.memory_mb:
             self.failure = over_memory(self._limits.memory_mb, self.stage)
 
 
@@ -150,10 +159,14 @@ def _resident_mb(pid: int) -> float:
         return 0.0  # gone already; the pipe will tell
 
 
-def _diagnose(status: int | None, stage: str | None, limits: EngineLimits, log: Path) -> Failure:
+def _diagnose(status: int | None, watch: _Watch, limits: EngineLimits, log: Path) -> Failure:
     """Tell why a child ended without a word."""
+    stage = watch.stage
     # Native code that is refused memory throws, and a throw that nobody catches ends in SIGABRT.
     if b"bad_alloc" in _tail(log):
+        return over_memory(limits.memory_mb, stage)
+    # The kernel ends who fills the machine or the container; one far below its limit was ended for others' sake.
+    if status == -signal.SIGKILL and watch.peak_mb > _FULL_MEMORY * limits.memory_mb:
         return over_memory(limits.memory_mb, stage)
     if status == -signal.SIGXCPU:
         return over_time(limits.time_s, stage)

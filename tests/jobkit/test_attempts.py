@@ -8,16 +8,21 @@ from datetime import timedelta
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from sqlalchemy import update
 
-from jobkit.attempts import Attempt, Attempts
+from jobkit.attempts import Attempts
 from jobkit.clock import utc_now
 from jobkit.database import Database
+from jobkit.endings import Attempt
 from jobkit.errors import JobFinishedError, JobNotFoundError, StaleAttemptError
 from jobkit.jobs import Jobs, NewJob
+from jobkit.overdue import TimeLimits, end_overdue
 from jobkit.schema import TRANSITIONS, Job, JobError, JobResult, JobState
+from jobkit.tables import JobRow
 
 LOST = JobError(code="engine_crashed", message="the engine died", stage="fill", retryable=True)
 RESULT = JobResult(format="ply")
+LIMITS = TimeLimits(queue_s=1e6, total_s=1e6, memory_mb=1000)
 
 
 def test_starting_raises_the_attempt_and_leases_the_job(database: Database, job: Job) -> None:
@@ -129,27 +134,49 @@ def test_whatever_ends_an_attempt_after_a_cancel_ends_in_canceled(database: Data
     assert ended.result is None
 
 
-def test_an_expired_lease_goes_back_and_a_renewed_one_stays(database: Database, job: Job, new_job: NewJob) -> None:
+def test_an_attempt_that_is_handed_back_does_not_count(database: Database, job: Job) -> None:
+    """Stopped workers and outages may come as often as they like; the job's own attempts are not used up."""
     attempts = Attempts(database)
-    other = Jobs(database).create(new_job)[0]
-    lost = attempts.start(job.id, "w1", 30).attempt
-    kept = attempts.start(other.id, "w2", 30).attempt
-    later = utc_now() + timedelta(seconds=40)
-    attempts.heartbeat(kept, 60)
-    assert attempts.take_back_expired(later) == [(job.id, JobState.QUEUED)]
-    assert Jobs(database).get(other.id).state == JobState.RUNNING
-    with pytest.raises(StaleAttemptError):
-        attempts.heartbeat(lost, 30)
+    for number in range(1, 6):
+        started = attempts.start(job.id, "w", 30)
+        assert (started.attempt.number, started.is_last) == (number, False)
+        assert attempts.hand_back(started.attempt, LOST) == JobState.QUEUED
+    assert attempts.requeue(attempts.start(job.id, "w", 30).attempt, LOST) == JobState.QUEUED
+    last = attempts.start(job.id, "w", 30)
+    assert last.is_last
+    assert attempts.requeue(last.attempt, LOST) == JobState.FAILED
 
 
-def test_a_lost_worker_that_was_to_cancel_leaves_a_canceled_job(database: Database, job: Job) -> None:
+def test_a_job_that_waits_out_an_outage_is_not_started_before_its_time(database: Database, job: Job) -> None:
     attempts = Attempts(database)
-    attempts.start(job.id, "w", 30)
-    Jobs(database).request_cancel(job.id)
-    assert attempts.take_back_expired(utc_now() + timedelta(seconds=31)) == [(job.id, JobState.CANCELED)]
+    attempts.hand_back(attempts.start(job.id, "w", 30).attempt, LOST, delay_s=3600)
+    with pytest.raises(StaleAttemptError, match="now"):
+        attempts.start(job.id, "w", 30)
+    with database.write() as session:
+        session.execute(update(JobRow).values(not_before=utc_now() - timedelta(seconds=1)))
+    assert attempts.start(job.id, "w", 30).attempt.number == 2
 
 
-STEPS = st.lists(st.sampled_from(["start", "progress", "publish", "fail", "requeue", "cancel", "expire"]), max_size=14)
+@settings(max_examples=20, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(endings=st.lists(st.sampled_from(["hand_back", "requeue"]), max_size=10))
+def test_attempts_that_count_are_never_more_than_allowed(
+    database: Database, new_job: NewJob, endings: list[str]
+) -> None:
+    attempts, jobs = Attempts(database), Jobs(database)
+    job = jobs.create(new_job)[0]
+    counted = 0
+    for ending in endings:
+        attempt = attempts.start(job.id, "w", 30).attempt
+        state = getattr(attempts, ending)(attempt, LOST)
+        counted += ending == "requeue"
+        assert state == (JobState.FAILED if counted == job.max_attempts else JobState.QUEUED)
+        if state.is_terminal:
+            break
+
+
+STEPS = st.lists(
+    st.sampled_from(["start", "progress", "publish", "fail", "requeue", "hand_back", "cancel", "expire"]), max_size=14
+)
 
 
 @settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
@@ -170,7 +197,8 @@ def test_no_order_of_calls_leaves_the_drawn_life_of_a_job(
             "fail": functools.partial(attempts.fail, attempt, LOST),
             "requeue": functools.partial(attempts.requeue, attempt, LOST),
             "cancel": lambda: jobs.request_cancel(job_id),
-            "expire": lambda: attempts.take_back_expired(utc_now() + timedelta(seconds=60)),
+            "hand_back": functools.partial(attempts.hand_back, attempt, LOST),
+            "expire": lambda: end_overdue(database, LIMITS, utc_now() + timedelta(seconds=60)),
         }
         with contextlib.suppress(StaleAttemptError, JobFinishedError):
             calls[step]()

@@ -12,10 +12,13 @@ from jobkit.database import Database
 from jobkit.errors import QueueUnavailableError
 from jobkit.jobs import Jobs
 from jobkit.meshes import Meshes
+from jobkit.overdue import TimeLimits
 from jobkit.queue import INSPECT_MESH, RUN_JOB, TaskQueue, job_entry, mesh_entry
 from jobkit.reconcile import GRACE_S, MAX_ANALYSES, reconcile, submit_analysis, submit_job
 from jobkit.schema import Job, JobState, Mesh, MeshState
 from jobkit.settings import Settings
+
+LIMITS = TimeLimits(queue_s=1e6, total_s=1e6, memory_mb=1000)
 
 
 @pytest.fixture
@@ -53,7 +56,7 @@ def test_a_queue_that_lost_everything_is_filled_again(
     submit_job(database, queue, job.id, job.attempt)
     submit_analysis(database, queue, mesh.id)
     rq_queue.empty()
-    found = reconcile(database, queue, utc_now() + timedelta(seconds=GRACE_S + 1))
+    found = reconcile(database, queue, LIMITS, utc_now() + timedelta(seconds=GRACE_S + 1))
     assert (found.enqueued_jobs, found.enqueued_meshes) == (1, 1)
     assert queue.waiting() == {job_entry(job.id, 1), mesh_entry(mesh.id, 1)}
 
@@ -61,9 +64,9 @@ def test_a_queue_that_lost_everything_is_filled_again(
 def test_what_waits_in_the_queue_is_not_put_there_twice(
     database: Database, queue: TaskQueue, rq_queue: Queue, job: Job, mesh: Mesh
 ) -> None:
-    reconcile(database, queue)
+    reconcile(database, queue, LIMITS)
     for _ in range(2):
-        found = reconcile(database, queue, utc_now() + timedelta(seconds=GRACE_S + 1))
+        found = reconcile(database, queue, LIMITS, utc_now() + timedelta(seconds=GRACE_S + 1))
         assert (found.enqueued_jobs, found.enqueued_meshes) == (0, 0)
     assert len(rq_queue) == 2
 
@@ -73,21 +76,21 @@ def test_what_was_just_taken_out_is_left_alone_for_a_moment(
 ) -> None:
     submit_job(database, queue, job.id, job.attempt)
     rq_queue.empty()
-    assert reconcile(database, queue).enqueued_jobs == 0
+    assert reconcile(database, queue, LIMITS).enqueued_jobs == 0
 
 
 def test_an_attempt_whose_worker_went_silent_is_started_again(database: Database, queue: TaskQueue, job: Job) -> None:
     attempts = Attempts(database)
     attempts.start(job.id, "w", 5)
-    found = reconcile(database, queue, utc_now() + timedelta(seconds=6))
-    assert (found.expired, found.enqueued_jobs) == (1, 1)
+    found = reconcile(database, queue, LIMITS, utc_now() + timedelta(seconds=6))
+    assert (found.ended, found.enqueued_jobs) == (1, 1)
     assert job_entry(job.id, 2) in queue.waiting()
     assert attempts.start(job.id, "w", 5).attempt.number == 2
 
 
 def test_the_row_stays_queued_when_the_queue_is_away(database: Database, job: Job) -> None:
     away = TaskQueue("redis://127.0.0.1:1/0", "none", 60)
-    for call in (lambda: submit_job(database, away, job.id, 0), lambda: reconcile(database, away), away.ping):
+    for call in (lambda: submit_job(database, away, job.id, 0), lambda: reconcile(database, away, LIMITS), away.ping):
         with pytest.raises(QueueUnavailableError):
             call()
     assert Jobs(database).get(job.id).state == JobState.QUEUED
@@ -99,7 +102,7 @@ def test_a_finished_or_canceled_job_never_comes_back(
 ) -> None:
     Jobs(database).request_cancel(job.id)
     later = utc_now() + timedelta(seconds=GRACE_S + 1)
-    assert reconcile(database, queue, later).enqueued_jobs == 0
+    assert reconcile(database, queue, LIMITS, later).enqueued_jobs == 0
 
 
 def test_an_analysis_that_kills_its_worker_is_given_up(database: Database, queue: TaskQueue, mesh: Mesh) -> None:
@@ -109,7 +112,7 @@ def test_an_analysis_that_kills_its_worker_is_given_up(database: Database, queue
     for number in range(1, MAX_ANALYSES + 1):
         analysis = meshes.start_analysis(mesh.id, "w", -1.0)
         assert analysis.attempt == number
-    reconcile(database, queue, now + timedelta(seconds=5))
+    reconcile(database, queue, LIMITS, now + timedelta(seconds=5))
     rejected = meshes.get(mesh.id)
     assert rejected.state == MeshState.REJECTED
     assert rejected.problem is not None

@@ -53,7 +53,7 @@ def test_a_folder_that_can_not_be_made_is_an_error(tmp_path: Path) -> None:
 def test_a_box_is_made_of_valkey_api_and_workers_that_share_a_folder(tmp_path: Path) -> None:
     box = Box(tmp_path, "127.0.0.1", 8000, 3)
     valkey, *rest = programs(box)
-    assert [program.name for program in rest] == ["api", "worker-1", "worker-2", "worker-3"]
+    assert [program.name for program in rest] == ["dispatcher", "api", "worker-1", "worker-2", "worker-3"]
     assert {program.environment["QUADPATCH_DATA_DIR"] for program in rest} == {str(tmp_path)}
     assert {program.environment["QUADPATCH_REDIS_URL"] for program in rest} == {f"unix://{tmp_path}/valkey/valkey.sock"}
     assert valkey.name == "valkey"

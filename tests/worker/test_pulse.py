@@ -4,7 +4,7 @@ from collections.abc import Callable
 import pytest
 from sqlalchemy.exc import OperationalError
 
-from jobkit.errors import StaleAttemptError
+from jobkit.errors import DatabaseUnavailableError, StaleAttemptError
 from worker.failures import StopReason
 from worker.pulse import Pulse, Vitals
 
@@ -16,11 +16,13 @@ class Patient:
         self.renewal = renewal
         self.cancel = is_canceled
         self.renewals = 0
+        self.memory_mb = 0
         self.reports: list[tuple[str, float]] = []
         self.has_beaten = threading.Event()
 
-    def renew(self) -> None:
+    def renew(self, memory_mb: int) -> None:
         self.renewals += 1
+        self.memory_mb = memory_mb
         if self.renewals >= 2:
             self.has_beaten.set()
         if self.renewal is not None:
@@ -48,6 +50,15 @@ def test_the_lease_is_renewed_and_progress_written_once() -> None:
     assert patient.reports == [("fill", 16.0)]
 
 
+def test_the_most_memory_that_was_seen_goes_out_with_the_heartbeat() -> None:
+    patient = Patient()
+    with Pulse(patient.vitals()) as pulse:
+        for memory_mb in (100.0, 250.5, 80.0):
+            pulse.note_memory(memory_mb)
+        assert patient.has_beaten.wait(10)
+    assert patient.memory_mb == 250
+
+
 def test_a_cancel_flag_is_brought_back() -> None:
     with Pulse(Patient(is_canceled=True).vitals()) as pulse:
         assert wait_for(lambda: pulse.stop_reason) is StopReason.CANCELED
@@ -59,10 +70,13 @@ def test_an_attempt_that_was_taken_away_is_lost() -> None:
 
 
 @pytest.mark.parametrize(("lease_s", "reason"), [(0.0, StopReason.LOST), (3600.0, None)])
+@pytest.mark.parametrize(
+    "error", [DatabaseUnavailableError("away"), OperationalError("UPDATE", {}, Exception("disk I/O error"))]
+)
 def test_a_database_that_is_away_costs_the_attempt_only_after_the_lease(
-    lease_s: float, reason: StopReason | None
+    error: Exception, lease_s: float, reason: StopReason | None
 ) -> None:
-    patient = Patient(renewal=OperationalError("UPDATE", {}, Exception("disk I/O error")))
+    patient = Patient(renewal=error)
     with Pulse(patient.vitals(lease_s)) as pulse:
         if reason is None:
             assert patient.has_beaten.wait(10)

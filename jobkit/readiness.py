@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
-READY_FILE_VARIABLE = "WORKER_READY_FILE"
+READY_FILE_VARIABLE = "READY_FILE"
 
 
 @contextmanager

@@ -1,7 +1,7 @@
 import os
 from pathlib import Path
 
-from worker.readiness import READY_FILE_VARIABLE, ready_file
+from jobkit.readiness import READY_FILE_VARIABLE, ready_file
 
 
 def test_the_file_stands_while_the_worker_is_ready(tmp_path: Path) -> None:

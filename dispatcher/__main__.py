@@ -1,0 +1,63 @@
+"""`python -m dispatcher`: keep every accepted job going until SIGTERM.
+
+Any number may run, on any host; one leads, the others stand by. READY_FILE names a file that exists while it runs.
+"""
+
+import logging
+import os
+import secrets
+import signal
+import socket
+import sys
+from contextlib import ExitStack, closing
+
+from dispatcher.duties import duties_of
+from dispatcher.loop import Dispatch
+from jobkit.database import Database
+from jobkit.errors import SettingsError
+from jobkit.leadership import Leadership
+from jobkit.queue import TaskQueue
+from jobkit.readiness import ready_file
+from jobkit.settings import Settings, load_settings
+from jobkit.store import ObjectStore, open_store
+
+# In the table of leaders.
+LEADER_NAME = "dispatcher"
+_EXIT_SETTINGS = 2
+_RENEWALS_PER_LEASE = 3
+
+
+def main() -> int:
+    """Run one dispatcher; returns the exit code."""
+    try:
+        settings = load_settings()
+        store = open_store(settings.effective_object_store_url)
+    except SettingsError as error:
+        sys.stderr.write(f"dispatcher: {error}\n")
+        return _EXIT_SETTINGS
+    logging.basicConfig(level=settings.log_level.upper(), format="%(asctime)s %(levelname)s %(name)s: %(message)s")
+    _run(settings, store)
+    return 0
+
+
+def _run(settings: Settings, store: ObjectStore) -> None:
+    with ExitStack() as stack:
+        database = stack.enter_context(closing(Database(settings.effective_database_url)))
+        database.migrate()
+        redis_url = settings.redis_url.get_secret_value()
+        queue = stack.enter_context(closing(TaskQueue(redis_url, settings.queue_name, settings.job_time_limit_s)))
+        leadership = Leadership(database, LEADER_NAME, _own_name(), settings.leader_lease_s)
+        duties = duties_of(settings, database, store, queue)
+        dispatch = Dispatch(leadership, settings.leader_lease_s / _RENEWALS_PER_LEASE, duties)
+        for number in (signal.SIGTERM, signal.SIGINT):
+            signal.signal(number, lambda *_: dispatch.stop())
+        stack.enter_context(ready_file())
+        dispatch.run()
+
+
+def _own_name() -> str:
+    return f"{socket.gethostname()}-{os.getpid()}-{secrets.token_hex(3)}"
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,112 @@
+"""Duties, each in a thread of its own, done by whoever leads.
+
+A slow duty, such as a webhook that does not answer, holds up no other one. Whatever goes wrong in a duty is logged, and
+the duty is done again at its next turn.
+"""
+
+import logging
+import threading
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from jobkit.errors import JobkitError
+from jobkit.leadership import Leadership
+
+_log = logging.getLogger("quadpatch.dispatcher")
+
+
+@dataclass(frozen=True)
+class Duty:
+    """Something to do again and again.
+
+    Attributes
+    ----------
+    name : str
+        For the log.
+    interval_s : float
+        Seconds between two turns.
+    work : callable
+        Does what is due, in a way that does no harm if another dispatcher does it at the same moment; returns words
+        about it for the log, empty where nothing was due. Given a callable that says whether to break off.
+    """
+
+    name: str
+    interval_s: float
+    work: Callable[[Callable[[], bool]], str]
+
+
+class Dispatch:
+    """Leads or stands by, until it is told to stop.
+
+    Parameters
+    ----------
+    leadership : Leadership
+    renew_s : float
+        Seconds between two renewals of the lead.
+    duties : sequence of Duty
+    """
+
+    def __init__(self, leadership: Leadership, renew_s: float, duties: Sequence[Duty]) -> None:
+        self._leadership = leadership
+        self._renew_s = renew_s
+        self._duties = duties
+        self._leads = threading.Event()
+        self._stopped = threading.Event()
+
+    def stop(self) -> None:
+        """Come to an end soon."""
+        self._stopped.set()
+
+    def run(self) -> None:
+        """Work until stopped, then let somebody else lead."""
+        threads = [threading.Thread(target=self._keep_doing, args=(duty,), name=duty.name) for duty in self._duties]
+        for thread in threads:
+            thread.start()
+        try:
+            self._keep_leading()
+        finally:
+            self._stopped.set()
+            for thread in threads:
+                thread.join()
+            self._resign()
+
+    def _keep_leading(self) -> None:
+        while not self._stopped.is_set():
+            try:
+                leads = self._leadership.lead()
+            except JobkitError as error:
+                # The others can't reach the database either, or will lead once the lease has run out.
+                _log.warning("the lead could not be taken or renewed: %s", error)
+                leads = False
+            if leads != self._leads.is_set():
+                _log.info("leads now" if leads else "stands by")
+            (self._leads.set if leads else self._leads.clear)()
+            self._stopped.wait(self._renew_s)
+
+    def _keep_doing(self, duty: Duty) -> None:
+        while not self._stopped.is_set():
+            # Wakes at once when the lead comes, and often enough to see the end.
+            if self._leads.wait(timeout=min(duty.interval_s, 1.0)):
+                _do(duty, self._is_over)
+                self._stopped.wait(duty.interval_s)
+
+    def _is_over(self) -> bool:
+        return self._stopped.is_set() or not self._leads.is_set()
+
+    def _resign(self) -> None:
+        try:
+            self._leadership.resign()
+        except JobkitError as error:
+            _log.warning("the lead was not handed on: %s", error)
+
+
+def _do(duty: Duty, is_over: Callable[[], bool]) -> None:
+    try:
+        words = duty.work(is_over)
+    except JobkitError as error:
+        _log.warning("%s: %s", duty.name, error)
+    except Exception:  # noqa: BLE001 - the outermost frame of a thread that has to live for years
+        _log.exception("%s failed", duty.name)
+    else:
+        if words:
+            _log.info("%s: %s", duty.name, words)

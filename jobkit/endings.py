@@ -1,0 +1,106 @@
+"""How attempts end: one fenced transaction that moves the job, closes the attempt and logs both."""
+
+from dataclasses import dataclass, field
+from datetime import datetime, timedelta
+from typing import Any
+
+from sqlalchemy import update
+from sqlalchemy.orm import Session
+
+from jobkit.errors import StaleAttemptError
+from jobkit.schema import EventType, JobError, JobResult, JobState
+from jobkit.tables import AttemptRow, JobRow
+from jobkit.transitions import Move, make_move
+
+
+@dataclass(frozen=True)
+class Attempt:
+    """The right to write to a job, until a later attempt starts."""
+
+    job_id: str
+    number: int
+
+
+@dataclass(frozen=True)
+class Ending:
+    """How an attempt ends: the job's next state if nobody asked for its end, and what is written then."""
+
+    target: JobState
+    event: EventType
+    outcome: str
+    values: dict[str, Any] = field(default_factory=dict)
+    data: dict[str, Any] = field(default_factory=dict)
+    error: JobError | None = None
+
+
+def success(result: JobResult) -> Ending:
+    """Publish a result."""
+    target = JobState.SUCCEEDED_WITH_WARNINGS if result.warnings else JobState.SUCCEEDED
+    values = {"result": result.model_dump(mode="json"), "percent": 100.0}
+    return Ending(target, "succeeded", target.value, values)
+
+
+def failure(error: JobError) -> Ending:
+    """Give the job up."""
+    wire = error.model_dump(mode="json")
+    return Ending(JobState.FAILED, "failed", JobState.FAILED.value, {"error": wire}, {"error": wire}, error)
+
+
+def another_try(error: JobError) -> Ending:
+    """Let another attempt start at once."""
+    return _return_to_queue(error, {"not_before": None}, {})
+
+
+def forgiven_try(error: JobError, now: datetime, delay_s: float) -> Ending:
+    """Let another attempt start after some seconds, and don't count this one: what ended it lies outside of the job."""
+    not_before = now + timedelta(seconds=delay_s) if delay_s else None
+    values = {"forgiven": JobRow.forgiven + 1, "not_before": not_before}
+    return _return_to_queue(error, values, {"forgiven": True, "delay_s": delay_s})
+
+
+def counts_out(row: JobRow) -> bool:
+    """Tell whether the attempt at work is the last that the job has."""
+    return row.attempt - row.forgiven >= row.max_attempts
+
+
+def end_attempt(session: Session, attempt: Attempt, ending: Ending, now: datetime) -> JobState:
+    """End an attempt; return the job's state afterwards, which is `canceled` where somebody asked for that in time.
+
+    Raises
+    ------
+    StaleAttemptError
+        If the attempt is not the latest any more, or the job has ended.
+    """
+    move = Move(JobState.RUNNING, ending.target, ending.event, ending.values, ending.data)
+    if make_move(session, attempt.job_id, move, now, JobRow.attempt == attempt.number):
+        _close(session, attempt, ending.outcome, now, ending.error)
+        return ending.target
+    cancel_attempt(session, attempt, now)
+    return JobState.CANCELED
+
+
+def cancel_attempt(session: Session, attempt: Attempt, now: datetime) -> None:
+    """End an attempt whose job is to be canceled; raise StaleAttemptError."""
+    move = Move(JobState.CANCELING, JobState.CANCELED, "canceled")
+    if not make_move(session, attempt.job_id, move, now, JobRow.attempt == attempt.number):
+        raise stale(attempt)
+    _close(session, attempt, JobState.CANCELED.value, now, None)
+
+
+def stale(attempt: Attempt) -> StaleAttemptError:
+    """Make the error of an attempt that may write no more."""
+    return StaleAttemptError(f"attempt {attempt.number} of job {attempt.job_id} may write no more")
+
+
+def _return_to_queue(error: JobError, values: dict[str, Any], data: dict[str, Any]) -> Ending:
+    values = {"stage": None, "percent": 0.0, "enqueued_at": None, **values}
+    data = {"error": error.model_dump(mode="json"), **data}
+    return Ending(JobState.QUEUED, "requeued", "requeued", values, data, error)
+
+
+def _close(session: Session, attempt: Attempt, outcome: str, now: datetime, error: JobError | None) -> None:
+    session.execute(
+        update(AttemptRow)
+        .where(AttemptRow.job_id == attempt.job_id, AttemptRow.number == attempt.number)
+        .values(outcome=outcome, finished_at=now, error=None if error is None else error.model_dump(mode="json"))
+    )

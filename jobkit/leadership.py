@@ -1,0 +1,87 @@
+"""One leader among many processes: a row with a lease, taken and renewed by one conditional update.
+
+Any number of dispatchers may run; the others stand by until the leader's lease runs out. A leader that was held up may
+believe in its lease for a moment too long, so what leaders do has to be harmless when it is done twice.
+"""
+
+from dataclasses import dataclass
+from datetime import datetime, timedelta
+
+from sqlalchemy import CursorResult, delete, select, update
+from sqlalchemy.exc import IntegrityError
+
+from jobkit.clock import shared_now
+from jobkit.database import Database
+from jobkit.tables import LeaderRow
+
+
+@dataclass(frozen=True)
+class Leader:
+    """Who leads, since when, and how many seconds the lease still lasts; negative where it has run out."""
+
+    holder: str
+    since: datetime
+    left_s: float
+
+
+class Leadership:
+    """A candidate for the lead.
+
+    Parameters
+    ----------
+    database : Database
+    name : str
+        Of what is led.
+    holder : str
+        Name of the candidate; no two may have the same.
+    lease_s : float
+        Seconds without a renewal until somebody else may lead.
+    """
+
+    def __init__(self, database: Database, name: str, holder: str, lease_s: float) -> None:
+        self._database = database
+        self._name = name
+        self._holder = holder
+        self._lease_s = lease_s
+
+    def lead(self) -> bool:
+        """Take the lead if nobody has it, or renew it; return whether this candidate leads now."""
+        with self._database.write() as session:
+            now = shared_now(session)
+            until = now + timedelta(seconds=self._lease_s)
+            mine = update(LeaderRow).where(LeaderRow.name == self._name, LeaderRow.holder == self._holder)
+            if _hits(session.execute(mine.values(until=until))):
+                return True
+            free = update(LeaderRow).where(LeaderRow.name == self._name, LeaderRow.until < now)
+            if _hits(session.execute(free.values(holder=self._holder, until=until, since=now))):
+                return True
+            if session.get(LeaderRow, self._name) is not None:
+                return False
+        return self._found(until, now)
+
+    def resign(self) -> None:
+        """Let somebody else lead at once; nothing happens where this candidate does not."""
+        with self._database.write() as session:
+            session.execute(delete(LeaderRow).where(LeaderRow.name == self._name, LeaderRow.holder == self._holder))
+
+    def _found(self, until: datetime, now: datetime) -> bool:
+        """Write the first row; of several who try at once the database lets one."""
+        try:
+            with self._database.write() as session:
+                session.add(LeaderRow(name=self._name, holder=self._holder, until=until, since=now))
+        except IntegrityError:
+            return False
+        return True
+
+
+def current_leader(database: Database, name: str) -> Leader | None:
+    """Return who led last; None where nobody ever did, or the last one resigned."""
+    with database.read() as session:
+        row = session.scalars(select(LeaderRow).where(LeaderRow.name == name)).one_or_none()
+        if row is None:
+            return None
+        return Leader(row.holder, row.since, (row.until - shared_now(session)).total_seconds())
+
+
+def _hits(result: object) -> bool:
+    return isinstance(result, CursorResult) and result.rowcount == 1

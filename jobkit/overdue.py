@@ -1,0 +1,121 @@
+"""Jobs whose time is over: leases that ran out, cancels that nobody acknowledged, limits that were passed.
+
+Everything here is a fenced step of its own, so two dispatchers that do it at the same moment do it once.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from datetime import datetime, timedelta
+from typing import Any
+
+from sqlalchemy import ColumnElement, select
+from sqlalchemy.orm import Session
+
+from jobkit.attempts import AT_WORK
+from jobkit.database import Database
+from jobkit.endings import Attempt, Ending, another_try, cancel_attempt, counts_out, end_attempt, failure
+from jobkit.errors import JobNotFoundError, StaleAttemptError
+from jobkit.jobs import existing_job
+from jobkit.schema import JobError, JobState
+from jobkit.tables import AttemptRow, JobRow
+from jobkit.transitions import Move, make_move
+
+# A worker that lives acknowledges a cancel within a second; after this long nobody waits for a dead one.
+CANCEL_PATIENCE_S = 2.0
+# A worker that was last seen this close to its memory limit and then fell silent was ended by the kernel.
+_FULL_MEMORY = 0.9
+# Of one look; the rest comes with the next.
+_MOST = 500
+
+
+@dataclass(frozen=True)
+class TimeLimits:
+    """How long a job may wait and last in all, in seconds, and the memory of one attempt, in MiB."""
+
+    queue_s: float
+    total_s: float
+    memory_mb: int
+
+
+def end_overdue(database: Database, limits: TimeLimits, now: datetime) -> int:
+    """Take back, cancel or fail every job whose time is over at `now`; return how many there were."""
+    waits = JobRow.state == JobState.QUEUED.value
+    works = JobRow.state == JobState.RUNNING.value
+    is_old = JobRow.created_at < now - timedelta(seconds=limits.total_s)
+    waited = waits & (JobRow.queued_at < now - timedelta(seconds=limits.queue_s))
+    silent = (JobRow.state == JobState.CANCELING.value) & (
+        JobRow.cancel_requested_at < now - timedelta(seconds=CANCEL_PATIENCE_S)
+    )
+    lost = JobRow.state.in_(AT_WORK) & (JobRow.lease_until < now)
+    steps: list[tuple[ColumnElement[bool], Callable[[Session, JobRow], None]]] = [
+        (silent, lambda session, row: cancel_attempt(session, _latest(row), now)),
+        (works & is_old, lambda session, row: _end(session, row, failure(_over_total(limits)), now)),
+        (waits & is_old, lambda session, row: _give_up(session, row, _over_total(limits), now)),
+        (waited, lambda session, row: _give_up(session, row, _over_queue(limits), now)),
+        (lost, lambda session, row: _end(session, row, _lost(session, row, limits), now)),
+    ]
+    return sum(_take(database, condition, step) for condition, step in steps)
+
+
+def _take(database: Database, condition: ColumnElement[bool], step: Callable[[Session, JobRow], None]) -> int:
+    """Take a step with every job that meets the condition, and still does when its turn comes."""
+    with database.read() as session:
+        ids = list(session.scalars(select(JobRow.id).where(condition).order_by(JobRow.id).limit(_MOST)))
+    taken = 0
+    for job_id in ids:
+        try:
+            with database.write() as session:
+                row = session.scalars(select(JobRow).where(JobRow.id == job_id, condition)).one_or_none()
+                if row is not None:
+                    step(session, row)
+                    taken += 1
+        except (StaleAttemptError, JobNotFoundError):
+            continue  # a heartbeat or an ending came in between
+    return taken
+
+
+def _lost(session: Session, row: JobRow, limits: TimeLimits) -> Ending:
+    """Tell from what was last seen of the attempt why it fell silent; the last one ends the job."""
+    is_last = counts_out(row)
+    peak_mb = session.scalars(
+        select(AttemptRow.peak_memory_mb).where(AttemptRow.job_id == row.id, AttemptRow.number == row.attempt)
+    ).one_or_none()
+    limit_mb = min(limits.memory_mb, _own_limit(row) or limits.memory_mb)
+    if peak_mb is not None and peak_mb >= _FULL_MEMORY * limit_mb:
+        message = f"the worker fell silent when the job used {peak_mb} of {limit_mb} MiB"
+        error = JobError(code="out_of_memory", message=message, stage=row.stage, retryable=not is_last)
+    else:
+        message = "the worker fell silent in the middle of the job"
+        error = JobError(code="worker_lost", message=message, stage=row.stage, retryable=not is_last)
+    return failure(error) if is_last else another_try(error)
+
+
+def _own_limit(row: JobRow) -> int | None:
+    limits: dict[str, Any] = row.spec.get("limits") or {}
+    return limits.get("memory_mb")
+
+
+def _end(session: Session, row: JobRow, ending: Ending, now: datetime) -> None:
+    end_attempt(session, _latest(row), ending, now)
+
+
+def _give_up(session: Session, row: JobRow, error: JobError, now: datetime) -> None:
+    wire = error.model_dump(mode="json")
+    move = Move(JobState.QUEUED, JobState.FAILED, "failed", {"error": wire}, {"error": wire})
+    if not make_move(session, row.id, move, now, JobRow.attempt == row.attempt):
+        existing_job(session, row.id)
+        raise StaleAttemptError(f"job {row.id} waits no more")
+
+
+def _latest(row: JobRow) -> Attempt:
+    return Attempt(row.id, row.attempt)
+
+
+def _over_queue(limits: TimeLimits) -> JobError:
+    message = f"no worker took the job within {limits.queue_s:g} s"
+    return JobError(code="queue_time_exceeded", message=message, retryable=True)
+
+
+def _over_total(limits: TimeLimits) -> JobError:
+    message = f"the job did not end within {limits.total_s:g} s of its acceptance"
+    return JobError(code="total_time_exceeded", message=message)

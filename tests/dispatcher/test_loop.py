@@ -1,0 +1,97 @@
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+from dispatcher.loop import Dispatch, Duty
+from jobkit.database import Database
+from jobkit.errors import QueueUnavailableError
+from jobkit.leadership import Leadership, current_leader
+
+NAME = "dispatcher"
+
+
+class Counter:
+    """A duty that counts its turns."""
+
+    def __init__(self, error: Exception | None = None) -> None:
+        self.turns = 0
+        self.enough = threading.Event()
+        self.error = error
+
+    def __call__(self, is_over: Callable[[], bool]) -> str:
+        assert not is_over()
+        self.turns += 1
+        if self.turns >= 3:
+            self.enough.set()
+        if self.error is not None:
+            raise self.error
+        return "done"
+
+
+@contextmanager
+def running(database: Database, holder: str, *duties: Duty) -> Iterator[Dispatch]:
+    dispatch = Dispatch(Leadership(database, NAME, holder, 0.6), 0.1, duties)
+    thread = threading.Thread(target=dispatch.run)
+    thread.start()
+    try:
+        yield dispatch
+    finally:
+        dispatch.stop()
+        thread.join(30)
+        assert not thread.is_alive()
+
+
+def test_a_leader_does_its_duties_again_and_again_whatever_goes_wrong_in_them(database: Database) -> None:
+    known, unforeseen, sound = Counter(QueueUnavailableError("away")), Counter(ValueError("bug")), Counter()
+    duties = [Duty(str(number), 0.01, work) for number, work in enumerate((known, unforeseen, sound))]
+    with running(database, "a", *duties):
+        assert all(counter.enough.wait(30) for counter in (known, unforeseen, sound))
+
+
+def test_a_slow_duty_holds_up_no_other(database: Database) -> None:
+    goes_on, quick = threading.Event(), Counter()
+
+    def slow(is_over: Callable[[], bool]) -> str:
+        goes_on.wait(30)
+        return ""
+
+    with running(database, "a", Duty("slow", 0.01, slow), Duty("quick", 0.01, quick)):
+        assert quick.enough.wait(30)
+        goes_on.set()
+
+
+def test_one_that_stands_by_does_nothing_until_the_leader_is_gone(database: Database) -> None:
+    first, second = Counter(), Counter()
+    with running(database, "a", Duty("x", 0.01, first)):
+        assert first.enough.wait(30)
+        with running(database, "b", Duty("x", 0.01, second)) as waiting:
+            turns = first.turns
+            first.enough.clear()
+            assert first.enough.wait(30)
+            assert first.turns > turns
+            assert second.turns == 0
+            assert waiting is not None
+    with running(database, "b", Duty("x", 0.01, second)):
+        assert second.enough.wait(30)
+
+
+def test_a_dispatcher_that_stops_lets_another_lead_at_once(database: Database) -> None:
+    with running(database, "a", Duty("x", 0.01, work := Counter())):
+        assert work.enough.wait(30)
+    assert current_leader(database, NAME) is None
+
+
+def test_a_duty_is_told_to_break_off_when_the_dispatcher_stops(database: Database) -> None:
+    began, broke_off = threading.Event(), threading.Event()
+
+    def long(is_over: Callable[[], bool]) -> str:
+        began.set()
+        while not is_over():
+            threading.Event().wait(0.01)
+        broke_off.set()
+        return ""
+
+    with running(database, "a", Duty("long", 0.01, long)) as dispatch:
+        assert began.wait(30)
+        dispatch.stop()
+        assert broke_off.wait(30)

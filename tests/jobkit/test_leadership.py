@@ -1,0 +1,61 @@
+import threading
+import time
+
+from jobkit.database import Database
+from jobkit.leadership import Leadership, current_leader
+
+
+def candidate(database: Database, holder: str, lease_s: float = 60.0) -> Leadership:
+    return Leadership(database, "dispatcher", holder, lease_s)
+
+
+def test_the_first_one_leads_and_the_second_stands_by(database: Database) -> None:
+    first, second = candidate(database, "a"), candidate(database, "b")
+    assert [first.lead(), second.lead(), first.lead(), second.lead()] == [True, False, True, False]
+    leader = current_leader(database, "dispatcher")
+    assert leader is not None
+    assert (leader.holder, leader.left_s > 50) == ("a", True)
+
+
+def test_nobody_leads_before_the_first_one_comes(database: Database) -> None:
+    assert current_leader(database, "dispatcher") is None
+
+
+def test_a_leader_that_resigns_is_followed_at_once(database: Database) -> None:
+    first, second = candidate(database, "a"), candidate(database, "b")
+    assert first.lead()
+    second.resign()
+    assert not second.lead()
+    first.resign()
+    assert current_leader(database, "dispatcher") is None
+    assert second.lead()
+
+
+def test_a_leader_that_falls_silent_is_followed_when_its_lease_runs_out(database: Database) -> None:
+    assert candidate(database, "a", 0.2).lead()
+    second = candidate(database, "b")
+    while not second.lead():
+        time.sleep(0.02)
+    assert not candidate(database, "a").lead()
+
+
+def test_different_things_have_different_leaders(database: Database) -> None:
+    assert candidate(database, "a").lead()
+    assert Leadership(database, "other", "b", 60).lead()
+
+
+def test_of_many_that_start_at_once_one_leads(database: Database) -> None:
+    barrier = threading.Barrier(8)
+    leading: list[str] = []
+
+    def stand(holder: str) -> None:
+        barrier.wait()
+        if candidate(database, holder).lead():
+            leading.append(holder)
+
+    threads = [threading.Thread(target=stand, args=(f"candidate-{number}",)) for number in range(8)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert len(leading) == 1
