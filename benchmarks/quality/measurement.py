@@ -15,7 +15,7 @@ from benchmarks.quality.results import REPAIRS, Results
 from quadpatch.mesh.distance import distance_to_mesh
 from quadpatch.model_file import shipped_model
 from quadpatch.options import RepairOptions
-from quadpatch.repair import SELF, SMOOTH, repair_file
+from quadpatch.repair import BASE_NETWORK, SELF, SELF_NETWORK, SMOOTH, repair_file
 from quadpatch.types import IntArray, Vertices
 
 
@@ -28,7 +28,7 @@ class Method:
     name : str
         For tables and file names.
     model : str
-        `smooth`, `self`, a shipped model, or a path.
+        `smooth`, `self`, `self-network`, a shipped model, or a path.
     options : dict
         As in a job; empty for the defaults.
     """
@@ -47,7 +47,9 @@ class Method:
         key = {"method": self.name, "options": json.dumps(self.options, sort_keys=True)}
         if self.model in (SMOOTH, SELF):
             return key
-        path = Path(self.model) if Path(self.model).is_file() else shipped_model(self.model)
+        # A network that is fitted to the mesh starts from one that ships.
+        name = BASE_NETWORK if self.model == SELF_NETWORK else self.model
+        path = Path(name) if Path(name).is_file() else shipped_model(name)
         return {**key, "model_sha256": file_sha256(path)}
 
 

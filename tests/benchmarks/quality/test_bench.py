@@ -3,6 +3,7 @@ from pathlib import Path
 import pytest
 
 from benchmarks.quality.bench import Bench, BenchError, Shape, named
+from benchmarks.quality.measurement import Method
 from tests.benchmarks.quality.small_bench import SHAPES, small_bench
 
 
@@ -37,3 +38,8 @@ def test_a_shape_is_punched_once_unless_its_truth_changes(tmp_path: Path) -> Non
     other = bench.case(Shape("hills", valleys.truth, {}), "0.1", tmp_path / "out")
     assert other.punched.stat().st_mtime_ns > first
     assert other.peers == {}
+
+
+def test_a_network_that_is_fitted_is_known_by_the_one_it_starts_from() -> None:
+    fitted, base = Method.of("self-network").key(), Method.of("general-residual").key()
+    assert fitted == {**base, "method": "self-network"}
