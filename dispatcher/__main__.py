@@ -3,7 +3,6 @@
 Any number may run, on any host; one leads, the others stand by. READY_FILE names a file that exists while it runs.
 """
 
-import logging
 import os
 import secrets
 import signal
@@ -15,14 +14,13 @@ from dispatcher.duties import duties_of
 from dispatcher.loop import Dispatch
 from jobkit.database import Database
 from jobkit.errors import SettingsError
-from jobkit.leadership import Leadership
+from jobkit.leadership import DISPATCHER, Leadership
+from jobkit.logs import set_up_logs
 from jobkit.queue import TaskQueue
 from jobkit.readiness import ready_file
 from jobkit.settings import Settings, load_settings
 from jobkit.store import ObjectStore, open_store
 
-# In the table of leaders.
-LEADER_NAME = "dispatcher"
 _EXIT_SETTINGS = 2
 _RENEWALS_PER_LEASE = 3
 
@@ -31,11 +29,11 @@ def main() -> int:
     """Run one dispatcher; returns the exit code."""
     try:
         settings = load_settings()
-        store = open_store(settings.effective_object_store_url)
+        store = open_store(settings.effective_object_store_url, settings.scratch_dir)
     except SettingsError as error:
         sys.stderr.write(f"dispatcher: {error}\n")
         return _EXIT_SETTINGS
-    logging.basicConfig(level=settings.log_level.upper(), format="%(asctime)s %(levelname)s %(name)s: %(message)s")
+    set_up_logs(settings)
     _run(settings, store)
     return 0
 
@@ -46,7 +44,7 @@ def _run(settings: Settings, store: ObjectStore) -> None:
         database.migrate()
         redis_url = settings.redis_url.get_secret_value()
         queue = stack.enter_context(closing(TaskQueue(redis_url, settings.queue_name, settings.job_time_limit_s)))
-        leadership = Leadership(database, LEADER_NAME, _own_name(), settings.leader_lease_s)
+        leadership = Leadership(database, DISPATCHER, _own_name(), settings.leader_lease_s)
         duties = duties_of(settings, database, store, queue)
         dispatch = Dispatch(leadership, settings.leader_lease_s / _RENEWALS_PER_LEASE, duties)
         for number in (signal.SIGTERM, signal.SIGINT):

@@ -26,8 +26,9 @@ from jobkit.endings import (
 )
 from jobkit.errors import StaleAttemptError
 from jobkit.events import append_event
-from jobkit.jobs import existing_job, to_job
+from jobkit.job_rows import existing_job, to_job
 from jobkit.schema import Job, JobError, JobResult, JobState
+from jobkit.stages import StageSeconds, add_stages
 from jobkit.tables import AttemptRow, JobRow
 from jobkit.transitions import Move, make_move, update_job
 
@@ -36,11 +37,16 @@ AT_WORK = (JobState.RUNNING.value, JobState.CANCELING.value)
 
 @dataclass(frozen=True)
 class StartedAttempt:
-    """An attempt, and the job as it was when it started; `is_last` where a failure of it ends the job."""
+    """An attempt, and the job as it was when it started; `is_last` where a failure of it ends the job.
+
+    `request_id` and `traceparent` name the request that made the job.
+    """
 
     attempt: Attempt
     job: Job
     is_last: bool
+    request_id: str | None = None
+    traceparent: str | None = None
 
 
 class Attempts:
@@ -85,7 +91,9 @@ class Attempts:
                 raise StaleAttemptError(f"job {job_id} is {row.state} and can't be started now")
             session.add(AttemptRow(job_id=job_id, number=number, worker=worker, started_at=now))
             started = existing_job(session, job_id)
-            return StartedAttempt(Attempt(job_id, number), to_job(started), counts_out(started))
+            return StartedAttempt(
+                Attempt(job_id, number), to_job(started), counts_out(started), started.request_id, started.traceparent
+            )
 
     def heartbeat(self, attempt: Attempt, lease_s: float, memory_mb: int = 0) -> bool:
         """Renew the lease and note the most memory seen; return whether the job is to be canceled.
@@ -118,8 +126,15 @@ class Attempts:
                 raise stale(attempt)
             append_event(session, attempt.job_id, "progress", now, {"stage": stage, "percent": percent})
 
-    def publish(self, attempt: Attempt, result: JobResult) -> JobState:
+    def publish(self, attempt: Attempt, result: JobResult, stages: StageSeconds | None = None) -> JobState:
         """Make the result the job's: the one update that lets clients see its files.
+
+        Parameters
+        ----------
+        attempt : Attempt
+        result : JobResult
+        stages : StageSeconds, optional
+            How long the repair took; added to the sums together with the result, or not at all.
 
         Returns
         -------
@@ -132,7 +147,11 @@ class Attempts:
         StaleAttemptError
             If the attempt is not the latest any more.
         """
-        return self._end(attempt, success(result))
+        with self._database.write() as session:
+            state = end_attempt(session, attempt, success(result), utc_now())
+            if stages is not None and state.has_result:
+                add_stages(session, stages)
+            return state
 
     def fail(self, attempt: Attempt, error: JobError) -> JobState:
         """End the job without a result; return `failed`, or `canceled`. Raise StaleAttemptError."""

@@ -10,6 +10,7 @@ from sqlalchemy.orm import Session
 from jobkit.errors import StaleAttemptError
 from jobkit.schema import EventType, JobError, JobResult, JobState
 from jobkit.tables import AttemptRow, JobRow
+from jobkit.tallies import count_attempt
 from jobkit.transitions import Move, make_move
 
 
@@ -99,6 +100,7 @@ def _return_to_queue(error: JobError, values: dict[str, Any], data: dict[str, An
 
 
 def _close(session: Session, attempt: Attempt, outcome: str, now: datetime, error: JobError | None) -> None:
+    count_attempt(session, outcome, None if error is None else error.code)
     session.execute(
         update(AttemptRow)
         .where(AttemptRow.job_id == attempt.job_id, AttemptRow.number == attempt.number)

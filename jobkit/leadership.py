@@ -14,6 +14,9 @@ from jobkit.clock import shared_now
 from jobkit.database import Database
 from jobkit.tables import LeaderRow
 
+# What dispatchers lead.
+DISPATCHER = "dispatcher"
+
 
 @dataclass(frozen=True)
 class Leader:

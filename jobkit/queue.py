@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from redis import Redis
-from redis.exceptions import RedisError
+from redis.exceptions import RedisError, ResponseError
 from rq import Queue
 from rq.serializers import JSONSerializer
 
@@ -57,6 +57,27 @@ class TaskQueue:
         """Raise QueueUnavailableError if Redis does not answer."""
         with _translated():
             self.connection.ping()
+
+    def depth(self) -> int:
+        """Return how many entries wait; raise QueueUnavailableError."""
+        with _translated():
+            return int(self._queue.count)
+
+    def weaknesses(self) -> list[str] | None:
+        """Tell in words how the server may lose entries; None where it does not say. Raise QueueUnavailableError.
+
+        A lost queue loses no job, but until the dispatcher has noticed, jobs wait for nothing.
+        """
+        with _translated():
+            try:
+                persistence, memory = self.connection.info("persistence"), self.connection.info("memory")
+            except ResponseError:
+                return None  # not everybody may ask, least of all at those who run servers for others
+        keeps_log, policy = persistence.get("aof_enabled"), memory.get("maxmemory_policy")
+        if keeps_log is None or policy is None:
+            return None
+        found = [] if keeps_log else ["its append-only file is off"]
+        return found if policy == "noeviction" else [*found, f"maxmemory-policy is {policy}, not noeviction"]
 
     def close(self) -> None:
         """Close all connections."""

@@ -1,15 +1,22 @@
 """`python -m service` serves; `python -m service openapi` prints the document; `settings` prints what can be set."""
 
-import logging
+import socket
 import sys
+from typing import cast
 
 import uvicorn
+from fastapi import FastAPI
 
 from jobkit.errors import SettingsError
+from jobkit.logs import set_up_logs
 from jobkit.settings import Settings, load_settings, settings_table
+from jobkit.telemetry import open_telemetry
 from service.app import create_app
+from service.auth import check_exposure
 from service.document import to_yaml
 
+# As of `uvicorn.run`.
+_START_FAILED = 3
 USAGE = "usage: python -m service [openapi | settings]"
 
 
@@ -26,23 +33,43 @@ def main(arguments: list[str]) -> int:
         return 2
     try:
         settings = load_settings()
-        app = create_app(settings)
+        check_exposure(settings)
     except SettingsError as error:
         sys.stderr.write(f"quadpatch: {error}\n")
         return 1
-    logging.basicConfig(level=settings.log_level.upper(), format="%(asctime)s %(levelname)s %(name)s: %(message)s")
-    uvicorn.run(
+    set_up_logs(settings)
+    with open_telemetry("api") as telemetry:
+        _serve(create_app(settings, telemetry), settings)
+    return 0
+
+
+def _serve(app: FastAPI, settings: Settings) -> None:
+    config = uvicorn.Config(
         app,
         host=settings.host,
         port=settings.port,
         log_level=settings.log_level,
+        # Its lines, those of requests among them, go the way of all others.
+        log_config=None,
         # What stands in front may be trusted with the scheme, but never with the client's address.
         proxy_headers=False,
         server_header=False,
         # Requests that wait for a job's end must not hold up a restart.
         timeout_graceful_shutdown=5,
     )
-    return 0
+    server = _Server(config)
+    server.run()
+    if not server.started:
+        sys.exit(_START_FAILED)
+
+
+class _Server(uvicorn.Server):
+    """A server that ends event streams as soon as it is asked to stop; it would wait for them otherwise."""
+
+    async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
+        """Stop serving."""
+        cast(FastAPI, self.config.app).state.services.streams.close()
+        await super().shutdown(sockets)
 
 
 if __name__ == "__main__":

@@ -14,6 +14,7 @@ from jobkit.settings import Settings
 from service.problems import ProblemError, problem_response
 
 PUBLIC_PATHS = frozenset({"/", "/healthz", "/readyz", "/openapi.yaml", "/openapi.json"})
+METRICS_PATH = "/metrics"
 LOCAL_PRINCIPAL = "local"
 _LOCAL_NAMES = frozenset({"localhost", "127.0.0.1", "::1"})
 _SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
@@ -38,6 +39,11 @@ def is_loopback(host: str) -> bool:
         return False
 
 
+def public_paths(settings: Settings) -> frozenset[str]:
+    """Return the paths that answer without a key."""
+    return PUBLIC_PATHS | {METRICS_PATH} if settings.metrics_open else PUBLIC_PATHS
+
+
 class KeyRing:
     """The accepted keys, as hashes: a dump of this process's memory should not hand them out."""
 
@@ -57,6 +63,7 @@ class AuthMiddleware:
     def __init__(self, app: ASGIApp, settings: Settings) -> None:
         self._app = app
         self._keys = KeyRing(settings.key_list) if settings.key_list else None
+        self._public_paths = public_paths(settings)
         self._own_names = _LOCAL_NAMES | {settings.host}
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
@@ -76,7 +83,7 @@ class AuthMiddleware:
         if self._keys is None:
             self._refuse_strange_pages(request)
             return LOCAL_PRINCIPAL
-        if request.url.path in PUBLIC_PATHS:
+        if request.url.path in self._public_paths:
             return "anonymous"
         principal = self._keys.principal(presented_key(request))
         if principal is None:

@@ -8,6 +8,7 @@ from fastapi.openapi.utils import get_openapi
 from fastapi.routing import APIRoute
 
 from jobkit.schema import PROBLEM_MEDIA_TYPE, RepairSpec
+from service.auth import public_paths
 
 TITLE = "Quadpatch"
 VERSION = "1.0.0"
@@ -17,7 +18,6 @@ DESCRIPTION = (
     "units. Every error is an RFC 9457 problem document with a stable `code`. On loopback without API keys no key is "
     "asked for."
 )
-_PUBLIC = ("/healthz", "/readyz")
 
 
 def install_document(app: FastAPI) -> None:
@@ -55,7 +55,7 @@ def _build(app: FastAPI) -> dict[str, Any]:
     for path, operations in document["paths"].items():
         for operation in operations.values():
             _name_problems(operation["responses"])
-            if path in _PUBLIC:
+            if path in public_paths(app.state.settings):
                 operation["security"] = []
                 operation["responses"].pop("401")
     return document

@@ -9,6 +9,7 @@ from starlette.datastructures import MutableHeaders
 from starlette.requests import Request
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+from jobkit.logs import log_about
 from service.problems import internal_error, problem_response
 
 _logger = logging.getLogger("service")
@@ -48,10 +49,11 @@ class FrameMiddleware:
                     headers.setdefault(name, value)
             await send(message)
 
-        try:
-            await self._app(scope, receive, send_with_headers)
-        except Exception:
-            _logger.exception("request %s: %s %s failed", request.state.request_id, request.method, request.url.path)
-            if has_started:
-                raise  # the connection breaks, so that the client sees that the body is not whole
-            await problem_response(request, internal_error())(scope, receive, send_with_headers)
+        with log_about(request_id=request.state.request_id):
+            try:
+                await self._app(scope, receive, send_with_headers)
+            except Exception:
+                _logger.exception("%s %s failed", request.method, request.url.path)
+                if has_started:
+                    raise  # the connection breaks, so that the client sees that the body is not whole
+                await problem_response(request, internal_error())(scope, receive, send_with_headers)

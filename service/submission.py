@@ -6,10 +6,12 @@ from dataclasses import dataclass
 
 from jobkit.errors import MeshNotReadyError, MeshRejectedError, OverLimitError, QueueUnavailableError
 from jobkit.jobs import Idempotency, NewJob
+from jobkit.logs import current_request_id
 from jobkit.reconcile import submit_analysis, submit_job
 from jobkit.schema import Job, JobSpec, Limits, Mesh, MeshFacts, MeshState, Plan, ResolvedModel
 from jobkit.selection import resolve_method
 from jobkit.settings import Settings
+from jobkit.telemetry import current_traceparent
 from service.plan import check_hole_ids, make_plan
 from service.services import Services
 
@@ -57,7 +59,14 @@ def submit(services: Services, submission: Submission) -> tuple[Job, bool]:
     if idempotency is not None and (earlier := services.jobs.earlier(idempotency)) is not None:
         return earlier, False
     model = _check(services, submission.spec)
-    new = NewJob(submission.spec, model, services.settings.max_attempts, submission.rerun_of)
+    new = NewJob(
+        submission.spec,
+        model,
+        services.settings.max_attempts,
+        submission.rerun_of,
+        current_request_id(),
+        current_traceparent(),
+    )
     job, is_new = services.jobs.create(new, idempotency)
     if is_new:
         try:

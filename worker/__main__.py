@@ -12,10 +12,12 @@ from contextlib import ExitStack, closing
 
 from jobkit.database import Database
 from jobkit.errors import SettingsError
+from jobkit.logs import log_about, set_up_logs
 from jobkit.queue import TaskQueue
 from jobkit.readiness import ready_file
 from jobkit.settings import Settings, load_settings
 from jobkit.store import ObjectStore, open_store
+from jobkit.telemetry import open_telemetry
 from worker.context import Context, use_context, worker_name
 from worker.executor import Executor
 from worker.folders import worker_folder
@@ -30,11 +32,11 @@ def main() -> int:
     """Run one worker; returns the exit code."""
     try:
         settings = load_settings()
-        store = open_store(settings.effective_object_store_url)
+        store = open_store(settings.effective_object_store_url, settings.scratch_dir)
     except SettingsError as error:
         sys.stderr.write(f"worker: {error}\n")
         return _EXIT_SETTINGS
-    logging.basicConfig(level=settings.log_level.upper(), format="%(asctime)s %(levelname)s %(name)s: %(message)s")
+    set_up_logs(settings)
     return _run(settings, store)
 
 
@@ -51,7 +53,9 @@ def _run(settings: Settings, store: ObjectStore) -> int:
             queue=stack.enter_context(closing(_open_queue(settings))),
             nursery=stack.enter_context(Nursery(n_threads)),
             n_threads=n_threads,
+            telemetry=stack.enter_context(open_telemetry("worker")),
         )
+        stack.enter_context(log_about(worker=context.name))
         stack.enter_context(worker_folder(context.work_folder))
         stack.enter_context(use_context(context))
         try:

@@ -21,6 +21,7 @@ from jobkit.queue import TaskQueue
 from jobkit.registry import Registry
 from jobkit.settings import Settings
 from jobkit.store import ObjectStore
+from jobkit.telemetry import Telemetry
 from worker.nursing import Nursery
 
 
@@ -34,6 +35,8 @@ class Context:
         Of this worker, for people.
     draining : threading.Event
         Set once the worker is asked to stop.
+    telemetry : Telemetry
+        Takes the spans of attempts and stages.
     """
 
     name: str
@@ -44,6 +47,7 @@ class Context:
     nursery: Nursery
     n_threads: int
     draining: threading.Event = field(default_factory=threading.Event)
+    telemetry: Telemetry = field(default_factory=Telemetry)
 
     @property
     def attempts(self) -> Attempts:

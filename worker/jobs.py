@@ -6,6 +6,8 @@ A task that comes twice, or too late, does nothing: only one can start an attemp
 import logging
 
 from jobkit.errors import NotFoundError, StaleAttemptError
+from jobkit.logs import log_about
+from jobkit.schema import JobState
 from worker.analyses import analyse
 from worker.context import current_context
 from worker.repairs import repair
@@ -21,7 +23,20 @@ def run_job(job_id: str) -> None:
     except (StaleAttemptError, NotFoundError) as error:
         _log.info("nothing to do: %s", error)
         return
-    repair(context, started)
+    attempt = started.attempt
+    with (
+        log_about(job_id=attempt.job_id, attempt=attempt.number, request_id=started.request_id),
+        context.telemetry.span(
+            "attempt",
+            "consumer",
+            started.traceparent,
+            {"quadpatch.job_id": attempt.job_id, "quadpatch.attempt": attempt.number},
+        ) as span,
+    ):
+        state = repair(context, started)
+        span.note("quadpatch.state", "taken away" if state is None else state.value)
+        if state is None or not (state.has_result or state is JobState.CANCELED):
+            span.fail("the attempt ended without a result")
 
 
 def inspect_mesh(mesh_id: str) -> None:
@@ -32,4 +47,5 @@ def inspect_mesh(mesh_id: str) -> None:
     except (StaleAttemptError, NotFoundError) as error:
         _log.info("nothing to do: %s", error)
         return
-    analyse(context, analysis)
+    with log_about(mesh_id=mesh_id, attempt=analysis.attempt):
+        analyse(context, analysis)

@@ -7,6 +7,7 @@ import logging
 import threading
 import time
 from collections.abc import Callable
+from contextvars import copy_context
 from dataclasses import dataclass
 from typing import Self
 
@@ -55,7 +56,7 @@ class Pulse:
         self._peak_mb = 0
         self._ended = threading.Event()
         self._renewed_at = time.monotonic()
-        self._thread = threading.Thread(target=self._beat, name="pulse", daemon=True)
+        self._thread = threading.Thread(target=copy_context().run, args=(self._beat,), name="pulse", daemon=True)
         self.stop_reason: StopReason | None = None
 
     def reach(self, stage: str, fraction: float) -> None:

@@ -7,6 +7,7 @@ nothing left of it.
 import logging
 import time
 from collections.abc import Callable
+from dataclasses import dataclass
 
 from jobkit.attempts import StartedAttempt
 from jobkit.errors import (
@@ -17,13 +18,15 @@ from jobkit.errors import (
 )
 from jobkit.reconcile import submit_job
 from jobkit.schema import JobError, JobResult, JobState
+from jobkit.stages import StageSeconds
+from jobkit.telemetry import StageSpans
 from worker.context import Context
 from worker.failures import Failure, StopReason
 from worker.limits import EngineLimits
 from worker.models import model_argument
 from worker.outcomes import folder_with_mesh, outcome_of
 from worker.pulse import Pulse, Vitals
-from worker.results import drop_result, store_result
+from worker.results import drop_result, stage_seconds, store_result
 from worker.spec import repair_request
 from worker.watch import Observer, run_engine
 
@@ -39,22 +42,31 @@ _DRAINED = JobError(code="worker_drained", message="the worker was stopped in th
 _log = logging.getLogger("quadpatch.worker.repairs")
 
 
-def repair(context: Context, started: StartedAttempt) -> None:
-    """Work on a started attempt and settle it."""
+@dataclass(frozen=True)
+class _Repaired:
+    """A result whose files are stored, and how long its stages took."""
+
+    result: JobResult
+    stages: StageSeconds
+
+
+def repair(context: Context, started: StartedAttempt) -> JobState | None:
+    """Work on a started attempt and settle it; return the job's state then, None where the attempt was taken away."""
     outcome = outcome_of(lambda: _run(context, started), f"job {started.attempt.job_id}")
-    if not isinstance(outcome, JobResult):
+    if not isinstance(outcome, _Repaired):
         _drop(context, started)
     try:
         state = _patiently(lambda: _settle(context, started, outcome))
     except StaleAttemptError as error:
         _log.warning("the attempt may write no more: %s", error)
         _drop(context, started)
-        return
-    if isinstance(outcome, JobResult) and not state.has_result:
+        return None
+    if isinstance(outcome, _Repaired) and not state.has_result:
         _drop(context, started)
     _log.info("job %s, attempt %d: %s", started.attempt.job_id, started.attempt.number, state.value)
     if state == JobState.QUEUED and not (isinstance(outcome, Failure) and outcome.is_outside):
         _resubmit(context, started)
+    return state
 
 
 def _patiently(settle: Callable[[], JobState]) -> JobState:
@@ -78,22 +90,34 @@ def _drop(context: Context, started: StartedAttempt) -> None:
         _log.warning("files of %s are left to the sweep: %s", started.attempt, error)
 
 
-def _run(context: Context, started: StartedAttempt) -> JobResult:
+def _run(context: Context, started: StartedAttempt) -> _Repaired:
     with Pulse(_vitals(context, started)) as pulse:
         return _work(context, started, pulse)
 
 
-def _work(context: Context, started: StartedAttempt, pulse: Pulse) -> JobResult:
+def _work(context: Context, started: StartedAttempt, pulse: Pulse) -> _Repaired:
     job, began = started.job, time.monotonic()
     source = context.meshes.source(job.mesh_id)
     model = model_argument(job.model, context.registry, context.store, context.cache_folder)
     settings = context.settings
     limits = EngineLimits(settings.job_time_limit_s, settings.job_memory_limit_mb, n_threads=context.n_threads)
     request = repair_request(job.spec, source, model, limits)
-    observer = Observer(pulse.reach, _StopRule(context, pulse), pulse.note_memory)
     with folder_with_mesh(context, source) as folder:
-        run_engine(context.nursery, request, folder, observer)
-        return store_result(folder, request, started.attempt, context.store, time.monotonic() - began)
+        with context.telemetry.stages() as spans:
+            observer = Observer(_both(pulse, spans), _StopRule(context, pulse), pulse.note_memory)
+            run_engine(context.nursery, request, folder, observer)
+        result = store_result(folder, request, started.attempt, context.store, time.monotonic() - began)
+        return _Repaired(result, stage_seconds(folder, job.spec.method.method))
+
+
+def _both(pulse: Pulse, spans: StageSpans) -> Callable[[str, float], None]:
+    """Make progress known to the database and to the trace."""
+
+    def reach(stage: str, fraction: float) -> None:
+        pulse.reach(stage, fraction)
+        spans.reach(stage)
+
+    return reach
 
 
 class _StopRule:
@@ -125,10 +149,10 @@ def _vitals(context: Context, started: StartedAttempt) -> Vitals:
     )
 
 
-def _settle(context: Context, started: StartedAttempt, outcome: JobResult | Failure | StopReason) -> JobState:
+def _settle(context: Context, started: StartedAttempt, outcome: _Repaired | Failure | StopReason) -> JobState:
     attempts, attempt = context.attempts, started.attempt
-    if isinstance(outcome, JobResult):
-        return attempts.publish(attempt, outcome)
+    if isinstance(outcome, _Repaired):
+        return attempts.publish(attempt, outcome.result, outcome.stages)
     if isinstance(outcome, Failure):
         error = JobError(
             code=outcome.code, message=outcome.message, stage=outcome.stage or None, retryable=outcome.retryable

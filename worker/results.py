@@ -6,6 +6,7 @@ from typing import Any, Literal
 
 from jobkit.endings import Attempt
 from jobkit.schema import HoleCounts, JobResult, ResultFile
+from jobkit.stages import StageSeconds
 from jobkit.store import ObjectStore, result_key
 from worker.request import PREVIEW_NAME, REPORT_NAME, EngineRequest
 
@@ -53,6 +54,12 @@ def store_result(
             "files": files,
         }
     )
+
+
+def stage_seconds(folder: Path, method: str) -> StageSeconds:
+    """Read from an engine's report how long the stages took; `method` as in the spec."""
+    report = json.loads((folder / REPORT_NAME).read_text(encoding="utf-8"))
+    return StageSeconds(method, {str(stage["name"]): float(stage["seconds"]) for stage in report["stages"]})
 
 
 def drop_result(attempt: Attempt, store: ObjectStore) -> None:

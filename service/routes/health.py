@@ -1,7 +1,5 @@
 """Whether the service lives, whether it can work, and what it is."""
 
-import logging
-from collections.abc import Callable
 from http import HTTPStatus
 from typing import Literal
 
@@ -9,16 +7,14 @@ from fastapi import APIRouter, Request
 from pydantic import BaseModel, Field
 from starlette.responses import HTMLResponse, Response
 
-from jobkit.errors import JobkitError
-from jobkit.schema import FieldError
 from service.document import to_yaml
 from service.problems import RETRY_AFTER_S, ProblemError
+from service.readiness import Readiness, find_failures, read_readiness
 from service.routes.common import problems
 from service.services import ServicesDep
 from service.strict import StrictRoute
 
 router = APIRouter(tags=["service"], route_class=StrictRoute)
-_logger = logging.getLogger("service")
 _PAGE = """<!doctype html>
 <html lang="en"><meta charset="utf-8"><title>Quadpatch</title>
 <style>body{font:16px/1.5 system-ui,sans-serif;max-width:42rem;margin:4rem auto;padding:0 1rem}
@@ -40,15 +36,6 @@ class Health(BaseModel):
     status: Literal["ok"] = Field(default="ok", description="Always `ok`: else there is no answer.", examples=["ok"])
 
 
-class Readiness(BaseModel):
-    """What the service stands on."""
-
-    status: Literal["ready"] = Field(default="ready", description="Always `ready`: else it is a problem.")
-    database: Literal["ok"] = Field(default="ok", description="The database answers.")
-    store: Literal["ok"] = Field(default="ok", description="The object store can be written.")
-    queue: Literal["ok"] = Field(default="ok", description="The queue answers.")
-
-
 @router.get("/healthz", response_model=Health, responses=problems())
 def healthz() -> Health:
     """Tell whether the process lives."""
@@ -57,25 +44,14 @@ def healthz() -> Health:
 
 @router.get("/readyz", response_model=Readiness, responses=problems())
 def readyz(services: ServicesDep) -> Readiness:
-    """Tell whether database, object store and queue can be worked with."""
-    checks: dict[str, Callable[[], None]] = {
-        "database": services.database.ping,
-        "store": services.store.check,
-        "queue": services.queue.ping,
-    }
-    failed = []
-    for name, check in checks.items():
-        try:
-            check()
-        except JobkitError as error:
-            _logger.warning("%s is not ready: %r", name, error.__cause__ or error)
-            failed.append(FieldError(location="service", pointer=name, message=str(error), code=error.code))
+    """Tell whether jobs can be taken, which needs database and object store, and whether they are worked on."""
+    failed = find_failures(services)
     if failed:
         names = ", ".join(item.pointer for item in failed)
         detail = f"not ready: {names}"
         status = HTTPStatus.SERVICE_UNAVAILABLE
         raise ProblemError(status, "not_ready", detail, {"Retry-After": RETRY_AFTER_S}, failed)
-    return Readiness()
+    return read_readiness(services)
 
 
 @router.get("/openapi.yaml", include_in_schema=False)

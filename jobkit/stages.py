@@ -1,0 +1,35 @@
+"""How long the stages of published repairs took, added up by stage and method."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from sqlalchemy.orm import Session
+
+from jobkit.tables import StageRow
+from jobkit.tallies import add_up
+
+
+@dataclass(frozen=True)
+class StageSeconds:
+    """How long the stages of one repair took.
+
+    Attributes
+    ----------
+    method : str
+        As in the spec: `dictionary`, `cnn` or `smooth`.
+    seconds : mapping of str to float
+        Wall-clock seconds by stage.
+    """
+
+    method: str
+    seconds: Mapping[str, float] = field(default_factory=dict)
+
+
+def add_stages(session: Session, stages: StageSeconds) -> None:
+    """Add the stages of a repair to the sums, in the transaction that publishes it."""
+    rows = [
+        {"stage": stage, "method": stages.method, "count": 1, "seconds": seconds}
+        for stage, seconds in sorted(stages.seconds.items())
+    ]
+    if rows:
+        add_up(session, StageRow, rows)

@@ -1,0 +1,134 @@
+"""What the tables say, as families of metrics."""
+
+from collections.abc import Iterator
+from datetime import datetime, timedelta
+
+from prometheus_client.core import CounterMetricFamily, GaugeMetricFamily, Metric, SummaryMetricFamily
+from sqlalchemy import ColumnElement, func, or_, select
+from sqlalchemy.orm import InstrumentedAttribute, Session
+
+from jobkit.attempts import AT_WORK
+from jobkit.clock import shared_now
+from jobkit.database import Database
+from jobkit.schema import JobState, MeshState
+from jobkit.tables import AliasRow, AttemptCountRow, DeliveryRow, JobRow, MeshRow, ModelRow, StageRow
+
+
+def database_figures(database: Database, lease_s: float) -> list[Metric]:
+    """Read everything in one session.
+
+    Parameters
+    ----------
+    database : Database
+    lease_s : float
+        How long leases last, in seconds: they tell only when they end.
+
+    Raises
+    ------
+    DatabaseUnavailableError
+        If it does not answer.
+    """
+    with database.read() as session:
+        now = shared_now(session)
+        return [
+            *_states(session),
+            *_waiting(session, now),
+            *_leases(session, now, lease_s),
+            *_totals(session),
+            *_models(session),
+        ]
+
+
+def _states(session: Session) -> Iterator[Metric]:
+    job_states = [state.value for state in JobState]
+    mesh_states = [state.value for state in MeshState]
+    yield _by("quadpatch_jobs", "Jobs that are kept, by state.", _counts(session, JobRow.state), job_states)
+    yield _by("quadpatch_meshes", "Meshes that are kept, by state.", _counts(session, MeshRow.state), mesh_states)
+    deliveries = _counts(session, DeliveryRow.state)
+    yield _by("quadpatch_webhook_deliveries", "Messages to subscribers that are kept, by state.", deliveries, [])
+
+
+def _waiting(session: Session, now: datetime) -> Iterator[Metric]:
+    queued = JobRow.state == JobState.QUEUED.value
+    at_hand = or_(MeshRow.lease_until.is_(None), MeshRow.lease_until < now)
+    unseen = (MeshRow.state == MeshState.ANALYSING.value) & at_hand
+    n_jobs, first_job = _count_and_first(session, JobRow.queued_at, queued)
+    n_meshes, first_mesh = _count_and_first(session, MeshRow.updated_at, unseen)
+    working = session.scalars(select(func.count()).where(JobRow.state.in_(AT_WORK))).one()
+    analysed = (MeshRow.state == MeshState.ANALYSING.value) & (MeshRow.lease_until >= now)
+    inspecting = session.scalars(select(func.count()).where(analysed)).one()
+    length = GaugeMetricFamily("quadpatch_queue_length", "Tasks that wait for a worker, by kind.", labels=["kind"])
+    oldest = GaugeMetricFamily(
+        "quadpatch_queue_oldest_age_seconds", "How long the longest of them has waited; 0: none waits.", labels=["kind"]
+    )
+    at_work = GaugeMetricFamily("quadpatch_tasks_at_work", "Tasks that workers are at, by kind.", labels=["kind"])
+    for kind, n_waiting, first, n_working in (
+        ("repair", n_jobs, first_job, working),
+        ("analysis", n_meshes, first_mesh, inspecting),
+    ):
+        length.add_metric([kind], n_waiting)
+        oldest.add_metric([kind], 0 if first is None else max(0.0, (now - first).total_seconds()))
+        at_work.add_metric([kind], n_working)
+    yield from (length, oldest, at_work)
+
+
+def _leases(session: Session, now: datetime, lease_s: float) -> Iterator[Metric]:
+    _, first_end = _count_and_first(session, JobRow.lease_until, JobRow.state.in_(AT_WORK))
+    age_s = 0.0 if first_end is None else max(0.0, (now - (first_end - timedelta(seconds=lease_s))).total_seconds())
+    yield GaugeMetricFamily(
+        "quadpatch_lease_oldest_age_seconds",
+        "How long the attempt that was silent longest has not renewed its lease; 0: none is at work.",
+        value=age_s,
+    )
+
+
+def _totals(session: Session) -> Iterator[Metric]:
+    attempts = CounterMetricFamily(
+        "quadpatch_attempts", "Attempts at jobs that have ended, by outcome and error code.", labels=["outcome", "code"]
+    )
+    for row in session.scalars(select(AttemptCountRow)):
+        attempts.add_metric([row.outcome, row.code], row.count)
+    stages = SummaryMetricFamily(
+        "quadpatch_stage_duration_seconds", "Stages of published repairs, by method.", labels=["stage", "method"]
+    )
+    for stage in session.scalars(select(StageRow)):
+        stages.add_metric([stage.stage, stage.method], stage.count, stage.seconds)
+    yield from (attempts, stages)
+
+
+def _models(session: Session) -> Iterator[Metric]:
+    models = GaugeMetricFamily(
+        "quadpatch_model_info", "Published models; always 1.", labels=["name", "version", "kind", "sha256"]
+    )
+    for name, version, kind, sha256 in session.execute(
+        select(ModelRow.name, ModelRow.version, ModelRow.kind, ModelRow.sha256)
+    ):
+        models.add_metric([name, str(version), kind, sha256], 1)
+    aliases = GaugeMetricFamily(
+        "quadpatch_model_alias_info", "What aliases point to; always 1.", labels=["alias", "name", "version"]
+    )
+    for row in session.scalars(select(AliasRow)):
+        aliases.add_metric([row.alias, row.name, str(row.version)], 1)
+    yield from (models, aliases)
+
+
+def _counts(session: Session, column: InstrumentedAttribute[str]) -> dict[str, int]:
+    rows = session.execute(select(column, func.count()).group_by(column)).all()
+    return {str(row[0]): int(row[1]) for row in rows}
+
+
+def _by(name: str, words: str, counts: dict[str, int], states: list[str]) -> Metric:
+    """Make a gauge by state; the states that are named show with a 0 where there is none."""
+    family = GaugeMetricFamily(name, words, labels=["state"])
+    for state in dict.fromkeys([*states, *counts]):
+        family.add_metric([state], counts.get(state, 0))
+    return family
+
+
+def _count_and_first(
+    session: Session,
+    moment: InstrumentedAttribute[datetime] | InstrumentedAttribute[datetime | None],
+    condition: ColumnElement[bool],
+) -> tuple[int, datetime | None]:
+    count, first = session.execute(select(func.count(), func.min(moment)).where(condition)).one()
+    return count, first

@@ -1,0 +1,105 @@
+import subprocess
+import sys
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from opentelemetry.sdk.trace import ReadableSpan, TracerProvider
+from opentelemetry.sdk.trace.export import SimpleSpanProcessor
+from opentelemetry.sdk.trace.export.in_memory_span_exporter import InMemorySpanExporter
+from opentelemetry.trace import SpanKind
+
+from jobkit.telemetry import Telemetry, current_traceparent, open_telemetry
+
+
+class Recorded:
+    """Telemetry whose spans stay in memory."""
+
+    def __init__(self) -> None:
+        self._exporter = InMemorySpanExporter()
+        provider = TracerProvider()
+        provider.add_span_processor(SimpleSpanProcessor(self._exporter))
+        self.telemetry = Telemetry(provider)
+
+    def spans(self) -> dict[str, ReadableSpan]:
+        return {span.name: span for span in self._exporter.get_finished_spans()}
+
+
+@pytest.fixture
+def recorded() -> Recorded:
+    return Recorded()
+
+
+def test_a_trace_goes_on_from_where_it_was_written_down(recorded: Recorded) -> None:
+    with recorded.telemetry.span("POST /v1/jobs", "server"):
+        written = current_traceparent()
+    assert current_traceparent() is None
+    with recorded.telemetry.span("attempt", "consumer", written, {"quadpatch.attempt": 2}):
+        pass
+    request, attempt = recorded.spans()["POST /v1/jobs"], recorded.spans()["attempt"]
+    assert attempt.parent is not None
+    assert attempt.parent.span_id == request.context.span_id
+    assert attempt.context.trace_id == request.context.trace_id
+    assert attempt.kind is SpanKind.CONSUMER
+    assert attempt.attributes == {"quadpatch.attempt": 2}
+
+
+def test_stages_follow_each_other_within_the_attempt(recorded: Recorded) -> None:
+    with recorded.telemetry.span("attempt") as span:
+        with recorded.telemetry.stages() as stages:
+            for stage in ("read", "read", "fill", "write"):
+                stages.reach(stage)
+        span.note("quadpatch.state", "failed")
+        span.fail("it was lost")
+    spans = recorded.spans()
+    assert list(spans) == ["stage read", "stage fill", "stage write", "attempt"]
+    attempt = spans.pop("attempt")
+    assert attempt.attributes == {"quadpatch.state": "failed"}
+    assert not attempt.status.is_ok
+    ends = [attempt.start_time]
+    for span in spans.values():
+        assert span.parent is not None
+        assert span.parent.span_id == attempt.context.span_id
+        assert span.start_time >= ends[-1]
+        ends.append(span.end_time)
+
+
+@given(header=st.text(max_size=80))
+def test_a_header_that_nobody_can_read_starts_a_trace_of_its_own(header: str) -> None:
+    recorded = Recorded()
+    with recorded.telemetry.span("around"), recorded.telemetry.span("request", "server", header):
+        pass
+    assert recorded.spans()["request"].parent is None
+
+
+def test_without_an_address_nothing_is_made() -> None:
+    with open_telemetry("api", {}) as telemetry, telemetry.span("attempt") as span, telemetry.stages() as stages:
+        stages.reach("read")
+        span.note("quadpatch.state", "failed")
+        span.rename("other")
+        span.fail("it was lost")
+        assert current_traceparent() is None
+
+
+def test_with_an_address_spans_are_made() -> None:
+    # Nothing listens there; what could not be sent is dropped when the process ends.
+    environment = {"OTEL_EXPORTER_OTLP_ENDPOINT": "http://127.0.0.1:1"}
+    telemetry = open_telemetry("api", environment)
+    with telemetry.span("attempt"):
+        assert current_traceparent() is not None
+
+
+def test_the_library_is_needed_only_where_traces_are_sent() -> None:
+    """Without the extra there is a warning, and no trace."""
+    code = """
+import sys, logging
+sys.modules["opentelemetry"] = None
+from jobkit.telemetry import current_traceparent, open_telemetry
+logging.basicConfig()
+for endpoint in ("", "http://127.0.0.1:1"):
+    with open_telemetry("api", {"OTEL_EXPORTER_OTLP_ENDPOINT": endpoint}) as telemetry, telemetry.span("attempt"):
+        print(current_traceparent())
+"""
+    ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=True)
+    assert ended.stdout.split() == ["None", "None"]
+    assert ended.stderr.count("the extra `telemetry` is not installed") == 1

@@ -1,0 +1,205 @@
+from collections.abc import Callable, Iterator
+from datetime import timedelta
+
+import pytest
+from prometheus_client import CollectorRegistry, generate_latest
+from prometheus_client.parser import text_string_to_metric_families
+from pydantic import SecretStr
+from sqlalchemy import update
+from starlette.testclient import TestClient
+
+from jobkit.clock import utc_now
+from jobkit.leadership import DISPATCHER, Leadership
+from jobkit.schema import HoleCounts, Job, JobError, JobResult
+from jobkit.settings import Settings
+from jobkit.stages import StageSeconds
+from jobkit.tables import JobRow
+from service.app import create_app
+from service.metrics import CACHE_S, StateCollector
+from service.services import Services
+
+Sample = tuple[str, frozenset[tuple[str, str]]]
+
+
+def parsed(text: str) -> dict[Sample, float]:
+    families = text_string_to_metric_families(text)
+    return {(s.name, frozenset(s.labels.items())): s.value for family in families for s in family.samples}
+
+
+def figures(services: Services) -> dict[Sample, float]:
+    """What a scrape gets of database, queue and disk, without waiting for the second to be over."""
+    registry = CollectorRegistry(auto_describe=False)
+    registry.register(StateCollector(services))
+    return parsed(generate_latest(registry).decode())
+
+
+def scraped(client: TestClient) -> dict[Sample, float]:
+    answer = client.get("/metrics")
+    assert answer.status_code == 200
+    assert answer.headers["content-type"].startswith("text/plain; version=0.0.4")
+    return parsed(answer.text)
+
+
+def sample(name: str, /, **labels: str) -> Sample:
+    return f"quadpatch_{name}", frozenset(labels.items())
+
+
+def age_everything(services: Services, seconds: float) -> None:
+    """Let time pass for all jobs."""
+    with services.database.write() as session:
+        ages = {"queued_at": utc_now() - timedelta(seconds=seconds)}
+        session.execute(update(JobRow).values(ages))
+
+
+def test_a_job_shows_in_its_state_and_in_the_queue(services: Services, job_id: str) -> None:
+    age_everything(services, 100)
+    found = figures(services)
+    assert found[sample("jobs", state="queued")] == 1
+    assert found[sample("jobs", state="failed")] == 0
+    assert found[sample("queue_length", kind="repair")] == 1
+    assert found[sample("queue_length", kind="analysis")] == 1
+    assert found[sample("queue_entries")] == 2
+    assert 100 <= found[sample("queue_oldest_age_seconds", kind="repair")] < 200
+    assert found[sample("tasks_at_work", kind="repair")] == 0
+
+
+def test_an_attempt_that_falls_silent_shows_in_the_age_of_its_lease(services: Services, job_id: str) -> None:
+    assert figures(services)[sample("lease_oldest_age_seconds")] == 0
+    services.attempts.start(job_id, "w", services.settings.lease_s)
+    with services.database.write() as session:
+        session.execute(update(JobRow).values(lease_until=utc_now() + timedelta(seconds=services.settings.lease_s - 9)))
+    found = figures(services)
+    assert 9 <= found[sample("lease_oldest_age_seconds")] < 60
+    assert found[sample("tasks_at_work", kind="repair")] == 1
+    assert found[sample("queue_oldest_age_seconds", kind="repair")] == 0
+
+
+def test_attempts_and_stages_are_added_up(services: Services, job_id: str) -> None:
+    lost = JobError(code="worker_lost", message="gone", retryable=True)
+    services.attempts.requeue(services.attempts.start(job_id, "w", 30).attempt, lost)
+    second = services.attempts.start(job_id, "w", 30).attempt
+    result = JobResult(format="ply", holes=HoleCounts(found=1), files=[])
+    services.attempts.publish(second, result, StageSeconds("smooth", {"fill": 2.5}))
+    found = figures(services)
+    assert found[sample("attempts_total", outcome="requeued", code="worker_lost")] == 1
+    assert found[sample("attempts_total", outcome="succeeded", code="")] == 1
+    assert found[sample("stage_duration_seconds_sum", stage="fill", method="smooth")] == 2.5
+    assert found[sample("stage_duration_seconds_count", stage="fill", method="smooth")] == 1
+
+
+def test_who_leads_and_since_when_is_told(services: Services) -> None:
+    found = figures(services)
+    assert found[sample("dispatcher_up")] == 0
+    assert sample("dispatcher_leader_start_time_seconds") not in found
+    before = utc_now().timestamp()
+    assert Leadership(services.database, DISPATCHER, "d-1", 30).lead()
+    found = figures(services)
+    assert found[sample("dispatcher_up")] == 1
+    assert found[sample("dispatcher_leader_start_time_seconds")] >= before - 0.001
+
+
+def test_a_leader_whose_lease_ran_out_leads_no_more(services: Services) -> None:
+    assert Leadership(services.database, DISPATCHER, "d-1", -1).lead()
+    found = figures(services)
+    assert found[sample("dispatcher_up")] == 0
+    assert sample("dispatcher_leader_start_time_seconds") not in found
+
+
+def test_models_and_what_aliases_point_to_are_told(
+    client: TestClient, services: Services, dictionary_bytes: Callable[[int], bytes]
+) -> None:
+    answer = client.post("/v1/models/parts/versions", content=dictionary_bytes(1))
+    assert answer.status_code == 201
+    client.put("/v1/aliases/default", json={"model": "parts@1"})
+    found = figures(services)
+    labels = {"name": "parts", "version": "1", "kind": "dictionary", "sha256": answer.json()["sha256"]}
+    assert found[sample("model_info", **labels)] == 1
+    assert found[sample("model_alias_info", alias="default", name="parts", version="1")] == 1
+
+
+def test_requests_are_counted_by_the_template_of_their_route(client: TestClient) -> None:
+    for path in ("/v1/jobs", "/v1/jobs?limit=x", "/v1/meshes/" + "0" * 64, "/nowhere", "/neither"):
+        client.get(path)
+    client.request("BREW", "/v1/jobs")
+    found = scraped(client)
+    counts = {
+        dict(labels)["route"] + " " + dict(labels)["status"]: value
+        for (name, labels), value in found.items()
+        if name == "quadpatch_http_request_duration_seconds_count"
+    }
+    assert counts["/v1/jobs 200"] == 1
+    assert counts["/v1/jobs 422"] == 1
+    assert counts["/v1/meshes/{mesh_id} 404"] == 1
+    assert counts["none 404"] == 2
+    methods = {dict(labels).get("method") for name, labels in found if name.endswith("_duration_seconds_count")}
+    assert {"GET", "other"} <= methods
+    assert "BREW" not in methods
+
+
+def test_disk_process_and_build_are_told(client: TestClient) -> None:
+    found = scraped(client)
+    assert 0 < found[sample("disk_free_bytes")] < found[sample("disk_size_bytes")]
+    assert any(name == "quadpatch_build_info" and value == 1 for (name, _), value in found.items())
+    assert found["process_resident_memory_bytes", frozenset()] > 0
+
+
+def test_without_its_queue_the_other_figures_are_still_there(settings: Settings) -> None:
+    lonely = settings.model_copy(update={"redis_url": SecretStr("redis://127.0.0.1:1/0")})
+    with TestClient(create_app(lonely), base_url="http://127.0.0.1") as client:
+        found = scraped(client)
+    assert found[sample("queue_up")] == 0
+    assert sample("queue_entries") not in found
+    assert found[sample("jobs", state="queued")] == 0
+
+
+def test_without_its_database_the_other_figures_are_still_there(services: Services, settings: Settings) -> None:
+    services.database.close()
+    for path in settings.data_dir.glob("quadpatch.db*"):
+        path.unlink()
+    (settings.data_dir / "quadpatch.db").mkdir()
+    found = figures(services)
+    assert found[sample("database_up")] == 0
+    assert sample("jobs", state="queued") not in found
+    assert found[sample("queue_up")] == 1
+
+
+def test_however_many_ask_the_database_is_read_once_a_second(services: Services, job_id: str) -> None:
+    moment = 50.0
+    collector = StateCollector(services, lambda: moment)
+
+    def queued() -> float:
+        return next(s.value for m in collector.collect() if m.name == "quadpatch_jobs" for s in m.samples)
+
+    assert queued() == 1
+    services.jobs.request_cancel(job_id)
+    moment += 0.9 * CACHE_S
+    assert queued() == 1
+    moment += 0.1 * CACHE_S
+    assert queued() == 0
+
+
+@pytest.fixture
+def keyed(settings: Settings) -> Iterator[Callable[[bool], TestClient]]:
+    def make(is_open: bool) -> TestClient:
+        changes = {"api_keys": SecretStr("a-key-of-station-1"), "metrics_open": is_open}
+        return TestClient(create_app(settings.model_copy(update=changes)), base_url="http://127.0.0.1")
+
+    return make
+
+
+def test_a_service_with_keys_asks_for_one_unless_its_metrics_are_open(keyed: Callable[[bool], TestClient]) -> None:
+    with keyed(False) as client:
+        assert client.get("/metrics").status_code == 401
+        assert client.get("/metrics", headers={"Authorization": "Bearer a-key-of-station-1"}).status_code == 200
+        assert client.app.openapi()["paths"]["/metrics"]["get"].get("security") is None  # type: ignore[attr-defined]
+    with keyed(True) as client:
+        assert client.get("/metrics").status_code == 200
+        assert client.get("/v1/jobs").status_code == 401
+        assert client.app.openapi()["paths"]["/metrics"]["get"]["security"] == []  # type: ignore[attr-defined]
+
+
+def test_the_hands_of_a_worker_show_in_the_figures(
+    services: Services, job_id: str, finish: Callable[[str], Job]
+) -> None:
+    finish(job_id)
+    assert figures(services)[sample("jobs", state="succeeded")] == 1
