@@ -3,6 +3,10 @@
 On SQLite a transaction that reads first and writes later fails at once when another one wrote in between, without
 waiting for the busy timeout. So a writing session takes the write lock at its beginning (BEGIN IMMEDIATE), and the
 rest is left to the timeout.
+
+On PostgreSQL writing sessions run side by side (READ COMMITTED): every statement sees what has been committed until
+then, and an UPDATE that waited for a row looks at its conditions again. So what was read before is stated once more in
+the WHERE of the UPDATE, or the row is locked while it is read (`with_for_update`, which SQLite leaves out).
 """
 
 import fcntl
@@ -15,7 +19,8 @@ from alembic import command
 from alembic.config import Config
 from sqlalchemy import Connection, Engine, create_engine, event, text
 from sqlalchemy.engine import make_url
-from sqlalchemy.exc import OperationalError
+from sqlalchemy.exc import DBAPIError, InterfaceError, OperationalError
+from sqlalchemy.exc import TimeoutError as PoolTimeoutError
 from sqlalchemy.orm import Session
 
 from jobkit.errors import DatabaseUnavailableError, SettingsError
@@ -24,6 +29,21 @@ BUSY_TIMEOUT_MS = 20_000
 # Any number will do, as long as all processes of this project take the same one.
 _MIGRATION_LOCK = 0x51554144
 _SUPPORTED = ("sqlite", "postgresql")
+# PostgreSQL sorts two outages under internal errors: a standby that takes no writes, a transaction that idled away.
+_OUTAGES = ("25006", "25P03")
+# More threads than connections wait for each other here, which is cheaper than in the server.
+_POOL = {"pool_pre_ping": True, "pool_size": 10, "max_overflow": 10, "pool_timeout": 10.0}
+_POSTGRES_PARAMETERS = {
+    "connect_timeout": "5",
+    # A host that is gone without a word is noticed after some 20 s, not after two hours.
+    "keepalives_idle": "10",
+    "keepalives_interval": "3",
+    "keepalives_count": "3",
+    "tcp_user_timeout": "20000",
+    "application_name": "quadpatch",
+    # In milliseconds. No statement here takes a second; a process that hangs must not hold its locks for ever.
+    "options": "-c statement_timeout=30000 -c lock_timeout=20000 -c idle_in_transaction_session_timeout=30000",
+}
 
 
 class Database:
@@ -32,12 +52,16 @@ class Database:
     Parameters
     ----------
     url : str
-        SQLAlchemy URL of SQLite (a file) or PostgreSQL.
+        SQLAlchemy URL of SQLite (a file) or PostgreSQL. Parameters of the connection in its query go before ours.
     """
 
     def __init__(self, url: str) -> None:
         self._engine = _make_engine(url)
+        self._reader = self._engine
         self._writer = self._engine.execution_options(quadpatch_write=True)
+        if self._engine.dialect.name == "postgresql":
+            self._reader = self._engine.execution_options(isolation_level="REPEATABLE READ", postgresql_readonly=True)
+            self._writer = self._engine.execution_options(isolation_level="READ COMMITTED")
 
     @property
     def engine(self) -> Engine:
@@ -47,7 +71,7 @@ class Database:
     @contextmanager
     def read(self) -> Iterator[Session]:
         """Open a session that sees one moment and writes nothing."""
-        with _translated(), Session(self._engine, expire_on_commit=False) as session:
+        with _translated(), Session(self._reader, expire_on_commit=False) as session:
             yield session
 
     @contextmanager
@@ -63,16 +87,23 @@ class Database:
 
     def migrate(self) -> None:
         """Bring the tables to the latest revision; safe when several processes start at once."""
-        if self._engine.dialect.name == "sqlite":
-            self._migrate_sqlite()
-        else:
-            with self._engine.begin() as connection:
-                connection.execute(text("SELECT pg_advisory_xact_lock(:lock)"), {"lock": _MIGRATION_LOCK})
-                _upgrade(connection)
+        with _translated():
+            if self._engine.dialect.name == "sqlite":
+                self._migrate_sqlite()
+            else:
+                self._migrate_postgresql()
 
     def close(self) -> None:
         """Close all connections."""
         self._engine.dispose()
+
+    def _migrate_postgresql(self) -> None:
+        with self._engine.begin() as connection:
+            # Large tables take their time, and so does another process that is at it already.
+            connection.execute(text("SET LOCAL statement_timeout = 0"))
+            connection.execute(text("SET LOCAL lock_timeout = 0"))
+            connection.execute(text("SELECT pg_advisory_xact_lock(:lock)"), {"lock": _MIGRATION_LOCK})
+            _upgrade(connection)
 
     def _migrate_sqlite(self) -> None:
         path = Path(str(self._engine.url.database))
@@ -99,9 +130,19 @@ def migration_config() -> Config:
 def _translated() -> Iterator[None]:
     try:
         yield
-    except OperationalError as error:
+    except PoolTimeoutError as error:
+        raise DatabaseUnavailableError("all connections to the database are busy") from error
+    except DBAPIError as error:
+        if not _is_outage(error):
+            raise
         # The driver's text may name hosts and users, so it stays in the log.
         raise DatabaseUnavailableError("the database does not answer") from error
+
+
+def _is_outage(error: DBAPIError) -> bool:
+    if isinstance(error, OperationalError | InterfaceError) or error.connection_invalidated:
+        return True
+    return getattr(error.orig, "sqlstate", None) in _OUTAGES
 
 
 def _upgrade(connection: Connection) -> None:
@@ -112,10 +153,12 @@ def _upgrade(connection: Connection) -> None:
 
 def _make_engine(url: str) -> Engine:
     parsed = make_url(url)
+    if parsed.drivername in ("postgres", "postgresql"):
+        parsed = parsed.set(drivername="postgresql+psycopg")
     if parsed.get_backend_name() not in _SUPPORTED:
         raise SettingsError(f"database {parsed.get_backend_name()!r} is not supported; use {' or '.join(_SUPPORTED)}")
     if parsed.get_backend_name() != "sqlite":
-        return create_engine(parsed, pool_pre_ping=True)
+        return create_engine(parsed.set(query={**_POSTGRES_PARAMETERS, **parsed.query}), **_POOL)
     if not parsed.database or parsed.database == ":memory:":
         raise SettingsError("SQLite needs a file: processes can't share a database in memory")
     Path(parsed.database).parent.mkdir(parents=True, exist_ok=True)

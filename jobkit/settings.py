@@ -9,9 +9,10 @@ import os
 from collections.abc import Iterable
 from pathlib import Path
 
-from pydantic import Field, SecretStr, ValidationError
+from pydantic import Field, SecretStr, ValidationError, field_validator
 from pydantic_settings import BaseSettings, SettingsConfigDict
 
+from jobkit.addresses import Networks, parse_networks
 from jobkit.errors import SettingsError
 
 PREFIX = "QUADPATCH_"
@@ -27,14 +28,18 @@ class Settings(BaseSettings):
     data_dir: Path = Field(
         default=Path("data"), description="Folder for everything that has no place of its own below."
     )
-    database_url: str = Field(
-        default="", description="SQLAlchemy URL; empty: SQLite in `data_dir`, sqlite:///DATA_DIR/quadpatch.db."
+    database_url: SecretStr = Field(
+        default=SecretStr(""),
+        description="`postgresql+psycopg://user:password@host/name` or `sqlite:////a/file`; empty: SQLite in "
+        "DATA_DIR/quadpatch.db.",
     )
     redis_url: SecretStr = Field(
         default=SecretStr("redis://127.0.0.1:6379/0"), description="Redis or Valkey of the queue; may hold a password."
     )
     object_store_url: str = Field(
-        default="", description="Store of meshes, results and models; empty: file://DATA_DIR/objects."
+        default="",
+        description="Store of meshes, results and models: `s3://bucket/prefix`, with credentials, region and endpoint "
+        "from the AWS_ variables, or `file:///a/folder`; empty: file://DATA_DIR/objects.",
     )
     queue_name: str = Field(
         default="quadpatch", pattern=r"^[a-z0-9-]+$", description="Queue that all tasks go through."
@@ -48,6 +53,9 @@ class Settings(BaseSettings):
     max_upload_mb: int = Field(default=1024, ge=1, description="Largest mesh or model, in MiB.")
     max_json_kb: int = Field(default=1024, ge=1, description="Largest JSON body, in KiB.")
     max_wait_s: float = Field(default=30.0, ge=0, le=300, description="Longest that a request may wait, in seconds.")
+    max_streams: int = Field(
+        default=500, ge=0, description="Most event streams at the same time, of each process of the API."
+    )
     job_time_limit_s: float = Field(default=900.0, ge=1, description="Most wall-clock seconds of one attempt.")
     job_memory_limit_mb: int = Field(default=4096, ge=256, description="Most memory of one attempt, in MiB.")
     max_attempts: int = Field(default=3, ge=1, le=20, description="Attempts before a job is given up.")
@@ -65,6 +73,29 @@ class Settings(BaseSettings):
     leader_lease_s: float = Field(
         default=6.0, ge=1, description="Seconds without a sign from the leading dispatcher until another one leads."
     )
+    job_retention_days: float = Field(
+        default=30.0, ge=0, le=36_500, description="Days that a finished job is kept with all it left; 0: for ever."
+    )
+    mesh_retention_days: float = Field(
+        default=30.0,
+        ge=0,
+        le=36_500,
+        description="Days that a mesh is kept after its upload and after the end of the last job on it; 0: for ever.",
+    )
+    sweep_s: float = Field(
+        default=600.0, gt=0, le=86_400, description="Seconds between two sweeps for what is past its retention."
+    )
+    webhook_allowed_networks: str = Field(
+        default="",
+        description="Networks in CIDR notation, comma-separated, that webhooks may be sent to although they are not "
+        "reachable from the whole internet; within them by http, too.",
+    )
+    webhook_timeout_s: float = Field(
+        default=15.0, gt=0, le=60, description="Most seconds of one try to deliver a webhook."
+    )
+    webhook_log_days: float = Field(
+        default=30.0, ge=1, le=36_500, description="Days that a delivery of a webhook is kept after its end."
+    )
     models_dir: Path | None = Field(
         default=None, description="Folder of models to register at start; empty: those that ship with the project."
     )
@@ -72,15 +103,36 @@ class Settings(BaseSettings):
         default="info", pattern="^(debug|info|warning|error)$", description="Least level that is logged."
     )
 
+    log_format: str = Field(
+        default="text", pattern="^(text|json)$", description="`text`: lines for people; `json`: one object a line."
+    )
+    metrics_open: bool = Field(default=False, description="Whether `/metrics` answers without a key.")
+
+    @field_validator("webhook_allowed_networks")
+    @classmethod
+    def _are_networks(cls, text: str) -> str:
+        parse_networks(text)
+        return text
+
+    @property
+    def webhook_networks(self) -> Networks:
+        """The networks that webhooks may be sent to besides the internet."""
+        return parse_networks(self.webhook_allowed_networks)
+
     @property
     def effective_database_url(self) -> str:
         """The database URL with its default filled in."""
-        return self.database_url or f"sqlite:///{self.data_dir.resolve() / 'quadpatch.db'}"
+        return self.database_url.get_secret_value() or f"sqlite:///{self.data_dir.resolve() / 'quadpatch.db'}"
 
     @property
     def effective_object_store_url(self) -> str:
         """The object store URL with its default filled in."""
         return self.object_store_url or f"file://{self.data_dir.resolve() / 'objects'}"
+
+    @property
+    def scratch_dir(self) -> Path:
+        """Folder for what comes from a remote object store or goes there."""
+        return self.data_dir.resolve() / "scratch"
 
     @property
     def key_list(self) -> list[str]:

@@ -5,6 +5,7 @@ Uploads are content-addressed: their key follows from their sha256, so the same 
 """
 
 import re
+import tempfile
 from collections.abc import Iterator
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
@@ -18,6 +19,7 @@ from jobkit.errors import ObjectNotFoundError, SettingsError
 
 CHUNK_BYTES = 1 << 20
 _KEY = re.compile(r"^[A-Za-z0-9_][A-Za-z0-9._-]*(/[A-Za-z0-9_][A-Za-z0-9._-]*)*\Z")
+_BUCKET = re.compile(r"^[a-z0-9][a-z0-9._-]{1,62}\Z")
 
 
 @dataclass(frozen=True)
@@ -100,7 +102,7 @@ class ObjectStore(Protocol):
 
 
 def open_store(url: str, scratch: Path | None = None) -> ObjectStore:
-    """Open the store that the URL names: `file:///a/folder`.
+    """Open the store that the URL names: `file:///a/folder` or `s3://bucket/prefix`.
 
     Parameters
     ----------
@@ -113,13 +115,18 @@ def open_store(url: str, scratch: Path | None = None) -> ObjectStore:
     SettingsError
         If the URL names another kind of store.
     """
-    # The modules of the kinds know this one.
-    from jobkit.local_store import LocalStore  # noqa: PLC0415
-
+    # The modules of the kinds know this one, and a box with local files needs no S3 client in memory.
     parts = urlsplit(url)
     if parts.scheme == "file" and parts.netloc in ("", "localhost"):
+        from jobkit.local_store import LocalStore  # noqa: PLC0415
+
         return LocalStore(Path(unquote(parts.path)))
-    raise SettingsError(f"object store {url!r} is not supported; use file:///a/folder")
+    if parts.scheme == "s3" and _BUCKET.match(parts.netloc) and not parts.query:
+        from jobkit.s3_store import S3Store  # noqa: PLC0415
+
+        return S3Store(parts.netloc, parts.path.strip("/"), scratch or Path(tempfile.gettempdir(), "quadpatch-scratch"))
+    # Without the URL: somebody may have put a password into it.
+    raise SettingsError("that object store is not supported; use file:///a/folder or s3://bucket/prefix")
 
 
 def result_key(job_id: str, attempt: int, name: str) -> str:

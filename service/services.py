@@ -1,13 +1,17 @@
 """Everything that routes need, opened once per process."""
 
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Annotated, cast
 
 from fastapi import Depends, Request
 
+from jobkit.addresses import check_url
 from jobkit.attempts import Attempts
 from jobkit.database import Database
+from jobkit.deliveries import Deliveries
+from jobkit.estimates import Estimates
 from jobkit.jobs import Jobs
 from jobkit.meshes import Meshes
 from jobkit.queue import TaskQueue
@@ -15,6 +19,8 @@ from jobkit.registry import Registry
 from jobkit.settings import Settings
 from jobkit.shipped import seed_shipped
 from jobkit.store import ObjectStore, open_store
+from jobkit.webhooks import Webhooks
+from service.streams import EventStreams
 
 
 @dataclass(frozen=True)
@@ -29,6 +35,10 @@ class Services:
     attempts: Attempts
     meshes: Meshes
     registry: Registry
+    webhooks: Webhooks
+    deliveries: Deliveries
+    estimates: Estimates
+    streams: EventStreams
 
     def close(self) -> None:
         """Close all connections."""
@@ -46,12 +56,26 @@ def open_services(settings: Settings) -> Services:
     """
     database = Database(settings.effective_database_url)
     database.migrate()
-    store = open_store(settings.effective_object_store_url)
+    store = open_store(settings.effective_object_store_url, settings.scratch_dir)
     registry = Registry(database, store)
     seed_shipped(registry, settings.models_dir or shipped_models_folder())
     redis_url = settings.redis_url.get_secret_value()
     queue = TaskQueue(redis_url, settings.queue_name, settings.job_time_limit_s)
-    return Services(settings, database, store, queue, Jobs(database), Attempts(database), Meshes(database), registry)
+    jobs, meshes = Jobs(database, settings.job_retention_days), Meshes(database, settings.mesh_retention_days)
+    return Services(
+        settings,
+        database,
+        store,
+        queue,
+        jobs,
+        Attempts(database),
+        meshes,
+        registry,
+        Webhooks(database, partial(check_url, allowed=settings.webhook_networks)),
+        Deliveries(database),
+        Estimates(database),
+        EventStreams(database, settings.max_streams),
+    )
 
 
 def shipped_models_folder() -> Path:
@@ -59,12 +83,12 @@ def shipped_models_folder() -> Path:
     return Path(__file__).resolve().parent.parent / "quadpatch" / "shipped_models"
 
 
-def get_services(request: Request) -> Services:
+async def get_services(request: Request) -> Services:
     """Return what the app's lifespan has opened."""
     return cast(Services, request.app.state.services)
 
 
-def get_principal(request: Request) -> str:
+async def get_principal(request: Request) -> str:
     """Return who is calling, as the auth middleware found out."""
     return cast(str, request.state.principal)
 

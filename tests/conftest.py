@@ -1,7 +1,11 @@
-"""What tests of several parts share: a fresh database and store, and one real Valkey per test process."""
+"""What tests of several parts share: a fresh database and store, and one real Valkey per test process.
+
+TEST_BACKEND=postgres-s3 puts a real PostgreSQL and an S3 server under all of them, in place of SQLite and local files.
+"""
 
 import functools
 import os
+import secrets
 import shutil
 import socket
 import subprocess
@@ -24,6 +28,56 @@ from onebox.valkey import running_valkey
 from quadpatch.model_file import save_dictionary
 from quadpatch.sparse.dictionary import Dictionary
 from quadpatch.sparse.signals import HEIGHTS, NORMALISATION
+from tests.servers import BUCKET, PostgresServer, fresh_database, running_postgres, running_s3
+
+BACKENDS = ("sqlite-local", "postgres-s3")
+
+
+@pytest.fixture(scope="session")
+def backend() -> str:
+    """What this run of the tests stands on; one of `BACKENDS`."""
+    named = os.environ.get("TEST_BACKEND") or BACKENDS[0]
+    assert named in BACKENDS, f"TEST_BACKEND={named} is none of {BACKENDS}"
+    return named
+
+
+@pytest.fixture
+def local_backend(backend: str) -> None:
+    """Leave the test out where the service does not stand on local files."""
+    if backend != "sqlite-local":
+        pytest.skip("it is about the files of SQLite and of the local store")
+
+
+@pytest.fixture(scope="session")
+def postgres() -> Iterator[PostgresServer]:
+    """A real PostgreSQL; tests take databases of their own."""
+    with running_postgres() as server:
+        yield server
+
+
+@pytest.fixture(scope="session")
+def s3_url() -> Iterator[str]:
+    """A bucket of an S3 server, and the AWS_ variables that lead to it; tests take prefixes of their own."""
+    with pytest.MonkeyPatch.context() as environment, running_s3() as variables:
+        for name, value in variables.items():
+            environment.setenv(name, value)
+        yield f"s3://{BUCKET}"
+
+
+@pytest.fixture(scope="session")
+def new_places(backend: str, request: pytest.FixtureRequest) -> Callable[[], AbstractContextManager[dict[str, str]]]:
+    """Make a context manager that gives `database_url` and `object_store_url`, both empty for the defaults."""
+
+    @contextmanager
+    def places() -> Iterator[dict[str, str]]:
+        if backend == "sqlite-local":
+            yield {"database_url": "", "object_store_url": ""}
+            return
+        prefix = f"{request.getfixturevalue('s3_url')}/{secrets.token_hex(8)}"
+        with fresh_database(request.getfixturevalue("postgres")) as url:
+            yield {"database_url": url, "object_store_url": prefix}
+
+    return places
 
 
 @pytest.fixture(scope="session")
@@ -53,10 +107,19 @@ def data_dir(tmp_path: Path, migrated_file: Path) -> Path:
 
 
 @pytest.fixture
-def settings(tmp_path: Path, data_dir: Path, valkey_url: str) -> Settings:
+def places(new_places: Callable[[], AbstractContextManager[dict[str, str]]]) -> Iterator[dict[str, str]]:
+    """The URLs of a migrated, empty database and of an empty store; empty where they lie in `data_dir`."""
+    with new_places() as fresh:
+        yield fresh
+
+
+@pytest.fixture
+def settings(tmp_path: Path, data_dir: Path, valkey_url: str, places: dict[str, str]) -> Settings:
     """Settings of one box in a fresh folder with a queue of its own."""
     return Settings(
         data_dir=data_dir,
+        database_url=SecretStr(places["database_url"]),
+        object_store_url=places["object_store_url"],
         redis_url=SecretStr(valkey_url),
         queue_name=f"test-{tmp_path.name.replace('_', '-').lower()}",
         models_dir=tmp_path / "models",
@@ -64,17 +127,17 @@ def settings(tmp_path: Path, data_dir: Path, valkey_url: str) -> Settings:
 
 
 @pytest.fixture
-def database(data_dir: Path) -> Iterator[Database]:
+def database(data_dir: Path, places: dict[str, str]) -> Iterator[Database]:
     """The database that `settings` names."""
-    fresh = Database(f"sqlite:///{data_dir / 'quadpatch.db'}")
+    fresh = Database(places["database_url"] or f"sqlite:///{data_dir / 'quadpatch.db'}")
     yield fresh
     fresh.close()
 
 
 @pytest.fixture
-def store(data_dir: Path) -> ObjectStore:
+def store(data_dir: Path, places: dict[str, str]) -> ObjectStore:
     """The empty store that `settings` names."""
-    return open_store(f"file://{data_dir / 'objects'}")
+    return open_store(places["object_store_url"] or f"file://{data_dir / 'objects'}", data_dir / "scratch")
 
 
 @pytest.fixture(scope="session")
@@ -126,6 +189,8 @@ def run_service(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., Abstr
             port = free.getsockname()[1]
         values = {
             "data_dir": settings.data_dir,
+            "database_url": settings.database_url.get_secret_value(),
+            "object_store_url": settings.object_store_url,
             "redis_url": settings.redis_url.get_secret_value(),
             "queue_name": settings.queue_name,
             "models_dir": settings.models_dir,

