@@ -1,12 +1,14 @@
 """The event log of a job: append with the change itself, read from anywhere."""
 
+from collections.abc import Mapping
+from dataclasses import dataclass
 from datetime import datetime
 from typing import Any
 
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from jobkit.schema import Event, EventType
+from jobkit.schema import Event, EventType, JobState
 from jobkit.tables import EventRow, JobRow
 
 
@@ -28,3 +30,44 @@ def read_events(session: Session, job_id: str, after: int, limit: int) -> list[E
         .limit(limit)
     )
     return [Event.model_validate(row, from_attributes=True) for row in rows]
+
+
+@dataclass(frozen=True)
+class News:
+    """What has happened to a job since somebody looked last.
+
+    Attributes
+    ----------
+    events : list of Event
+        Oldest first.
+    is_all : bool
+        Whether these are the last that the job will ever have.
+    """
+
+    events: list[Event]
+    is_all: bool
+
+
+def read_news(session: Session, watched: Mapping[str, int], limit: int) -> dict[str, News]:
+    """Look at many jobs at once: one query for all, and one more for each job that has changed.
+
+    Parameters
+    ----------
+    session : Session
+    watched : mapping
+        For each job the number of the last event that is known.
+    limit : int
+        Most events of a job; the rest comes with the next look.
+
+    Returns
+    -------
+    dict
+        For each job that is still there.
+    """
+    rows = session.execute(select(JobRow.id, JobRow.revision, JobRow.state).where(JobRow.id.in_(watched))).all()
+    news = {}
+    for job_id, revision, state in rows:
+        has_changed = revision > watched[job_id]
+        events = read_events(session, job_id, watched[job_id], limit) if has_changed else []
+        news[job_id] = News(events, JobState(state).is_terminal and len(events) < limit)
+    return news

@@ -1,0 +1,211 @@
+"""Event streams: server-sent events of jobs, replayed from the event log and followed to the end.
+
+One poller for each process looks at the database for all watched jobs at once and hands what is new to the streams, so
+a stream costs a connection and no thread. Each stream holds the number of the last event that it was handed, and gets
+those that follow in their order: whether they happened long ago or just now makes no difference, so there is no seam
+between replay and live at which one could be lost or come twice.
+"""
+
+import asyncio
+import logging
+from collections.abc import AsyncIterator, Mapping
+from contextlib import asynccontextmanager
+from http import HTTPStatus
+
+import anyio
+import anyio.to_thread
+from fastapi.sse import KEEPALIVE_COMMENT, EventSourceResponse, format_sse_event
+from sqlalchemy.exc import SQLAlchemyError
+from starlette.types import Receive, Scope, Send
+
+from jobkit.database import Database
+from jobkit.errors import DatabaseUnavailableError
+from jobkit.events import News, read_news
+from jobkit.schema import Event
+from service.problems import RETRY_AFTER_S, ProblemError
+
+LOOK_S = 0.25
+# Proxies close connections that stay silent for a minute or half of one.
+PING_S = 15.0
+# How soon a client comes back after the stream broke.
+_RECONNECT_MS = 1000
+_MOST_EVENTS = 1000
+# A client that does not read gets nothing new until it has taken what lies here for it.
+_MOST_PENDING_BYTES = 1 << 18
+# Nginx would collect events until its buffer is full.
+_HEADERS: Mapping[str, str] = {"X-Accel-Buffering": "no", "Cache-Control": "no-store", "Vary": "Accept"}
+
+_logger = logging.getLogger("service")
+
+
+class EventStream:
+    """The events of one job on their way to one client; `after` is the number of the last one."""
+
+    def __init__(self, job_id: str, after: int, ping_s: float) -> None:
+        self.job_id = job_id
+        self.after = after
+        self._ping_s = ping_s
+        self._pending: list[bytes] = []
+        self._pending_bytes = 0
+        self._changed = asyncio.Event()
+        self._is_over = False
+
+    @property
+    def has_room(self) -> bool:
+        """Whether the client keeps up."""
+        return self._pending_bytes < _MOST_PENDING_BYTES
+
+    def hand(self, event: Event, frame: bytes) -> None:
+        """Send an event, unless the client has it already."""
+        if event.sequence <= self.after:
+            return
+        self.after = event.sequence
+        self._pending.append(frame)
+        self._pending_bytes += len(frame)
+        self._changed.set()
+
+    def end(self) -> None:
+        """End the stream once the client has what was handed over."""
+        self._is_over = True
+        self._changed.set()
+
+    async def chunks(self) -> AsyncIterator[bytes]:
+        """Yield what goes over the line: events as they come, and a comment where nothing does for long."""
+        yield format_sse_event(comment=f"events of {self.job_id}", retry=_RECONNECT_MS)
+        while True:
+            try:
+                async with asyncio.timeout(self._ping_s):
+                    await self._changed.wait()
+            except TimeoutError:
+                yield KEEPALIVE_COMMENT
+                continue
+            self._changed.clear()
+            chunk, is_over = b"".join(self._pending), self._is_over
+            self._pending.clear()
+            self._pending_bytes = 0
+            if chunk:
+                yield chunk
+            if is_over:
+                return
+
+
+class EventStreams:
+    """All streams of a process.
+
+    Parameters
+    ----------
+    database : Database
+    most : int
+        Streams at the same time.
+    ping_s : float
+        Seconds of silence until a comment is sent.
+    """
+
+    def __init__(self, database: Database, most: int, ping_s: float = PING_S) -> None:
+        self._database = database
+        self._most = most
+        self._ping_s = ping_s
+        self._streams: set[EventStream] = set()
+        self._wake = asyncio.Event()
+        self._is_closed = False
+
+    def __len__(self) -> int:
+        """Count the streams that are open."""
+        return len(self._streams)
+
+    def respond(self, job_id: str, after: int) -> EventSourceResponse:
+        """Answer with the events of a job that follow number `after`, until it has ended.
+
+        Raises
+        ------
+        ProblemError
+            503 if there are too many streams.
+        """
+        if len(self._streams) >= self._most:
+            raise ProblemError(
+                HTTPStatus.SERVICE_UNAVAILABLE,
+                "too_many_streams",
+                f"{self._most} event streams are open, which is the limit; poll the job, or come back later",
+                {"Retry-After": RETRY_AFTER_S},
+            )
+        stream = EventStream(job_id, after, self._ping_s)
+        self._streams.add(stream)
+        self._wake.set()
+        if self._is_closed:
+            stream.end()
+        return _StreamResponse(self, stream)
+
+    def leave(self, stream: EventStream) -> None:
+        """Forget a stream whose client has gone, or has all."""
+        self._streams.discard(stream)
+
+    def close(self) -> None:
+        """End all streams; their clients come back with the number of the last event that they have."""
+        self._is_closed = True
+        for stream in self._streams:
+            stream.end()
+
+    @asynccontextmanager
+    async def running(self) -> AsyncIterator[None]:
+        """Serve streams for the length of a with block."""
+        async with anyio.create_task_group() as tasks:
+            tasks.start_soon(self._follow)
+            yield
+            self.close()
+            tasks.cancel_scope.cancel()
+
+    async def _follow(self) -> None:
+        """Look for news: at once for a fresh stream, then every quarter of a second."""
+        while True:
+            try:
+                async with asyncio.timeout(LOOK_S if self._streams else None):
+                    await self._wake.wait()
+            except TimeoutError:
+                pass
+            self._wake.clear()
+            await self._look()
+
+    async def _look(self) -> None:
+        streams = [stream for stream in self._streams if stream.has_room]
+        watched: dict[str, int] = {}
+        for stream in streams:
+            watched[stream.job_id] = min(stream.after, watched.get(stream.job_id, stream.after))
+        if not watched:
+            return
+        try:
+            news = await anyio.to_thread.run_sync(self._read, watched)
+        except (DatabaseUnavailableError, SQLAlchemyError) as error:
+            # The streams stay: their clients see silence, as they would if nothing happened, and lose nothing.
+            _logger.warning("event streams wait for the database: %r", error.__cause__ or error)
+            return
+        frames = {job_id: [(event, _frame(event)) for event in found.events] for job_id, found in news.items()}
+        for stream in streams:
+            found = news.get(stream.job_id)
+            for event, frame in frames.get(stream.job_id, ()):
+                stream.hand(event, frame)
+            if found is None or found.is_all:
+                stream.end()
+
+    def _read(self, watched: Mapping[str, int]) -> dict[str, News]:
+        with self._database.read() as session:
+            return read_news(session, watched, _MOST_EVENTS)
+
+
+class _StreamResponse(EventSourceResponse):
+    """A response that gives its place back, however it ends."""
+
+    def __init__(self, streams: EventStreams, stream: EventStream) -> None:
+        super().__init__(stream.chunks(), headers=dict(_HEADERS))
+        self._streams = streams
+        self._stream = stream
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Stream until the end, or until the client is gone."""
+        try:
+            await super().__call__(scope, receive, send)
+        finally:
+            self._streams.leave(self._stream)
+
+
+def _frame(event: Event) -> bytes:
+    return format_sse_event(data_str=event.model_dump_json(), event=event.type, id=str(event.sequence))
