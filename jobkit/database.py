@@ -17,6 +17,7 @@ from typing import Any
 
 from alembic import command
 from alembic.config import Config
+from alembic.migration import MigrationContext
 from sqlalchemy import Connection, Engine, create_engine, event, text
 from sqlalchemy.engine import make_url
 from sqlalchemy.exc import DBAPIError, InterfaceError, OperationalError
@@ -85,38 +86,42 @@ class Database:
         with _translated(), self._engine.connect() as connection:
             connection.execute(text("SELECT 1"))
 
-    def migrate(self) -> None:
-        """Bring the tables to the latest revision; safe when several processes start at once."""
+    def migrate(self, revision: str = "head") -> None:
+        """Bring the tables to a revision, the latest by default; safe when several processes start at once."""
         with _translated():
             if self._engine.dialect.name == "sqlite":
-                self._migrate_sqlite()
+                self._migrate_sqlite(revision)
             else:
-                self._migrate_postgresql()
+                self._migrate_postgresql(revision)
 
     def close(self) -> None:
         """Close all connections."""
         self._engine.dispose()
 
-    def _migrate_postgresql(self) -> None:
+    def _migrate_postgresql(self, revision: str) -> None:
         with self._engine.begin() as connection:
             # Large tables take their time, and so does another process that is at it already.
             connection.execute(text("SET LOCAL statement_timeout = 0"))
             connection.execute(text("SET LOCAL lock_timeout = 0"))
             connection.execute(text("SELECT pg_advisory_xact_lock(:lock)"), {"lock": _MIGRATION_LOCK})
-            _upgrade(connection)
+            _move_tables(connection, revision)
 
-    def _migrate_sqlite(self) -> None:
+    def _migrate_sqlite(self, revision: str) -> None:
         path = Path(str(self._engine.url.database))
         with path.with_name(path.name + ".lock").open("w") as lock:
             fcntl.flock(lock, fcntl.LOCK_EX)
             # The file remembers its journal mode; to change it one must be alone, hence here and not on every connect.
-            raw = self._engine.raw_connection()
-            try:
-                raw.cursor().execute("PRAGMA journal_mode = WAL")
-            finally:
-                raw.close()
-            with self._writer.begin() as connection:
-                _upgrade(connection)
+            with self._writer.connect() as connection:
+                cursor = connection.connection.cursor()
+                cursor.execute("PRAGMA journal_mode = WAL")
+                # Some changes need a table made anew; with keys held, dropping the old one would drop what refers to it.
+                cursor.execute("PRAGMA foreign_keys = OFF")
+                try:
+                    with connection.begin():
+                        _move_tables(connection, revision)
+                finally:
+                    cursor.execute("PRAGMA foreign_keys = ON")
+                    cursor.close()
 
 
 def migration_config() -> Config:
@@ -145,10 +150,13 @@ def _is_outage(error: DBAPIError) -> bool:
     return getattr(error.orig, "sqlstate", None) in _OUTAGES
 
 
-def _upgrade(connection: Connection) -> None:
+def _move_tables(connection: Connection, revision: str) -> None:
     config = migration_config()
     config.attributes["connection"] = connection
-    command.upgrade(config, "head")
+    current = MigrationContext.configure(connection).get_current_revision() or ""
+    # Revisions are numbers of four digits, so they sort as text, and `head` comes after all of them.
+    move = command.downgrade if revision < current else command.upgrade
+    move(config, revision)
 
 
 def _make_engine(url: str) -> Engine:

@@ -11,7 +11,8 @@ from jobkit.database import Database
 from jobkit.errors import IdempotencyError, JobFinishedError, JobNotFoundError, MeshNotFoundError
 from jobkit.events import append_event, read_events
 from jobkit.ids import new_job_id
-from jobkit.schema import EventPage, Job, JobLinks, JobPage, JobSpec, JobState, ResolvedModel
+from jobkit.job_rows import existing_job, to_job
+from jobkit.schema import EventPage, Job, JobPage, JobSpec, JobState, ResolvedModel
 from jobkit.tables import IdempotencyRow, JobRow, MeshRow
 from jobkit.transitions import Move, make_move
 
@@ -36,19 +37,41 @@ class Idempotency:
 
 @dataclass(frozen=True)
 class NewJob:
-    """What a job is created from; `model` is already resolved, and stays."""
+    """What a job is created from; `model` is already resolved, and stays.
+
+    `request_id` and `traceparent` name the request that makes it, for logs and traces.
+    """
 
     spec: JobSpec
     model: ResolvedModel
     max_attempts: int
     rerun_of: str | None = None
+    request_id: str | None = None
+    traceparent: str | None = None
+
+
+@dataclass(frozen=True)
+class Glance:
+    """As much of a job as tells whether there is something new."""
+
+    revision: int
+    state: JobState
+    is_pinned: bool
 
 
 class Jobs:
-    """All jobs of a database."""
+    """All jobs of a database.
 
-    def __init__(self, database: Database) -> None:
+    Parameters
+    ----------
+    database : Database
+    retention_days : float
+        How long finished jobs are kept, for what clients are told; 0: for ever.
+    """
+
+    def __init__(self, database: Database, retention_days: float = 0) -> None:
         self._database = database
+        self._retention_days = retention_days
 
     def create(self, new: NewJob, idempotency: Idempotency | None = None) -> tuple[Job, bool]:
         """Write a queued job, and with it the idempotency key.
@@ -74,12 +97,21 @@ class Jobs:
     def earlier(self, idempotency: Idempotency) -> Job | None:
         """Return the job that came of the key, None where it is new; raise IdempotencyError."""
         with self._database.read() as session:
-            return _earlier_job(session, idempotency)
+            return self._earlier_job(session, idempotency)
 
     def get(self, job_id: str) -> Job:
         """Return a job; raise JobNotFoundError."""
         with self._database.read() as session:
-            return to_job(existing_job(session, job_id))
+            return self._show(existing_job(session, job_id))
+
+    def glance(self, job_id: str) -> Glance:
+        """Return whether and how a job has changed, at a fraction of what `get` costs; raise JobNotFoundError."""
+        query = select(JobRow.revision, JobRow.state, JobRow.pinned).where(JobRow.id == job_id)
+        with self._database.read() as session:
+            row = session.execute(query).one_or_none()
+        if row is None:
+            raise JobNotFoundError(f"there is no job {job_id}")
+        return Glance(row.revision, JobState(row.state), row.pinned)
 
     def page(self, limit: int, cursor: str | None = None, state: JobState | None = None) -> JobPage:
         """Return jobs, newest first.
@@ -101,7 +133,7 @@ class Jobs:
         with self._database.read() as session:
             rows = list(session.scalars(query))
         next_cursor = rows[limit - 1].id if len(rows) > limit else None
-        return JobPage(items=[to_job(row) for row in rows[:limit]], next_cursor=next_cursor)
+        return JobPage(items=[self._show(row) for row in rows[:limit]], next_cursor=next_cursor)
 
     def request_cancel(self, job_id: str) -> Job:
         """Cancel a queued job at once, ask a running one to stop; a second call changes nothing.
@@ -113,10 +145,12 @@ class Jobs:
         """
         now = utc_now()
         with self._database.write() as session:
+            # Or it might start between the two moves, and fit neither.
+            existing_job(session, job_id, locked=True)
             _ = make_move(session, job_id, Move(JobState.QUEUED, JobState.CANCELED, "canceled"), now) or make_move(
                 session, job_id, Move(JobState.RUNNING, JobState.CANCELING, "cancel_requested"), now
             )
-            job = to_job(existing_job(session, job_id))
+            job = self._show(existing_job(session, job_id))
         if job.state not in (JobState.CANCELED, JobState.CANCELING):
             raise JobFinishedError(f"job {job_id} has already ended as {job.state.value}")
         return job
@@ -131,7 +165,7 @@ class Jobs:
 
     def _create(self, new: NewJob, idempotency: Idempotency | None) -> tuple[Job, bool]:
         with self._database.write() as session:
-            if idempotency is not None and (earlier := _earlier_job(session, idempotency)) is not None:
+            if idempotency is not None and (earlier := self._earlier_job(session, idempotency)) is not None:
                 return earlier, False
             if session.get(MeshRow, new.spec.mesh_id) is None:
                 raise MeshNotFoundError(f"there is no mesh {new.spec.mesh_id}")
@@ -149,40 +183,18 @@ class Jobs:
                         created_at=row.created_at,
                     )
                 )
-            return to_job(row), True
+            return self._show(row), True
 
+    def _show(self, row: JobRow) -> Job:
+        return to_job(row, self._retention_days)
 
-def existing_job(session: Session, job_id: str) -> JobRow:
-    """Return the row of a job as it stands now; raise JobNotFoundError."""
-    row = session.scalars(
-        select(JobRow).where(JobRow.id == job_id).execution_options(populate_existing=True)
-    ).one_or_none()
-    if row is None:
-        raise JobNotFoundError(f"there is no job {job_id}")
-    return row
-
-
-def to_job(row: JobRow) -> Job:
-    """Return the row as clients see it."""
-    names = Job.model_fields.keys() - {"links"}
-    values = {name: getattr(row, name) for name in names}
-    return Job.model_validate(values | {"links": _links(row)})
-
-
-def _links(row: JobRow) -> JobLinks:
-    path = f"/v1/jobs/{row.id}"
-    state = JobState(row.state)
-    roles = {file["role"] for file in (row.result or {}).get("files", [])}
-    return JobLinks(
-        self=path,
-        events=f"{path}/events",
-        mesh=f"/v1/meshes/{row.mesh_id}",
-        rerun=f"{path}/rerun",
-        cancel=None if state.is_terminal else f"{path}/cancel",
-        result=f"{path}/result" if "result" in roles else None,
-        report=f"{path}/report" if "report" in roles else None,
-        preview=f"{path}/preview.png" if "preview" in roles else None,
-    )
+    def _earlier_job(self, session: Session, idempotency: Idempotency) -> Job | None:
+        earlier = session.get(IdempotencyRow, (idempotency.principal, idempotency.key))
+        if earlier is None:
+            return None
+        if earlier.request_sha256 != idempotency.request_sha256:
+            raise IdempotencyError(f"the idempotency key {idempotency.key!r} came before with another request")
+        return self._show(existing_job(session, earlier.job_id))
 
 
 def _new_row(new: NewJob) -> JobRow:
@@ -198,16 +210,9 @@ def _new_row(new: NewJob) -> JobRow:
         spec=new.spec.model_dump(mode="json"),
         model=new.model.model_dump(mode="json"),
         rerun_of=new.rerun_of,
+        request_id=new.request_id,
+        traceparent=new.traceparent,
         queued_at=now,
         created_at=now,
         updated_at=now,
     )
-
-
-def _earlier_job(session: Session, idempotency: Idempotency) -> Job | None:
-    earlier = session.get(IdempotencyRow, (idempotency.principal, idempotency.key))
-    if earlier is None:
-        return None
-    if earlier.request_sha256 != idempotency.request_sha256:
-        raise IdempotencyError(f"the idempotency key {idempotency.key!r} came before with another request")
-    return to_job(existing_job(session, earlier.job_id))

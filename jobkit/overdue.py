@@ -15,7 +15,7 @@ from jobkit.attempts import AT_WORK
 from jobkit.database import Database
 from jobkit.endings import Attempt, Ending, another_try, cancel_attempt, counts_out, end_attempt, failure
 from jobkit.errors import JobNotFoundError, StaleAttemptError
-from jobkit.jobs import existing_job
+from jobkit.job_rows import existing_job
 from jobkit.schema import JobError, JobState
 from jobkit.tables import AttemptRow, JobRow
 from jobkit.transitions import Move, make_move
@@ -65,7 +65,9 @@ def _take(database: Database, condition: ColumnElement[bool], step: Callable[[Se
     for job_id in ids:
         try:
             with database.write() as session:
-                row = session.scalars(select(JobRow).where(JobRow.id == job_id, condition)).one_or_none()
+                # Locked: a heartbeat that comes now waits, and one that came just before is seen.
+                due = select(JobRow).where(JobRow.id == job_id, condition).with_for_update()
+                row = session.scalars(due).one_or_none()
                 if row is not None:
                     step(session, row)
                     taken += 1

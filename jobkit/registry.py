@@ -14,14 +14,17 @@ from sqlalchemy.orm import Session
 
 from jobkit.clock import utc_now
 from jobkit.database import Database
-from jobkit.errors import ModelNotFoundError, NameTakenError, UnusableModelError
+from jobkit.errors import ModelNotFoundError, NameTakenError
 from jobkit.model_header import Card, artifact_format, read_dictionary_card, to_wire_card
 from jobkit.network_header import read_network_card
+from jobkit.removals import assure
 from jobkit.schema import SELF, Alias, Model, ModelKind, ModelLinks, ModelList, ModelVersion
 from jobkit.store import CHUNK_BYTES, ObjectStore, StoredObject
 from jobkit.tables import AliasRow, ModelRow
 
 MODEL_PREFIX = "models"
+# Of one name, published at the same moment.
+_MOST_RIVALS = 20
 RESERVED_NAMES = frozenset({SELF, "smooth", "none", "latest"})
 
 
@@ -51,7 +54,8 @@ class Registry:
         ----------
         name : str
         stored : StoredObject
-            Written with the prefix MODEL_PREFIX; removed again if it is no model.
+            Written with the prefix MODEL_PREFIX; if it is no model, it is left to the sweep, since another version
+            may be made of the same bytes and a better card.
         card : dict, optional
             Of a network, in place of the one in its metadata; a dictionary always brings its own.
         version : int, optional
@@ -69,11 +73,8 @@ class Registry:
         UnusableModelError
             If the bytes are no model.
         """
-        try:
-            kind, artifact, whole_card = self._inspect(stored, card)
-        except UnusableModelError:
-            self._store.delete(stored.key)
-            raise
+        assure(self._database, self._store, stored.key)
+        kind, artifact, whole_card = self._inspect(stored, card)
         wire_card = to_wire_card(whole_card).model_dump(mode="json")
         row = ModelRow(
             name=name,
@@ -85,11 +86,12 @@ class Registry:
             card=wire_card,
             created_at=utc_now(),
         )
-        try:
-            return self._insert(row, version)
-        except IntegrityError:
-            # Two versions were published at the same moment: now the next number is another one.
-            return self._insert(row, version)
+        for _ in range(_MOST_RIVALS):
+            try:
+                return self._insert(row, version)
+            except IntegrityError:
+                continue  # another version was published at the same moment: now the next number is another one
+        return self._insert(row, version)
 
     def publish_file(
         self, name: str, path: Path, card: Card | None = None, version: int | None = None

@@ -1,7 +1,7 @@
 """One real box per test process, and meshes built in code."""
 
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack
+from contextlib import AbstractContextManager, ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -54,12 +54,15 @@ class RunningBox:
 
 
 @pytest.fixture(scope="session")
-def box(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RunningBox]:
+def box(
+    tmp_path_factory: pytest.TempPathFactory, new_places: Callable[[], AbstractContextManager[dict[str, str]]]
+) -> Iterator[RunningBox]:
     data = tmp_path_factory.mktemp("box")
     with ExitStack() as stack:
+        places = {f"QUADPATCH_{name.upper()}": url for name, url in stack.enter_context(new_places()).items()}
         # For the box alone: other tests of this process read the environment, too.
         with pytest.MonkeyPatch.context() as environment:
-            for name, value in FAST.items():
+            for name, value in {**FAST, **places}.items():
                 environment.setenv(name, value)
             url = stack.enter_context(running_box(data))
         yield RunningBox(url, data)

@@ -1,0 +1,45 @@
+"""Rows of jobs, found and turned into what clients see."""
+
+from sqlalchemy import select
+from sqlalchemy.orm import Session
+
+from jobkit.errors import JobNotFoundError
+from jobkit.expiry import expiry
+from jobkit.schema import Job, JobLinks, JobState
+from jobkit.tables import JobRow
+
+
+def existing_job(session: Session, job_id: str, *, locked: bool = False) -> JobRow:
+    """Return the row of a job as it stands now, and stays until the session ends if `locked`; raise JobNotFoundError."""
+    query = select(JobRow).where(JobRow.id == job_id).execution_options(populate_existing=True)
+    row = session.scalars(query.with_for_update() if locked else query).one_or_none()
+    if row is None:
+        raise JobNotFoundError(f"there is no job {job_id}")
+    return row
+
+
+def to_job(row: JobRow, retention_days: float = 0) -> Job:
+    """Return the row as clients see it; finished jobs are kept for `retention_days`, 0: for ever.
+
+    What depends on other jobs, `queue_position` and `eta_s`, is left to `jobkit.estimates`.
+    """
+    names = Job.model_fields.keys() - {"links", "expires_at", "queue_position", "eta_s"}
+    values = {name: getattr(row, name) for name in names}
+    expires_at = expiry(row.finished_at, retention_days, row.pinned)
+    return Job.model_validate(values | {"links": _links(row), "expires_at": expires_at})
+
+
+def _links(row: JobRow) -> JobLinks:
+    path = f"/v1/jobs/{row.id}"
+    state = JobState(row.state)
+    roles = {file["role"] for file in (row.result or {}).get("files", [])}
+    return JobLinks(
+        self=path,
+        events=f"{path}/events",
+        mesh=f"/v1/meshes/{row.mesh_id}",
+        rerun=f"{path}/rerun",
+        cancel=None if state.is_terminal else f"{path}/cancel",
+        result=f"{path}/result" if "result" in roles else None,
+        report=f"{path}/report" if "report" in roles else None,
+        preview=f"{path}/preview.png" if "preview" in roles else None,
+    )
