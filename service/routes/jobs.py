@@ -7,12 +7,13 @@ from starlette.concurrency import run_in_threadpool
 from starlette.responses import Response
 
 from jobkit.ids import JOB_ID_PATTERN
-from jobkit.schema import EventPage, Job, JobPage, JobSpec, JobState, Plan
+from jobkit.schema import Job, JobPage, JobSpec, JobState, Plan
 from service.routes.common import (
     IdempotencyKey,
     IfNoneMatch,
     JobIdPath,
     described_header,
+    etag_of,
     is_unchanged,
     job_etag,
     job_response,
@@ -74,7 +75,8 @@ async def create_job(
 @router.get("/v1/jobs", response_model=JobPage, responses=problems())
 def list_jobs(services: ServicesDep, limit: Limit = 20, cursor: Cursor = None, state: StateFilter = None) -> JobPage:
     """List jobs, newest first. Those that arrive meanwhile don't shift the pages."""
-    return services.jobs.page(limit, cursor, state)
+    page = services.jobs.page(limit, cursor, state)
+    return page.model_copy(update={"items": [services.estimates.complete(job) for job in page.items]})
 
 
 @router.get("/v1/jobs/{job_id}", response_model=Job, responses={**not_modified(), **problems(404)})
@@ -85,7 +87,11 @@ async def get_job(
     prefer: PreferHeader = None,
     if_none_match: IfNoneMatch = None,
 ) -> Response:
-    """Show where a job stands."""
+    """Show where a job stands. Its entity tag covers all but `eta_s`, which ages by itself."""
+    if if_none_match is not None and not preferred_wait_s(prefer):
+        tag = await run_in_threadpool(_present_etag, services, job_id)
+        if is_unchanged(request, tag):
+            return Response(status_code=304, headers={"ETag": tag})
     job = await _wait_for_end(services, job_id, prefer)
     if is_unchanged(request, job_etag(job)):
         return Response(status_code=304, headers={"ETag": job_etag(job)})
@@ -93,17 +99,6 @@ async def get_job(
     response.status_code = 200
     note_applied(response, prefer)
     return response
-
-
-@router.get("/v1/jobs/{job_id}/events", response_model=EventPage, responses=problems(404))
-def list_events(
-    services: ServicesDep,
-    job_id: JobIdPath,
-    after: Annotated[int, Query(ge=0, le=2**31 - 1, description="Only events with a higher number.")] = 0,
-    limit: Annotated[int, Query(ge=1, le=1000, description="Most events on the page.")] = 200,
-) -> EventPage:
-    """List everything that happened to a job, oldest first."""
-    return services.jobs.events(job_id, after, limit)
 
 
 @router.post(
@@ -118,7 +113,7 @@ def list_events(
 )
 def cancel_job(services: ServicesDep, job_id: JobIdPath) -> Response:
     """Cancel a job; a second time changes nothing."""
-    return job_response(services.jobs.request_cancel(job_id))
+    return job_response(services.estimates.complete(services.jobs.request_cancel(job_id)))
 
 
 @router.post(
@@ -152,4 +147,14 @@ async def answer_submission(services: Services, submission: Submission, prefer: 
 
 async def _wait_for_end(services: Services, job_id: str, prefer: str | None) -> Job:
     wait_s = min(preferred_wait_s(prefer), services.settings.max_wait_s)
-    return await wait_until(lambda: services.jobs.get(job_id), lambda seen: seen.state.is_terminal, wait_s)
+    return await wait_until(lambda: _look(services, job_id), lambda seen: seen.state.is_terminal, wait_s)
+
+
+def _look(services: Services, job_id: str) -> Job:
+    return services.estimates.complete(services.jobs.get(job_id))
+
+
+def _present_etag(services: Services, job_id: str) -> str:
+    """Return the entity tag that a job has now, without reading all of it: most polls find nothing new."""
+    seen = services.jobs.glance(job_id)
+    return etag_of(seen.revision, services.estimates.position(job_id, seen.state), seen.is_pinned)

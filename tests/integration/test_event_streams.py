@@ -63,6 +63,15 @@ class Work:
         self._attempts.publish(self._attempt, JobResult(format="ply"))
 
 
+def read_and_kill(service: Any, job_id: str, got: list[SentEvent], n_then: int) -> None:
+    """Go on after what is there, and kill the service in the middle."""
+    with stream(service.url, job_id, len(got)) as events:
+        for event in events:
+            got.append(event)
+            if len(got) == n_then:
+                service.process.send_signal(signal.SIGKILL)
+
+
 @pytest.mark.faults
 def test_a_service_killed_in_the_middle_of_a_stream_costs_no_event_and_repeats_none(
     serve: Callable[..., Any], database: Database
@@ -73,13 +82,10 @@ def test_a_service_killed_in_the_middle_of_a_stream_costs_no_event_and_repeats_n
     with Work(database, job_id) as work:
         for _ in range(N_KILLS):
             with serve() as service:
-                before = len(got)
-                with pytest.raises(httpx.TransportError), stream(service.url, job_id, len(got)) as events:
-                    for event in events:
-                        got.append(event)
-                        if len(got) == before + 50:
-                            service.process.send_signal(signal.SIGKILL)
-                assert len(got) >= before + 50
+                fifty_more = len(got) + 50
+                with pytest.raises(httpx.TransportError):
+                    read_and_kill(service, job_id, got, fifty_more)
+                assert len(got) >= fifty_more
         with serve() as service, stream(service.url, job_id, len(got)) as events:
             for event in events:
                 got.append(event)

@@ -1,4 +1,5 @@
 import threading
+import time
 from collections.abc import Callable
 from typing import Any
 
@@ -163,6 +164,45 @@ def test_a_poller_is_told_when_nothing_has_changed(client: TestClient, services:
     changed = client.get(f"/v1/jobs/{job_id}", headers={"If-None-Match": first.headers["etag"]})
     assert changed.status_code == 200
     assert (changed.json()["stage"], changed.json()["percent"]) == ("fill", 12.5)
+
+
+def test_a_poller_that_waits_is_told_when_it_moves_up_in_the_queue(
+    client: TestClient, services: Services, mesh_id: str
+) -> None:
+    spec = {"mesh_id": mesh_id, "method": SMOOTH}
+    first, second = (client.post("/v1/jobs", json=spec).json()["id"] for _ in range(2))
+    path = f"/v1/jobs/{second}"
+    behind = poll_until(client, path, lambda job: job["queue_position"] == 2)
+    assert client.get(path, headers={"If-None-Match": behind.headers["etag"]}).status_code == 304
+    services.attempts.start(first, "test", 30)
+    ahead = poll_until(client, path, lambda job: job["queue_position"] == 1)
+    assert ahead.json()["revision"] == behind.json()["revision"]
+    assert ahead.headers["etag"] != behind.headers["etag"]
+    services.attempts.start(second, "test", 30)
+    assert client.get(path).json()["queue_position"] is None
+
+
+def test_the_short_way_to_an_unchanged_job_knows_the_tag_of_the_long_way(
+    client: TestClient, services: Services, job_id: str, finish: Callable[[str], Job]
+) -> None:
+    path = f"/v1/jobs/{job_id}"
+    for step in (lambda: None, lambda: finish(job_id)):
+        step()
+        tag = client.get(path).headers["etag"]
+        short = client.get(path, headers={"If-None-Match": tag})
+        long = client.get(path, headers={"If-None-Match": tag, "Prefer": "wait=0"})
+        assert (short.status_code, short.headers["etag"]) == (304, tag)
+        other = client.get(path, headers={"If-None-Match": 'W/"0"', "Prefer": "wait=0"})
+        assert (long.status_code, other.status_code, other.headers["etag"]) == (304, 200, tag)
+    missing = client.get("/v1/jobs/job_" + "0" * 26, headers={"If-None-Match": tag})
+    assert (missing.status_code, missing.json()["code"]) == (404, "job_not_found")
+
+
+def poll_until(client: TestClient, path: str, is_seen: Callable[[Any], bool]) -> Any:
+    """Poll while the places in the queue are those of a moment ago."""
+    while not is_seen((answer := client.get(path)).json()):
+        time.sleep(0.05)
+    return answer
 
 
 def test_pages_hold_every_job_once_though_new_ones_arrive(client: TestClient, mesh_id: str) -> None:
