@@ -1,4 +1,5 @@
-# One image for every role; the command decides: `python -m service` (the API, default) or `python -m worker`.
+# One image for every role; the command decides: `python -m service` (the API, default), `python -m dispatcher` or
+# `python -m worker`.
 # 3.11 is the Python that constraints.txt was resolved and tested with.
 ARG PYTHON_IMAGE=python:3.11-slim-bookworm
 
@@ -6,7 +7,7 @@ FROM ${PYTHON_IMAGE} AS build
 ENV PIP_DISABLE_PIP_VERSION_CHECK=1 PIP_NO_CACHE_DIR=1 PIP_ROOT_USER_ACTION=ignore
 RUN python -m venv /opt/quadpatch
 WORKDIR /source
-# "service networks" adds torch, with which workers can fit a network to the mesh itself.
+# "service networks" adds torch, with which workers can fit a network to the mesh itself; "service telemetry" adds traces.
 ARG EXTRAS=service
 # The libraries first: they change less often than the source, and their layer is the large one.
 COPY pyproject.toml constraints.txt ./
@@ -35,7 +36,7 @@ WORKDIR /data
 VOLUME /data
 USER quadpatch
 EXPOSE 8000
-# For the API; a worker is asked another question, see docker-compose.yml.
+# For the API; dispatcher and worker are asked another question, see docker-compose.yml.
 HEALTHCHECK --interval=15s --timeout=5s --start-period=60s --retries=3 \
     CMD ["python", "-c", "import os, urllib.request as u; u.urlopen(f\"http://127.0.0.1:{os.environ.get('QUADPATCH_PORT', 8000)}/readyz\", timeout=4)"]
 CMD ["python", "-m", "service"]

@@ -10,8 +10,18 @@ from sqlalchemy.orm import InstrumentedAttribute, Session
 from jobkit.attempts import AT_WORK
 from jobkit.clock import shared_now
 from jobkit.database import Database
-from jobkit.schema import JobState, MeshState
+from jobkit.schema import DeliveryState, JobState, MeshState
 from jobkit.tables import AliasRow, AttemptCountRow, DeliveryRow, JobRow, MeshRow, ModelRow, StageRow
+
+# They show from the start with a 0: a rate does not see what comes into being as a 1.
+_EXPECTED_OUTCOMES = (
+    (JobState.SUCCEEDED.value, ""),
+    (JobState.SUCCEEDED_WITH_WARNINGS.value, ""),
+    (JobState.CANCELED.value, ""),
+    *((outcome, code) for outcome in ("requeued", "failed") for code in ("worker_lost", "out_of_memory")),
+    ("requeued", "worker_drained"),
+    ("requeued", "store_unavailable"),
+)
 
 
 def database_figures(database: Database, lease_s: float) -> list[Metric]:
@@ -44,8 +54,8 @@ def _states(session: Session) -> Iterator[Metric]:
     mesh_states = [state.value for state in MeshState]
     yield _by("quadpatch_jobs", "Jobs that are kept, by state.", _counts(session, JobRow.state), job_states)
     yield _by("quadpatch_meshes", "Meshes that are kept, by state.", _counts(session, MeshRow.state), mesh_states)
-    deliveries = _counts(session, DeliveryRow.state)
-    yield _by("quadpatch_webhook_deliveries", "Messages to subscribers that are kept, by state.", deliveries, [])
+    deliveries, states = _counts(session, DeliveryRow.state), [state.value for state in DeliveryState]
+    yield _by("quadpatch_webhook_deliveries", "Messages to subscribers that are kept, by state.", deliveries, states)
 
 
 def _waiting(session: Session, now: datetime) -> Iterator[Metric]:
@@ -86,8 +96,9 @@ def _totals(session: Session) -> Iterator[Metric]:
     attempts = CounterMetricFamily(
         "quadpatch_attempts", "Attempts at jobs that have ended, by outcome and error code.", labels=["outcome", "code"]
     )
-    for row in session.scalars(select(AttemptCountRow)):
-        attempts.add_metric([row.outcome, row.code], row.count)
+    counts = {(row.outcome, row.code): row.count for row in session.scalars(select(AttemptCountRow))}
+    for outcome, code in dict.fromkeys([*_EXPECTED_OUTCOMES, *counts]):
+        attempts.add_metric([outcome, code], counts.get((outcome, code), 0))
     stages = SummaryMetricFamily(
         "quadpatch_stage_duration_seconds", "Stages of published repairs, by method.", labels=["stage", "method"]
     )

