@@ -8,18 +8,28 @@
     │   ├── MeshNotFoundError       mesh_not_found
     │   ├── JobNotFoundError        job_not_found
     │   ├── ModelNotFoundError      model_not_found       no such name, version or alias
+    │   ├── WebhookNotFoundError    webhook_not_found     no subscription has that id
+    │   ├── DeliveryNotFoundError   delivery_not_found    the subscription has no such delivery, or no longer
+    │   ├── ResultMissingError      result_missing        the job has a result, but the store has lost its file
     │   └── ObjectNotFoundError     object_not_found      the store holds nothing under that key
     ├── ConflictError
     │   ├── MeshRejectedError       mesh_rejected         the analysis found that the file is no usable mesh
     │   ├── MeshNotReadyError       mesh_not_ready        the analysis is still to come
     │   ├── UnknownHoleError        unknown_hole          an explicit id names no hole of the mesh
-    │   ├── JobNotFinishedError     job_not_finished      a result is asked for before there is one
+    │   ├── MeshInUseError          mesh_in_use           a mesh is to be deleted while jobs name it
+    │   ├── JobNotFinishedError     job_not_finished      a result is asked for, or a deletion, before the job has ended
     │   ├── JobHasNoResultError     job_has_no_result     the job ended without one
     │   ├── JobFinishedError        job_finished          the job ended before it could be changed
     │   ├── NoNetworkError          no_network_registered a CNN job while no network is registered
     │   ├── ModelKindError          model_kind_mismatch   the model is of the other kind or for the other recipe
     │   ├── NameTakenError          name_taken            a model and an alias can't share a name
-    │   └── IdempotencyError        idempotency_conflict  the key came before with another request
+    │   ├── IdempotencyError        idempotency_conflict  the key came before with another request
+    │   ├── TooManyWebhooksError    too_many_webhooks     as many subscriptions as there may be
+    │   ├── WebhookDisabledError    webhook_disabled      nothing is sent to a subscription that is switched off
+    │   ├── DeliveryPendingError    delivery_pending      a delivery that is still under way can't be repeated
+    │   └── HostUnknownError        webhook_host_unknown  the name in a subscription's URL has no address
+    ├── AddressRefusedError         webhook_address_refused   nothing is sent to that address
+    ├── TlsRequiredError            webhook_needs_tls     nothing is sent there unencrypted
     ├── OverLimitError              over_service_limit    more time or memory than the service grants
     ├── TooLargeError               body_too_large        more bytes than the limit
     ├── UnusableModelError          unusable_model        the artifact is no model
@@ -66,10 +76,28 @@ class ModelNotFoundError(NotFoundError):
     code = "model_not_found"
 
 
+class ResultMissingError(NotFoundError):
+    """The job has a result, but the store has lost its file."""
+
+    code = "result_missing"
+
+
 class ObjectNotFoundError(NotFoundError):
     """The store holds nothing under that key."""
 
     code = "object_not_found"
+
+
+class WebhookNotFoundError(NotFoundError):
+    """No subscription has that id."""
+
+    code = "webhook_not_found"
+
+
+class DeliveryNotFoundError(NotFoundError):
+    """The subscription has no such delivery, or no longer."""
+
+    code = "delivery_not_found"
 
 
 class ConflictError(JobkitError):
@@ -96,8 +124,14 @@ class UnknownHoleError(ConflictError):
     code = "unknown_hole"
 
 
+class MeshInUseError(ConflictError):
+    """A mesh is to be deleted while jobs name it."""
+
+    code = "mesh_in_use"
+
+
 class JobNotFinishedError(ConflictError):
-    """A result is asked for before there is one."""
+    """A result is asked for, or the job is to be deleted, before it has ended."""
 
     code = "job_not_finished"
 
@@ -136,6 +170,42 @@ class IdempotencyError(ConflictError):
     """The idempotency key came before, with another request."""
 
     code = "idempotency_conflict"
+
+
+class TooManyWebhooksError(ConflictError):
+    """There are as many subscriptions as there may be."""
+
+    code = "too_many_webhooks"
+
+
+class WebhookDisabledError(ConflictError):
+    """Nothing is sent to a subscription that is switched off."""
+
+    code = "webhook_disabled"
+
+
+class DeliveryPendingError(ConflictError):
+    """A delivery that is still under way can't be repeated."""
+
+    code = "delivery_pending"
+
+
+class HostUnknownError(ConflictError):
+    """The name in a subscription's URL has no address."""
+
+    code = "webhook_host_unknown"
+
+
+class AddressRefusedError(JobkitError):
+    """Nothing is sent to that address: it is not globally routable, and no setting allows it."""
+
+    code = "webhook_address_refused"
+
+
+class TlsRequiredError(JobkitError):
+    """Nothing is sent there unencrypted."""
+
+    code = "webhook_needs_tls"
 
 
 class OverLimitError(JobkitError):

@@ -1,9 +1,11 @@
-"""Identifiers: a mesh is named by the sha256 of its bytes, a job by the time of its birth and chance."""
+"""Identifiers: a mesh is named by the sha256 of its bytes, anything else by the time of its birth and chance."""
 
 import secrets
 import time
 
 JOB_ID_PATTERN = r"^job_[0-9a-hjkmnp-tv-z]{26}$"
+WEBHOOK_ID_PATTERN = r"^wh_[0-9a-hjkmnp-tv-z]{26}$"
+MESSAGE_ID_PATTERN = r"^msg_[0-9a-hjkmnp-tv-z]{26}$"
 SHA256_PATTERN = r"^[0-9a-f]{64}$"
 MODEL_NAME = r"[a-z0-9][a-z0-9._-]{0,63}"
 
@@ -12,6 +14,21 @@ _ALPHABET = "0123456789abcdefghjkmnpqrstvwxyz"
 
 
 def new_job_id() -> str:
-    """Return a fresh id: 48 bits of milliseconds, then 80 random bits, so that ids sort by age."""
+    """Return a fresh id of a job."""
+    return _new_id("job")
+
+
+def new_webhook_id() -> str:
+    """Return a fresh id of a subscription."""
+    return _new_id("wh")
+
+
+def new_message_id() -> str:
+    """Return a fresh id of a message to a subscriber."""
+    return _new_id("msg")
+
+
+def _new_id(kind: str) -> str:
+    """Return a fresh id: 48 bits of milliseconds, then 80 random bits, so that ids of a kind sort by age."""
     number = (time.time_ns() // 1_000_000) << 80 | secrets.randbits(80)
-    return "job_" + "".join(_ALPHABET[number >> shift & 31] for shift in range(125, -1, -5))
+    return f"{kind}_" + "".join(_ALPHABET[number >> shift & 31] for shift in range(125, -1, -5))

@@ -52,7 +52,10 @@ Base.metadata.naming_convention = NAMING
 
 
 class MeshRow(Base):
-    """An uploaded mesh and its analysis."""
+    """An uploaded mesh and its analysis.
+
+    `used_at` is when its bytes came last, or when the last job on it ended that retention has removed since.
+    """
 
     __tablename__ = "meshes"
     id: Mapped[str] = mapped_column(String(64), primary_key=True)
@@ -68,9 +71,10 @@ class MeshRow(Base):
     facts: Mapped[dict[str, Any] | None]
     problem: Mapped[dict[str, Any] | None]
     pinned: Mapped[bool] = mapped_column(default=False)
+    used_at: Mapped[datetime]
     created_at: Mapped[datetime]
     updated_at: Mapped[datetime]
-    __table_args__ = (Index(None, "state"),)
+    __table_args__ = (Index(None, "state"), Index(None, "used_at"))
 
 
 class JobRow(Base):
@@ -176,6 +180,14 @@ class IdempotencyRow(Base):
     created_at: Mapped[datetime]
 
 
+class RemovalRow(Base):
+    """An object that a sweep is about to delete; no row may come to name it before `until`."""
+
+    __tablename__ = "removals"
+    key: Mapped[str] = mapped_column(String(1024), primary_key=True)
+    until: Mapped[datetime]
+
+
 class LeaderRow(Base):
     """Who leads among processes of one kind, and until when unless it says so again."""
 
@@ -196,13 +208,24 @@ class StageRow(Base):
     seconds: Mapped[float]
 
 
+class AttemptCountRow(Base):
+    """How many attempts have ended in one way; grows even where retention removes the attempts themselves."""
+
+    __tablename__ = "attempt_counts"
+    outcome: Mapped[str] = mapped_column(String(32), primary_key=True)
+    code: Mapped[str] = mapped_column(String(64), primary_key=True)
+    count: Mapped[int] = mapped_column(BigInteger)
+
+
 class WebhookRow(Base):
-    """A subscription: where to send which events."""
+    """A subscription: where to send which events. Messages are signed with the old secret as well for a while."""
 
     __tablename__ = "webhooks"
     id: Mapped[str] = mapped_column(String(40), primary_key=True)
     url: Mapped[str] = mapped_column(String(2048))
     secret: Mapped[str] = mapped_column(String(128))
+    old_secret: Mapped[str | None] = mapped_column(String(128))
+    old_secret_until: Mapped[datetime | None]
     events: Mapped[list[str]] = mapped_column(JSON(none_as_null=True))
     description: Mapped[str | None] = mapped_column(String(255))
     enabled: Mapped[bool] = mapped_column(default=True)

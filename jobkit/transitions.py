@@ -9,6 +9,7 @@ from sqlalchemy import ColumnElement, CursorResult, update
 from sqlalchemy.orm import Session
 
 from jobkit.events import append_event
+from jobkit.outbox import write_messages
 from jobkit.schema import TRANSITIONS, EventType, JobState
 from jobkit.tables import JobRow
 
@@ -54,6 +55,7 @@ def make_move(session: Session, job_id: str, move: Move, at: datetime, *fences: 
     if not update_job(session, job_id, {**values, **move.values}, JobRow.state == move.source.value, *fences):
         return False
     append_event(session, job_id, move.event, at, {"state": move.target.value, **move.data})
+    write_messages(session, job_id, move.event, at)
     return True
 
 

@@ -15,9 +15,12 @@ from jobkit.schema import PROBLEM_MEDIA_TYPE, FieldError, Problem
 
 # The narrowest class decides; classes that are not here are faults of this service.
 STATUS_BY_ERROR: Mapping[type[errors.JobkitError], HTTPStatus] = {
+    errors.ResultMissingError: HTTPStatus.GONE,
     errors.NotFoundError: HTTPStatus.NOT_FOUND,
     errors.ConflictError: HTTPStatus.CONFLICT,
     errors.OverLimitError: HTTPStatus.FORBIDDEN,
+    errors.AddressRefusedError: HTTPStatus.FORBIDDEN,
+    errors.TlsRequiredError: HTTPStatus.FORBIDDEN,
     errors.TooLargeError: HTTPStatus.REQUEST_ENTITY_TOO_LARGE,
     errors.UnusableModelError: HTTPStatus.UNPROCESSABLE_ENTITY,
     errors.QueueUnavailableError: HTTPStatus.SERVICE_UNAVAILABLE,

@@ -8,9 +8,10 @@ from fastapi import Depends, Header, Path, Request
 from pydantic import BaseModel
 from starlette.responses import Response
 
-from jobkit.ids import JOB_ID_PATTERN, SHA256_PATTERN
+from jobkit.ids import JOB_ID_PATTERN, SHA256_PATTERN, WEBHOOK_ID_PATTERN
 from jobkit.schema import Job, Problem
 from jobkit.schema.base import EXAMPLE_JOB_ID, EXAMPLE_SHA256, NAME_PATTERN
+from jobkit.schema.webhooks import EXAMPLE_WEBHOOK_ID
 from service.content import etag_matches
 from service.problems import RETRY_AFTER_S
 
@@ -20,6 +21,9 @@ MeshIdPath = Annotated[
     Path(
         pattern=SHA256_PATTERN, description="Id of a mesh: the sha256 of its bytes, in hex.", examples=[EXAMPLE_SHA256]
     ),
+]
+WebhookIdPath = Annotated[
+    str, Path(pattern=WEBHOOK_ID_PATTERN, description="Id of a subscription.", examples=[EXAMPLE_WEBHOOK_ID])
 ]
 ModelNamePath = Annotated[
     str, Path(pattern=NAME_PATTERN, description="Name of a model.", examples=["general-dictionary"])
@@ -66,6 +70,7 @@ _MEANING = {
     403: "Not allowed, or over what the service grants.",
     404: "There is no such thing.",
     409: "Not possible in the present state.",
+    410: "It was there, and the store has lost it.",
     413: "The body is over the limit.",
     415: "The body is of a type that is not read here.",
     416: "The range lies outside.",
@@ -110,8 +115,18 @@ def job_response(job: Job, status: HTTPStatus | None = None, **headers: str) -> 
 
 
 def job_etag(job: Job) -> str:
-    """Return the entity tag of a job: each change raises its revision."""
-    return f'W/"{job.revision}"'
+    """Return the entity tag of a job."""
+    return etag_of(job.revision, job.queue_position, job.pinned)
+
+
+def etag_of(revision: int, queue_position: int | None, is_pinned: bool) -> str:
+    """Return the entity tag of a job that stands like this.
+
+    Each change of its own raises its revision; its place in the queue and its pin change without. The estimate of the
+    time that is left changes with the clock; that it is left out makes the tag a weak one.
+    """
+    place = "" if queue_position is None else f"-{queue_position}"
+    return f'W/"{revision}{place}{"-pinned" if is_pinned else ""}"'
 
 
 def is_unchanged(request: Request, etag: str) -> bool:

@@ -22,6 +22,12 @@ def upgrade() -> None:
         sa.PrimaryKeyConstraint("name", name=op.f("pk_leaders")),
     )
     op.create_table(
+        "removals",
+        sa.Column("key", sa.String(length=1024), nullable=False),
+        sa.Column("until", sa.DateTime(timezone=True), nullable=False),
+        sa.PrimaryKeyConstraint("key", name=op.f("pk_removals")),
+    )
+    op.create_table(
         "stages",
         sa.Column("stage", sa.String(length=64), nullable=False),
         sa.Column("method", sa.String(length=32), nullable=False),
@@ -30,10 +36,19 @@ def upgrade() -> None:
         sa.PrimaryKeyConstraint("stage", "method", name=op.f("pk_stages")),
     )
     op.create_table(
+        "attempt_counts",
+        sa.Column("outcome", sa.String(length=32), nullable=False),
+        sa.Column("code", sa.String(length=64), nullable=False),
+        sa.Column("count", sa.BigInteger(), nullable=False),
+        sa.PrimaryKeyConstraint("outcome", "code", name=op.f("pk_attempt_counts")),
+    )
+    op.create_table(
         "webhooks",
         sa.Column("id", sa.String(length=40), nullable=False),
         sa.Column("url", sa.String(length=2048), nullable=False),
         sa.Column("secret", sa.String(length=128), nullable=False),
+        sa.Column("old_secret", sa.String(length=128), nullable=True),
+        sa.Column("old_secret_until", sa.DateTime(timezone=True), nullable=True),
         sa.Column("events", sa.JSON(none_as_null=True), nullable=False),
         sa.Column("description", sa.String(length=255), nullable=True),
         sa.Column("enabled", sa.Boolean(), nullable=False),
@@ -93,10 +108,16 @@ def upgrade() -> None:
     op.execute("UPDATE jobs SET queued_at = created_at")
     with op.batch_alter_table("meshes", schema=None) as batch_op:
         batch_op.add_column(sa.Column("pinned", sa.Boolean(), nullable=False, server_default=sa.false()))
+        batch_op.add_column(sa.Column("used_at", sa.DateTime(timezone=True), nullable=False, server_default=LONG_AGO))
+        batch_op.create_index(batch_op.f("ix_meshes_used_at"), ["used_at"], unique=False)
+
+    op.execute("UPDATE meshes SET used_at = updated_at")
 
 
 def downgrade() -> None:
     with op.batch_alter_table("meshes", schema=None) as batch_op:
+        batch_op.drop_index(batch_op.f("ix_meshes_used_at"))
+        batch_op.drop_column("used_at")
         batch_op.drop_column("pinned")
 
     with op.batch_alter_table("jobs", schema=None) as batch_op:
@@ -119,5 +140,7 @@ def downgrade() -> None:
 
     op.drop_table("deliveries")
     op.drop_table("webhooks")
+    op.drop_table("attempt_counts")
     op.drop_table("stages")
+    op.drop_table("removals")
     op.drop_table("leaders")

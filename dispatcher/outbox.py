@@ -1,0 +1,169 @@
+"""Claims on deliveries that are due, and what became of them.
+
+A claim raises the number of tries and pushes the next one ahead, both in one conditional update: of two dispatchers
+that see the same delivery one sends it. Where the one that claimed it dies, it is due again when the claim runs out;
+the receiver may then get the message twice, under the same id.
+"""
+
+import json
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass
+from datetime import datetime, timedelta
+from typing import Any
+
+from sqlalchemy import ColumnElement, CursorResult, Select, select, update
+from sqlalchemy.orm import Session
+
+from dispatcher.backoff import next_delay_s
+from dispatcher.sending import Answer, Outgoing
+from jobkit.clock import shared_now
+from jobkit.database import Database
+from jobkit.deliveries import message_id
+from jobkit.schema import DeliveryState
+from jobkit.tables import DeliveryRow, DeliveryTryRow, WebhookRow
+from jobkit.webhooks import give_up_pending
+
+MAX_PER_WEBHOOK = 4
+# A subscriber who takes nothing for this long when a message is given up is sent no more of them.
+PATIENCE = timedelta(days=3)
+_BATCH = 100
+
+
+@dataclass(frozen=True)
+class Claim:
+    """The right to send a delivery once."""
+
+    delivery_id: str
+    webhook_id: str
+    number: int
+    at: datetime
+    outgoing: Outgoing
+
+
+def is_anything_due(database: Database) -> bool:
+    """Tell whether there is a delivery to send now."""
+    with database.read() as session:
+        return session.execute(_due(shared_now(session), []).limit(1)).first() is not None
+
+
+def claim_due(database: Database, most: int, at_work: Mapping[str, int], claim_s: float) -> list[Claim]:
+    """Claim deliveries that are due, the longest overdue first.
+
+    Parameters
+    ----------
+    database : Database
+    most : int
+        Most claims.
+    at_work : mapping of str to int
+        How many deliveries to each subscriber are being sent now; none gets more than MAX_PER_WEBHOOK at a time, so a
+        slow one holds up nobody but itself.
+    claim_s : float
+        Seconds after which a delivery is due again that nothing was heard of.
+    """
+    if most <= 0 or not is_anything_due(database):
+        return []
+    taken, claims = Counter(at_work), list[Claim]()
+    with database.write() as session:
+        now = shared_now(session)
+        while len(claims) < most:
+            full = [webhook_id for webhook_id, count in taken.items() if count >= MAX_PER_WEBHOOK]
+            rows = session.execute(_due(now, full).limit(_BATCH)).all()
+            for delivery, webhook in rows:
+                if len(claims) < most and taken[webhook.id] < MAX_PER_WEBHOOK:
+                    claims += _claim(session, delivery, webhook, now, claim_s)
+                    taken[webhook.id] += 1
+            if len(rows) < _BATCH:
+                break
+    return claims
+
+
+def note_answer(database: Database, claim: Claim, answer: Answer, chance: float) -> None:
+    """Write down a try, and what follows from it for the delivery and for the subscription.
+
+    Parameters
+    ----------
+    database : Database
+    claim : Claim
+    answer : Answer
+    chance : float
+        A random number in [0, 1), for the length of the pause.
+    """
+    with database.write() as session:
+        now = shared_now(session)
+        # The subscription before the delivery, as everybody who writes both: else two of them wait for each other.
+        locked = select(WebhookRow).where(WebhookRow.id == claim.webhook_id).with_for_update()
+        webhook = session.scalars(locked).one_or_none()
+        if webhook is None or session.get(DeliveryRow, claim.delivery_id) is None:
+            return
+        session.add(
+            DeliveryTryRow(
+                delivery_id=claim.delivery_id,
+                number=claim.number,
+                at=claim.at,
+                status=answer.status,
+                error=answer.error,
+                milliseconds=answer.milliseconds,
+            )
+        )
+        if answer.is_delivered:
+            webhook.failing_since = None
+            _end(session, claim, DeliveryState.DELIVERED, now)
+            return
+        webhook.failing_since = webhook.failing_since or now
+        delay_s = None if answer.is_gone else next_delay_s(claim.number, chance, answer.retry_after_s)
+        if delay_s is not None:
+            _write(session, claim, {"next_try_at": now + timedelta(seconds=delay_s)}, *_still_mine(claim))
+            return
+        is_given_up = _end(session, claim, DeliveryState.DEAD, now, *_still_mine(claim))
+        if is_given_up and (answer.is_gone or webhook.failing_since <= now - PATIENCE):
+            webhook.enabled, webhook.updated_at = False, now
+            give_up_pending(session, webhook.id)
+
+
+def _due(now: datetime, full: list[str]) -> Select[DeliveryRow, WebhookRow]:
+    query = select(DeliveryRow, WebhookRow).join(WebhookRow, WebhookRow.id == DeliveryRow.webhook_id)
+    return query.where(
+        WebhookRow.enabled,
+        DeliveryRow.state == DeliveryState.PENDING.value,
+        DeliveryRow.next_try_at <= now,
+        DeliveryRow.webhook_id.not_in(full),
+    ).order_by(DeliveryRow.next_try_at, DeliveryRow.id)
+
+
+def _claim(session: Session, delivery: DeliveryRow, webhook: WebhookRow, now: datetime, claim_s: float) -> list[Claim]:
+    """Return the claim, nothing where another dispatcher was faster."""
+    number = delivery.tries + 1
+    outgoing = Outgoing(webhook.url, message_id(delivery), _secrets(webhook, now), _body(delivery.payload))
+    claim = Claim(delivery.id, webhook.id, number, now, outgoing)
+    values = {"tries": number, "next_try_at": now + timedelta(seconds=claim_s)}
+    is_unclaimed = (_is_pending(), DeliveryRow.tries == number - 1, DeliveryRow.next_try_at <= now)
+    return [claim] if _write(session, claim, values, *is_unclaimed) else []
+
+
+def _secrets(webhook: WebhookRow, now: datetime) -> tuple[str, ...]:
+    if webhook.old_secret is None or webhook.old_secret_until is None or webhook.old_secret_until < now:
+        return (webhook.secret,)
+    return webhook.secret, webhook.old_secret
+
+
+def _body(payload: dict[str, Any]) -> str:
+    return json.dumps(payload, ensure_ascii=False, separators=(",", ":"))
+
+
+def _still_mine(claim: Claim) -> tuple[ColumnElement[bool], ...]:
+    return _is_pending(), DeliveryRow.tries == claim.number
+
+
+def _is_pending() -> ColumnElement[bool]:
+    return DeliveryRow.state == DeliveryState.PENDING.value
+
+
+def _end(session: Session, claim: Claim, state: DeliveryState, now: datetime, *fences: ColumnElement[bool]) -> bool:
+    return _write(session, claim, {"state": state.value, "next_try_at": None, "finished_at": now}, *fences)
+
+
+def _write(session: Session, claim: Claim, values: dict[str, Any], *fences: ColumnElement[bool]) -> bool:
+    statement = update(DeliveryRow).where(DeliveryRow.id == claim.delivery_id, *fences).values(**values)
+    result = session.execute(statement.execution_options(synchronize_session=False))
+    return isinstance(result, CursorResult) and result.rowcount == 1

@@ -1,0 +1,146 @@
+"""The log of deliveries: look up, send a test message, send again, forget what is old."""
+
+from datetime import datetime
+from typing import Any
+
+from sqlalchemy import CursorResult, delete, select
+from sqlalchemy.orm import Session
+
+from jobkit.clock import utc_now
+from jobkit.database import Database
+from jobkit.errors import DeliveryNotFoundError, DeliveryPendingError, WebhookDisabledError
+from jobkit.outbox import new_delivery
+from jobkit.schema import (
+    Delivery,
+    DeliveryDetail,
+    DeliveryLinks,
+    DeliveryPage,
+    DeliveryState,
+    DeliveryTry,
+    Message,
+)
+from jobkit.tables import DeliveryRow, DeliveryTryRow, WebhookRow
+from jobkit.webhooks import existing_webhook
+
+
+class Deliveries:
+    """The deliveries to all subscribers."""
+
+    def __init__(self, database: Database) -> None:
+        self._database = database
+
+    def page(
+        self, webhook_id: str, limit: int, cursor: str | None = None, state: DeliveryState | None = None
+    ) -> DeliveryPage:
+        """Return deliveries to a subscriber, newest first.
+
+        Parameters
+        ----------
+        webhook_id : str
+        limit : int
+            Most deliveries on the page.
+        cursor : str, optional
+            `next_cursor` of the page before.
+        state : DeliveryState, optional
+            Only deliveries that are in it now.
+
+        Raises
+        ------
+        WebhookNotFoundError
+            If there is no such subscription.
+        """
+        query = select(DeliveryRow).where(DeliveryRow.webhook_id == webhook_id)
+        query = query.order_by(DeliveryRow.id.desc()).limit(limit + 1)
+        if cursor is not None:
+            query = query.where(DeliveryRow.id < cursor)
+        if state is not None:
+            query = query.where(DeliveryRow.state == state.value)
+        with self._database.read() as session:
+            existing_webhook(session, webhook_id)
+            rows = list(session.scalars(query))
+        next_cursor = rows[limit - 1].id if len(rows) > limit else None
+        return DeliveryPage(
+            items=[Delivery.model_validate(_wire(row)) for row in rows[:limit]], next_cursor=next_cursor
+        )
+
+    def get(self, webhook_id: str, delivery_id: str) -> DeliveryDetail:
+        """Return a delivery with its tries; raise WebhookNotFoundError or DeliveryNotFoundError."""
+        with self._database.read() as session:
+            return _detail(session, _existing(session, webhook_id, delivery_id))
+
+    def send_test(self, webhook_id: str) -> DeliveryDetail:
+        """Have a test message sent; raise WebhookNotFoundError or WebhookDisabledError."""
+        with self._database.write() as session:
+            _enabled(session, webhook_id)
+            message = Message(type="webhook.test", timestamp=utc_now(), data={"webhook_id": webhook_id})
+            return _add(session, new_delivery(session, webhook_id, message))
+
+    def replay(self, webhook_id: str, delivery_id: str) -> DeliveryDetail:
+        """Have the message of a delivery sent again, under the same message id.
+
+        Raises
+        ------
+        WebhookNotFoundError, DeliveryNotFoundError
+            If there is no such thing.
+        WebhookDisabledError
+            If the subscription is switched off.
+        DeliveryPendingError
+            If the delivery has not ended yet.
+        """
+        with self._database.write() as session:
+            row = _existing(session, webhook_id, delivery_id)
+            _enabled(session, webhook_id)
+            if row.state == DeliveryState.PENDING.value:
+                raise DeliveryPendingError(f"delivery {delivery_id} is still under way")
+            again = new_delivery(session, webhook_id, Message.model_validate(row.payload), row.job_id)
+            again.payload, again.replay_of = row.payload, message_id(row)
+            return _add(session, again)
+
+    def forget_before(self, moment: datetime, most: int = 1000) -> int:
+        """Remove deliveries that ended before a moment, with their tries; return how many of at most `most`."""
+        with self._database.write() as session:
+            ended = DeliveryRow.finished_at < moment
+            ids = list(session.scalars(select(DeliveryRow.id).where(ended).limit(most)))
+            result = session.execute(delete(DeliveryRow).where(DeliveryRow.id.in_(ids)))
+            return result.rowcount if isinstance(result, CursorResult) else 0
+
+
+def message_id(row: DeliveryRow) -> str:
+    """Return what receivers tell messages apart by: a replay is the message that it repeats."""
+    return row.replay_of or row.id
+
+
+def _enabled(session: Session, webhook_id: str) -> WebhookRow:
+    row = existing_webhook(session, webhook_id)
+    if not row.enabled:
+        raise WebhookDisabledError(f"webhook {webhook_id} is switched off; switch it on first")
+    return row
+
+
+def _existing(session: Session, webhook_id: str, delivery_id: str) -> DeliveryRow:
+    existing_webhook(session, webhook_id)
+    row = session.get(DeliveryRow, delivery_id)
+    if row is None or row.webhook_id != webhook_id:
+        raise DeliveryNotFoundError(f"webhook {webhook_id} has no delivery {delivery_id}")
+    return row
+
+
+def _add(session: Session, row: DeliveryRow) -> DeliveryDetail:
+    session.add(row)
+    session.flush()
+    return _detail(session, row)
+
+
+def _detail(session: Session, row: DeliveryRow) -> DeliveryDetail:
+    query = select(DeliveryTryRow).where(DeliveryTryRow.delivery_id == row.id).order_by(DeliveryTryRow.number)
+    log = [DeliveryTry.model_validate(entry, from_attributes=True) for entry in session.scalars(query)]
+    return DeliveryDetail.model_validate({**_wire(row), "message": row.payload, "log": log})
+
+
+def _wire(row: DeliveryRow) -> dict[str, Any]:
+    webhook = f"/v1/webhooks/{row.webhook_id}"
+    path = f"{webhook}/deliveries/{row.id}"
+    job = None if row.job_id is None else f"/v1/jobs/{row.job_id}"
+    names = Delivery.model_fields.keys() - {"links", "message_id"}
+    links = DeliveryLinks(self=path, webhook=webhook, replay=f"{path}/replay", job=job)
+    return {name: getattr(row, name) for name in names} | {"links": links, "message_id": message_id(row)}

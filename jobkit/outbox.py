@@ -1,0 +1,62 @@
+"""Messages to subscribers, written in the very transaction that makes what they tell of true.
+
+So a message is there if and only if its change is; the dispatcher sends it later, as often as it takes.
+"""
+
+from collections.abc import Mapping
+from datetime import datetime
+from types import MappingProxyType
+
+from sqlalchemy import select
+from sqlalchemy.orm import Session
+
+from jobkit.clock import shared_now
+from jobkit.ids import new_message_id
+from jobkit.job_rows import existing_job, to_job
+from jobkit.schema import DeliveryState, EventType, Message, WebhookEvent
+from jobkit.tables import DeliveryRow, WebhookRow
+
+EVENTS: Mapping[EventType, WebhookEvent] = MappingProxyType(
+    {
+        "started": "job.started",
+        "requeued": "job.requeued",
+        "succeeded": "job.succeeded",
+        "failed": "job.failed",
+        "canceled": "job.canceled",
+    }
+)
+
+
+def write_messages(session: Session, job_id: str, change: EventType, at: datetime) -> None:
+    """Leave a message for everybody who wants to hear of a change of a job; one query where nobody does."""
+    event = EVENTS.get(change)
+    if event is None:
+        return
+    # The lock keeps a subscription from being deleted until the message to it is committed: a foreign key that fails
+    # then would undo the change of the job. It holds up no other message.
+    query = (
+        select(WebhookRow.id, WebhookRow.events).where(WebhookRow.enabled).with_for_update(read=True, key_share=True)
+    )
+    wanted_by = [webhook_id for webhook_id, events in session.execute(query) if event in events]
+    if not wanted_by:
+        return
+    job = to_job(existing_job(session, job_id))
+    message = Message(type=event, timestamp=at, data={"job": job.model_dump(mode="json")})
+    for webhook_id in wanted_by:
+        session.add(new_delivery(session, webhook_id, message, job_id))
+
+
+def new_delivery(session: Session, webhook_id: str, message: Message, job_id: str | None = None) -> DeliveryRow:
+    """Return a delivery that is due at once."""
+    now = shared_now(session)
+    return DeliveryRow(
+        id=new_message_id(),
+        webhook_id=webhook_id,
+        job_id=job_id,
+        type=message.type,
+        payload=message.model_dump(mode="json"),
+        state=DeliveryState.PENDING.value,
+        tries=0,
+        next_try_at=now,
+        created_at=now,
+    )

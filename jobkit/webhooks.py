@@ -1,0 +1,169 @@
+"""Subscriptions: make, look up, change, delete, give a new secret."""
+
+import base64
+import secrets
+from collections.abc import Callable
+from datetime import timedelta
+from typing import Any
+
+from sqlalchemy import delete, func, select, update
+from sqlalchemy.orm import Session
+
+from jobkit.clock import utc_now
+from jobkit.database import Database
+from jobkit.errors import TooManyWebhooksError, WebhookNotFoundError
+from jobkit.ids import new_webhook_id
+from jobkit.schema import (
+    DeliveryState,
+    NewWebhook,
+    Webhook,
+    WebhookChange,
+    WebhookLinks,
+    WebhookList,
+    WebhookWithSecret,
+)
+from jobkit.tables import DeliveryRow, WebhookRow
+
+MAX_WEBHOOKS = 100
+# Receivers that know one of the two secrets verify every message while they change over.
+OLD_SECRET_S = 86_400.0
+_SECRET_BYTES = 32
+
+
+class Webhooks:
+    """All subscriptions of a database.
+
+    Parameters
+    ----------
+    database : Database
+    check_url : callable
+        Raises where nothing may be sent to a URL.
+    """
+
+    def __init__(self, database: Database, check_url: Callable[[str], None]) -> None:
+        self._database = database
+        self._check_url = check_url
+
+    def create(self, new: NewWebhook) -> WebhookWithSecret:
+        """Make a subscription; its secret is shown this once.
+
+        Raises
+        ------
+        AddressRefusedError, TlsRequiredError, HostUnknownError
+            If nothing may or can be sent to its URL.
+        TooManyWebhooksError
+            If there are too many already.
+        """
+        self._check_url(new.url)
+        now = utc_now()
+        row = WebhookRow(
+            id=new_webhook_id(),
+            url=new.url,
+            secret=new_secret(),
+            events=_in_order(new.events),
+            description=new.description,
+            enabled=True,
+            created_at=now,
+            updated_at=now,
+        )
+        with self._database.write() as session:
+            if session.scalars(select(func.count()).select_from(WebhookRow)).one() >= MAX_WEBHOOKS:
+                raise TooManyWebhooksError(f"there are {MAX_WEBHOOKS} subscriptions, which is the limit")
+            session.add(row)
+        return _with_secret(row)
+
+    def list_all(self) -> WebhookList:
+        """Return all subscriptions, oldest first."""
+        with self._database.read() as session:
+            rows = session.scalars(select(WebhookRow).order_by(WebhookRow.id))
+            return WebhookList(items=[to_webhook(row) for row in rows])
+
+    def get(self, webhook_id: str) -> Webhook:
+        """Return a subscription; raise WebhookNotFoundError."""
+        with self._database.read() as session:
+            return to_webhook(existing_webhook(session, webhook_id))
+
+    def change(self, webhook_id: str, change: WebhookChange) -> Webhook:
+        """Change what the change names. Switched on again, a subscription starts without a history of failure.
+
+        Raises
+        ------
+        WebhookNotFoundError
+            If there is none.
+        AddressRefusedError, TlsRequiredError, HostUnknownError
+            If nothing may or can be sent to the new URL.
+        """
+        values: dict[str, Any] = change.model_dump(exclude_none=True)
+        if change.events is not None:
+            values["events"] = _in_order(change.events)
+        if change.enabled:
+            values["failing_since"] = None
+        if change.url is not None:
+            self.get(webhook_id)  # what is not there comes before what is wrong with the URL
+            self._check_url(change.url)
+        with self._database.write() as session:
+            _write(session, webhook_id, values)
+            if change.enabled is False:
+                give_up_pending(session, webhook_id)
+            return to_webhook(existing_webhook(session, webhook_id))
+
+    def rotate(self, webhook_id: str) -> WebhookWithSecret:
+        """Give a new secret; messages are signed with the old one as well for a day. Raise WebhookNotFoundError."""
+        with self._database.write() as session:
+            until = utc_now() + timedelta(seconds=OLD_SECRET_S)
+            old = existing_webhook(session, webhook_id).secret
+            _write(session, webhook_id, {"secret": new_secret(), "old_secret": old, "old_secret_until": until})
+            return _with_secret(existing_webhook(session, webhook_id))
+
+    def delete(self, webhook_id: str) -> None:
+        """Forget a subscription with all that is on its way to it; raise WebhookNotFoundError."""
+        with self._database.write() as session:
+            existing_webhook(session, webhook_id)
+            session.execute(delete(WebhookRow).where(WebhookRow.id == webhook_id))
+
+
+def existing_webhook(session: Session, webhook_id: str) -> WebhookRow:
+    """Return the row of a subscription as it stands now; raise WebhookNotFoundError."""
+    query = select(WebhookRow).where(WebhookRow.id == webhook_id).execution_options(populate_existing=True)
+    row = session.scalars(query).one_or_none()
+    if row is None:
+        raise WebhookNotFoundError(f"there is no webhook {webhook_id}")
+    return row
+
+
+def give_up_pending(session: Session, webhook_id: str) -> None:
+    """Give up all that is on its way to a subscriber; it can be replayed."""
+    session.execute(
+        update(DeliveryRow)
+        .where(DeliveryRow.webhook_id == webhook_id, DeliveryRow.state == DeliveryState.PENDING.value)
+        .values(state=DeliveryState.DEAD.value, next_try_at=None, finished_at=utc_now())
+    )
+
+
+def new_secret() -> str:
+    """Return a fresh secret as Standard Webhooks writes it."""
+    return "whsec_" + base64.b64encode(secrets.token_bytes(_SECRET_BYTES)).decode()
+
+
+def to_webhook(row: WebhookRow) -> Webhook:
+    """Return the row as clients see it, without its secret."""
+    return Webhook.model_validate(_wire(row))
+
+
+def _with_secret(row: WebhookRow) -> WebhookWithSecret:
+    return WebhookWithSecret.model_validate({**_wire(row), "secret": row.secret})
+
+
+def _wire(row: WebhookRow) -> dict[str, Any]:
+    path = f"/v1/webhooks/{row.id}"
+    links = WebhookLinks(self=path, deliveries=f"{path}/deliveries", test=f"{path}/test", rotate=f"{path}/rotate")
+    return {name: getattr(row, name) for name in Webhook.model_fields.keys() - {"links"}} | {"links": links}
+
+
+def _write(session: Session, webhook_id: str, values: dict[str, Any]) -> None:
+    changed = {**values, "updated_at": utc_now()}
+    session.execute(update(WebhookRow).where(WebhookRow.id == webhook_id).values(**changed))
+
+
+def _in_order(events: list[Any]) -> list[Any]:
+    return list(dict.fromkeys(events))

@@ -1,0 +1,98 @@
+from collections.abc import Callable
+
+import pytest
+from sqlalchemy import event, select
+
+from jobkit.attempts import Attempts
+from jobkit.clock import utc_now
+from jobkit.database import Database
+from jobkit.endings import end_attempt, failure
+from jobkit.jobs import Jobs
+from jobkit.schema import Job, JobError, JobResult, JobState, NewWebhook
+from jobkit.tables import DeliveryRow
+from jobkit.webhooks import Webhooks
+
+ERROR = JobError(code="no_quads", message="the outline is too small")
+
+
+@pytest.fixture
+def subscribe(database: Database) -> Callable[..., str]:
+    """Subscribe to events, all of those that there are by default; returns the id of the subscription."""
+    everything = ["job.started", "job.requeued", "job.succeeded", "job.failed", "job.canceled"]
+    webhooks = Webhooks(database, lambda _: None)
+    return lambda events=None: webhooks.create(NewWebhook(url="https://a.example/", events=events or everything)).id
+
+
+def messages(database: Database) -> list[DeliveryRow]:
+    with database.read() as session:
+        return list(session.scalars(select(DeliveryRow).order_by(DeliveryRow.id)))
+
+
+def test_every_change_that_is_subscribed_to_leaves_a_message_with_the_job_as_it_then_is(
+    database: Database, job: Job, subscribe: Callable[..., str]
+) -> None:
+    webhook_id = subscribe()
+    attempts = Attempts(database)
+    attempts.requeue(attempts.start(job.id, "w", 30).attempt, ERROR)
+    attempts.publish(attempts.start(job.id, "w", 30).attempt, JobResult(format="ply", warnings=["one hole is open"]))
+    found = sorted(messages(database), key=lambda row: row.payload["data"]["job"]["revision"])
+    assert [row.type for row in found] == ["job.started", "job.requeued", "job.started", "job.succeeded"]
+    assert {(row.webhook_id, row.job_id, row.state, row.tries) for row in found} == {(webhook_id, job.id, "pending", 0)}
+    told = [row.payload["data"]["job"] for row in found]
+    assert [job["state"] for job in told] == ["running", "queued", "running", "succeeded_with_warnings"]
+    assert told[-1] == Jobs(database).get(job.id).model_dump(mode="json")
+    assert len({row.id for row in found}) == 4
+
+
+def test_a_subscriber_hears_of_what_it_asked_for_alone(
+    database: Database, job: Job, subscribe: Callable[..., str]
+) -> None:
+    subscribe(["job.succeeded"])
+    canceled = subscribe(["job.canceled"])
+    Jobs(database).request_cancel(job.id)
+    assert [(row.webhook_id, row.type) for row in messages(database)] == [(canceled, "job.canceled")]
+
+
+def test_two_subscribers_get_messages_of_their_own(database: Database, job: Job, subscribe: Callable[..., str]) -> None:
+    subscribers = {subscribe(), subscribe()}
+    Jobs(database).request_cancel(job.id)
+    found = messages(database)
+    assert {row.webhook_id for row in found} == subscribers
+    assert len({row.id for row in found}) == 2
+
+
+def test_a_change_that_is_rolled_back_leaves_no_message(
+    database: Database, job: Job, subscribe: Callable[..., str]
+) -> None:
+    subscribe(["job.failed"])
+    attempt = Attempts(database).start(job.id, "w", 30).attempt
+
+    def fail_and_break() -> None:
+        with database.write() as session:
+            assert end_attempt(session, attempt, failure(ERROR), utc_now()) is JobState.FAILED
+            assert session.scalars(select(DeliveryRow)).all()
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        fail_and_break()
+    assert Jobs(database).get(job.id).state is JobState.RUNNING
+    assert messages(database) == []
+    Attempts(database).fail(attempt, ERROR)
+    assert [row.type for row in messages(database)] == ["job.failed"]
+
+
+def test_without_subscribers_a_change_costs_one_query_more_and_progress_none(database: Database, job: Job) -> None:
+    attempts = Attempts(database)
+    attempt = attempts.start(job.id, "w", 30).attempt
+    statements: list[str] = []
+
+    def note(_connection: object, _cursor: object, statement: str, *_: object) -> None:
+        statements.append(statement)
+
+    event.listen(database.engine, "before_cursor_execute", note)
+    attempts.report_progress(attempt, "fill", 20.0)
+    assert not [statement for statement in statements if "webhooks" in statement]
+    attempts.fail(attempt, ERROR)
+    event.remove(database.engine, "before_cursor_execute", note)
+    assert len([statement for statement in statements if "webhooks" in statement]) == 1
+    assert not [statement for statement in statements if "deliveries" in statement]
