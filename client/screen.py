@@ -72,24 +72,31 @@ class Screen:
         if not self.console.is_terminal:
             yield _StageLines(self)
             return
-        columns = (_label_column(), BarColumn(), TaskProgressColumn(), TextColumn("{task.fields[stage]}"))
+        columns = (_label_column(), BarColumn(), TaskProgressColumn(), TextColumn("{task.fields[status]}"))
         with Progress(*columns, TimeElapsedColumn(), console=self.console, transient=True) as bar:
-            task = bar.add_task("repairing", total=100.0, stage="")
-            yield lambda job: bar.update(task, completed=job.percent, stage=_stage(job))
+            task = bar.add_task("repairing", total=100.0, status="")
+            yield lambda job: bar.update(task, completed=job.percent, status=status_line(job))
+
+
+def status_line(job: Job) -> str:
+    """Say where a job stands: its stage or state, its place in the queue, and how long it still takes."""
+    place = None if job.queue_position is None else f"number {job.queue_position} in line"
+    left = None if job.eta_s is None else f"about {_duration(job.eta_s)} left"
+    return ", ".join(part for part in (_stage(job), place, left) if part)
 
 
 class _StageLines:
-    """One line per stage, for logs."""
+    """One line per stage and per place in the queue, for logs."""
 
     def __init__(self, screen: Screen) -> None:
         self._screen = screen
-        self._last = ""
+        self._last: tuple[str, int | None] | None = None
 
     def __call__(self, job: Job) -> None:
-        stage = _stage(job)
-        if stage != self._last:
-            self._last = stage
-            self._screen.say(f"{job.percent:5.1f} %  {stage}")
+        where = (_stage(job), job.queue_position)
+        if where != self._last:
+            self._last = where
+            self._screen.say(f"{job.percent:5.1f} %  {status_line(job)}")
 
 
 def _label_column() -> TextColumn:
@@ -100,3 +107,10 @@ def _stage(job: Job) -> str:
     if job.state == JobState.RUNNING:
         return job.stage or "starting"
     return job.state.value.replace("_", " ")
+
+
+def _duration(seconds: float) -> str:
+    if seconds < 90:
+        return f"{max(round(seconds), 1)} s"
+    minutes = round(seconds / 60)
+    return f"{minutes} min" if minutes < 90 else f"{minutes // 60} h {minutes % 60} min"

@@ -28,6 +28,7 @@ from client.errors import (
 from client.polling import parse, poll
 from client.transfers import ByteProgress, download, file_chunks, no_progress, sha256_of
 from client.transport import Transport
+from client.watching import watch
 from jobkit.schema import Job, JobPage, JobSpec, JobState, Mesh, MeshState, ModelList, Plan
 
 _PAGE = 100
@@ -134,7 +135,8 @@ class Client:
         ----------
         job_id : str
         on_change : callable
-            Called with the job whenever something about it has changed.
+            Called with the job whenever something about it has changed, its place in the queue and the estimate of
+            its end among it.
         timeout_s : float, optional
             None: wait as long as it takes.
 
@@ -142,11 +144,11 @@ class Client:
         ------
         JobFailedError, JobCanceledError, WaitTimeoutError
         """
-        revision = 0
-        for job in poll(self._transport, f"/v1/jobs/{job_id}", Job, timeout_s):
-            if job.revision != revision:
-                revision = job.revision
+        seen = None
+        for job in watch(self._transport, f"/v1/jobs/{job_id}", timeout_s):
+            if job != seen:
                 on_change(job)
+            seen = job
             if job.state == JobState.FAILED:
                 raise JobFailedError(job)
             if job.state == JobState.CANCELED:

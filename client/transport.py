@@ -20,7 +20,8 @@ _FIRST_PAUSE_S = 0.25
 _LONGEST_PAUSE_S = 5.0
 # Before the first answer ever, a wrong address is likelier than a dropped line.
 _FIRST_CONTACT_S = 5.0
-_TIMEOUT = httpx.Timeout(60.0, connect=5.0)
+_SILENCE_S, _CONNECT_S = 60.0, 5.0
+_TIMEOUT = httpx.Timeout(_SILENCE_S, connect=_CONNECT_S)
 
 
 class Transport:
@@ -78,9 +79,25 @@ class Transport:
         return self.patiently(attempt)
 
     @contextmanager
-    def stream(self, path: str, headers: Mapping[str, str]) -> Iterator[httpx.Response]:
-        """Open an answer whose body is read piece by piece; one try only."""
-        with self._client.stream("GET", path, headers=dict(headers)) as response:
+    def stream(self, path: str, headers: Mapping[str, str], silence_s: float = _SILENCE_S) -> Iterator[httpx.Response]:
+        """Open an answer whose body is read piece by piece; one try only.
+
+        Parameters
+        ----------
+        path : str
+        headers : mapping
+        silence_s : float
+            How long nothing may come before the line is taken for broken, in seconds.
+
+        Raises
+        ------
+        TryAgainError
+            If the service asks to come back later.
+        RefusedError, AnswerError
+            If it answers with another error.
+        """
+        timeout = httpx.Timeout(_SILENCE_S, connect=_CONNECT_S, read=silence_s)
+        with self._client.stream("GET", path, headers=dict(headers), timeout=timeout) as response:
             if response.is_error:
                 response.read()
                 _raise_for_problem(response)
@@ -92,8 +109,8 @@ class Transport:
         while True:
             try:
                 result = attempt()
-            except (httpx.TransportError, _TryAgainError) as error:
-                self._has_answered = self._has_answered or isinstance(error, _TryAgainError)
+            except (httpx.TransportError, TryAgainError) as error:
+                self._has_answered = self._has_answered or isinstance(error, TryAgainError)
                 patience_s = self._patience_s if self._has_answered else min(self._patience_s, _FIRST_CONTACT_S)
                 wait_s = getattr(error, "retry_after_s", None) or pause_s * random.uniform(0.75, 1.25)
                 if time.monotonic() + wait_s - started > patience_s:
@@ -117,14 +134,14 @@ class Transport:
         self.close()
 
     def _give_up(self, error: Exception, patience_s: float) -> Exception:
-        if isinstance(error, _TryAgainError):
+        if isinstance(error, TryAgainError):
             return error.final
         return UnreachableError(
             f"no answer from {self.base_url} within {patience_s:g} s: {error or type(error).__name__}"
         )
 
 
-class _TryAgainError(Exception):
+class TryAgainError(Exception):
     """The service asks to come back later; `final` is what to raise when there is no later."""
 
     def __init__(self, response: httpx.Response, final: Exception) -> None:
@@ -144,7 +161,7 @@ def _raise_for_problem(response: httpx.Response) -> None:
         return
     error = _error_of(response)
     if response.status_code in _TRY_AGAIN:
-        raise _TryAgainError(response, error)
+        raise TryAgainError(response, error)
     raise error
 
 
