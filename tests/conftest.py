@@ -5,7 +5,6 @@ TEST_BACKEND=postgres-s3 puts a real PostgreSQL and an S3 server under all of th
 
 import functools
 import os
-import secrets
 import shutil
 import socket
 import subprocess
@@ -15,6 +14,7 @@ from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from urllib.parse import urlsplit
 
 import httpx
 import numpy as np
@@ -28,7 +28,7 @@ from onebox.valkey import running_valkey
 from quadpatch.model_file import save_dictionary
 from quadpatch.sparse.dictionary import Dictionary
 from quadpatch.sparse.signals import HEIGHTS, NORMALISATION
-from tests.servers import BUCKET, PostgresServer, fresh_database, running_postgres, running_s3
+from tests.servers import PostgresServer, S3Server, fresh_bucket, fresh_database, running_postgres, running_s3
 
 BACKENDS = ("sqlite-local", "postgres-s3")
 
@@ -56,12 +56,12 @@ def postgres() -> Iterator[PostgresServer]:
 
 
 @pytest.fixture(scope="session")
-def s3_url() -> Iterator[str]:
-    """A bucket of an S3 server, and the AWS_ variables that lead to it; tests take prefixes of their own."""
-    with pytest.MonkeyPatch.context() as environment, running_s3() as variables:
-        for name, value in variables.items():
+def s3() -> Iterator[S3Server]:
+    """A real S3 server, and the AWS_ variables that lead to it; tests take buckets of their own."""
+    with pytest.MonkeyPatch.context() as environment, running_s3() as server:
+        for name, value in server.variables.items():
             environment.setenv(name, value)
-        yield f"s3://{BUCKET}"
+        yield server
 
 
 @pytest.fixture(scope="session")
@@ -73,9 +73,9 @@ def new_places(backend: str, request: pytest.FixtureRequest) -> Callable[[], Abs
         if backend == "sqlite-local":
             yield {"database_url": "", "object_store_url": ""}
             return
-        prefix = f"{request.getfixturevalue('s3_url')}/{secrets.token_hex(8)}"
-        with fresh_database(request.getfixturevalue("postgres")) as url:
-            yield {"database_url": url, "object_store_url": prefix}
+        server, postgres = request.getfixturevalue("s3"), request.getfixturevalue("postgres")
+        with fresh_bucket(server) as bucket, fresh_database(postgres) as url:
+            yield {"database_url": url, "object_store_url": f"s3://{bucket}/a/prefix"}
 
     return places
 
@@ -138,6 +138,34 @@ def database(data_dir: Path, places: dict[str, str]) -> Iterator[Database]:
 def store(data_dir: Path, places: dict[str, str]) -> ObjectStore:
     """The empty store that `settings` names."""
     return open_store(places["object_store_url"] or f"file://{data_dir / 'objects'}", data_dir / "scratch")
+
+
+@pytest.fixture
+def break_store(request: pytest.FixtureRequest, data_dir: Path, places: dict[str, str]) -> Callable[[], None]:
+    """Take the store away, as a disk that is unmounted or a bucket that is removed."""
+
+    def act() -> None:
+        if not places["object_store_url"]:
+            shutil.rmtree(data_dir / "objects")
+        else:
+            request.getfixturevalue("s3").drop(urlsplit(places["object_store_url"]).netloc)
+
+    return act
+
+
+@pytest.fixture
+def break_database(request: pytest.FixtureRequest, data_dir: Path, places: dict[str, str]) -> Callable[[], None]:
+    """Take the database away; on SQLite, close what is open before."""
+
+    def act() -> None:
+        if not places["database_url"]:
+            for path in data_dir.glob("quadpatch.db*"):
+                path.unlink()
+            (data_dir / "quadpatch.db").mkdir()
+        else:
+            request.getfixturevalue("postgres").drop(places["database_url"].rpartition("/")[2])
+
+    return act
 
 
 @pytest.fixture(scope="session")

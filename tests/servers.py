@@ -1,5 +1,6 @@
 """Real servers for tests: PostgreSQL from its wheel, and an S3 server in this process."""
 
+import contextlib
 import importlib.util
 import logging
 import os
@@ -36,7 +37,6 @@ _OPTIONS = {
 }
 _S3_KEY = "test"
 _S3_REGION = "us-east-1"
-BUCKET = "quadpatch-test"
 
 
 class PostgresServer:
@@ -47,18 +47,27 @@ class PostgresServer:
     folder : Path
         Of its socket and its data; the name is short, since names of sockets must be.
     port : int
-        On the loopback interface.
+
+    Parameters
+    ----------
+    host : str
+        Address to listen on; its whole network of 256 addresses may connect.
+    **options : str
+        Settings of the server that replace ours.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, host: str = "127.0.0.1", **options: str) -> None:
         self.folder = Path(tempfile.mkdtemp(prefix="quadpatch-pg-"))
-        self.port = _free_port()
+        self._host, self._options = host, options
+        self.port = free_port()
         self._data = self.folder / "data"
         self._process: subprocess.Popen[bytes] | None = None
         if os.geteuid() == 0:
             shutil.chown(self.folder, _UNPRIVILEGED)
         initdb = [_program("initdb"), "-D", str(self._data), "-U", "postgres", "-A", "trust", "-E", "UTF8", "-N"]
         subprocess.run(initdb, check=True, capture_output=True, user=_user(), cwd=self.folder)
+        with (self._data / "pg_hba.conf").open("a") as rules:
+            rules.write(f"host all all {host}/24 trust\n")
 
     def start(self) -> None:
         """Start the server and wait until it takes connections."""
@@ -66,7 +75,8 @@ class PostgresServer:
             **_OPTIONS,
             "port": self.port,
             "unix_socket_directories": self.folder,
-            "listen_addresses": "127.0.0.1",
+            "listen_addresses": self._host,
+            **self._options,
         }
         command = [_program("postgres"), "-D", str(self._data)]
         command += [word for name, value in options.items() for word in ("-c", f"{name}={value}")]
@@ -105,15 +115,15 @@ class PostgresServer:
 
     def url(self, name: str) -> str:
         """Return the URL of one of its databases."""
-        return f"postgresql+psycopg://postgres@127.0.0.1:{self.port}/{name}"
+        return f"postgresql+psycopg://postgres@{self._host}:{self.port}/{name}"
 
     def create(self, name: str, template: str = "template0") -> None:
         """Make a database, a copy of another one."""
         self.execute(SQL("CREATE DATABASE {} TEMPLATE {}").format(Identifier(name), Identifier(template)))
 
     def drop(self, name: str) -> None:
-        """Remove a database, and whoever is connected to it."""
-        self.execute(SQL("DROP DATABASE {} WITH (FORCE)").format(Identifier(name)))
+        """Remove a database, and whoever is connected to it; nothing happens where there is none."""
+        self.execute(SQL("DROP DATABASE IF EXISTS {} WITH (FORCE)").format(Identifier(name)))
 
     def execute(self, statement: Composable) -> None:
         """Run a statement as the superuser, outside of any transaction."""
@@ -149,33 +159,73 @@ def fresh_database(server: PostgresServer, template: str = "migrated") -> Iterat
         server.drop(name)
 
 
-@contextmanager
-def running_s3() -> Iterator[dict[str, str]]:
-    """Run an S3 server with one bucket; gives the environment variables that lead to it."""
-    # Its line for every request would end up in the output of tests.
-    logging.getLogger("werkzeug").setLevel(logging.ERROR)
-    server = ThreadedMotoServer("127.0.0.1", 0, verbose=False)
-    server.start()
-    try:
-        host, port = server.get_host_and_port()
-        variables = {
+class S3Server:
+    """Moto's S3 server, in a thread of this process.
+
+    Attributes
+    ----------
+    variables : dict of str
+        The environment variables that lead to it.
+    """
+
+    def __init__(self) -> None:
+        # Its line for every request would end up in the output of tests.
+        logging.getLogger("werkzeug").setLevel(logging.ERROR)
+        self._server = ThreadedMotoServer("127.0.0.1", 0, verbose=False)
+        self._server.start()
+        host, port = self._server.get_host_and_port()
+        self.variables = {
             "AWS_ACCESS_KEY_ID": _S3_KEY,
             "AWS_SECRET_ACCESS_KEY": _S3_KEY,
             "AWS_REGION": _S3_REGION,
             "AWS_ENDPOINT_URL": f"http://{host}:{port}",
         }
-        client = boto3.client(
+        self.client = boto3.client(
             "s3",
-            endpoint_url=variables["AWS_ENDPOINT_URL"],
+            endpoint_url=self.variables["AWS_ENDPOINT_URL"],
             aws_access_key_id=_S3_KEY,
             aws_secret_access_key=_S3_KEY,
             region_name=_S3_REGION,
         )
-        client.create_bucket(Bucket=BUCKET)
-        client.close()
-        yield variables
+
+    def create(self) -> str:
+        """Make a bucket and return its name."""
+        name = f"test-{secrets.token_hex(8)}"
+        self.client.create_bucket(Bucket=name)
+        return name
+
+    def drop(self, bucket: str) -> None:
+        """Remove a bucket with all that is in it; nothing happens where there is none."""
+        with contextlib.suppress(self.client.exceptions.NoSuchBucket):
+            for page in self.client.get_paginator("list_objects_v2").paginate(Bucket=bucket):
+                for found in page.get("Contents", []):
+                    self.client.delete_object(Bucket=bucket, Key=found["Key"])
+            self.client.delete_bucket(Bucket=bucket)
+
+    def stop(self) -> None:
+        """End it."""
+        self.client.close()
+        self._server.stop()
+
+
+@contextmanager
+def running_s3() -> Iterator[S3Server]:
+    """Run an S3 server for the length of a `with` block."""
+    server = S3Server()
+    try:
+        yield server
     finally:
         server.stop()
+
+
+@contextmanager
+def fresh_bucket(server: S3Server) -> Iterator[str]:
+    """Give the name of a new bucket for the length of a `with` block."""
+    name = server.create()
+    try:
+        yield name
+    finally:
+        server.drop(name)
 
 
 def _program(name: str) -> str:
@@ -190,7 +240,8 @@ def _user() -> str | None:
     return _UNPRIVILEGED if os.geteuid() == 0 else None
 
 
-def _free_port() -> int:
+def free_port() -> int:
+    """Return a port that nobody listens on."""
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         return int(free.getsockname()[1])

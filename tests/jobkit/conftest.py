@@ -1,6 +1,5 @@
 """Jobs and meshes to start from."""
 
-import secrets
 import shutil
 from collections.abc import Iterator
 from contextlib import ExitStack, closing
@@ -13,7 +12,7 @@ from jobkit.jobs import Jobs, NewJob
 from jobkit.meshes import Meshes
 from jobkit.schema import Job, JobSpec, Mesh, ResolvedModel
 from jobkit.store import ObjectStore, open_store
-from tests.servers import fresh_database
+from tests.servers import fresh_bucket, fresh_database
 
 
 @pytest.fixture
@@ -35,11 +34,13 @@ def job(database: Database, new_job: NewJob) -> Job:
 
 
 @pytest.fixture(params=["local", "s3"])
-def any_store(request: pytest.FixtureRequest, tmp_path: Path) -> ObjectStore:
+def any_store(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[ObjectStore]:
     """An empty store of either kind."""
     if request.param == "local":
-        return open_store(f"file://{tmp_path}/objects")
-    return open_store(f"{request.getfixturevalue('s3_url')}/{secrets.token_hex(8)}", tmp_path / "scratch")
+        yield open_store(f"file://{tmp_path}/objects")
+        return
+    with fresh_bucket(request.getfixturevalue("s3")) as bucket:
+        yield open_store(f"s3://{bucket}/a/prefix", tmp_path / "scratch")
 
 
 @pytest.fixture(params=["sqlite", "postgresql"])

@@ -13,7 +13,7 @@ from sqlalchemy import select, update
 from jobkit.attempts import Attempts
 from jobkit.clock import utc_now
 from jobkit.database import Database
-from jobkit.endings import Attempt
+from jobkit.endings import Attempt, another_try, end_attempt
 from jobkit.errors import JobFinishedError, StaleAttemptError
 from jobkit.jobs import Idempotency, Jobs, NewJob
 from jobkit.leadership import Leadership
@@ -97,7 +97,7 @@ def test_a_job_ends_in_one_way_whoever_wants_its_end(database: Database, new_job
 
 def test_a_cancel_reaches_a_job_that_goes_back_to_the_queue_and_out_again(database: Database, new_job: NewJob) -> None:
     jobs, attempts = Jobs(database), Attempts(database)
-    for _ in range(10):
+    for _ in range(3):
         job = jobs.create(new_job)[0]
 
         def shuttle(job_id: str = job.id) -> None:
@@ -111,6 +111,19 @@ def test_a_cancel_reaches_a_job_that_goes_back_to_the_queue_and_out_again(databa
             attempts.acknowledge_cancel(Attempt(job.id, left.attempt))
         assert jobs.get(job.id).state == JobState.CANCELED
         assert_log_is_whole(database, job.id)
+
+
+def test_a_cancel_reaches_a_job_that_is_just_being_handed_back(database: Database, job: Job) -> None:
+    mine = Attempts(database).start(job.id, "w", 30).attempt
+    with ThreadPoolExecutor(1) as pool:
+        with database.write() as session:
+            end_attempt(session, mine, another_try(ERROR), utc_now())
+            # The other one still finds a running job, and then waits for this transaction.
+            canceled = pool.submit(Jobs(database).request_cancel, job.id)
+            threading.Event().wait(0.3)
+            assert not canceled.done()
+        assert canceled.result(30).state == JobState.CANCELED
+    assert_log_is_whole(database, job.id)
 
 
 def test_a_lease_that_is_renewed_while_it_is_taken_for_lost_stays(database: Database, job: Job) -> None:

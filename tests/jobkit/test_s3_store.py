@@ -6,7 +6,6 @@ import threading
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
-import boto3
 import obstore
 import pytest
 from obstore.store import S3Store as Bucket
@@ -14,12 +13,18 @@ from obstore.store import S3Store as Bucket
 from jobkit.errors import ObjectNotFoundError, StoreUnavailableError
 from jobkit.s3_store import S3Store
 from jobkit.store import ObjectStore
-from tests.servers import BUCKET
+from tests.servers import S3Server, fresh_bucket
 
 
 @pytest.fixture
-def s3_store(s3_url: str, tmp_path: Path) -> S3Store:
-    return S3Store(BUCKET, tmp_path.name, tmp_path / "scratch")
+def bucket(s3: S3Server) -> Iterator[str]:
+    with fresh_bucket(s3) as name:
+        yield name
+
+
+@pytest.fixture
+def s3_store(bucket: str, tmp_path: Path) -> S3Store:
+    return S3Store(bucket, "a", tmp_path / "scratch")
 
 
 def everything(store: ObjectStore) -> list[Callable[[], object]]:
@@ -51,30 +56,30 @@ def scratch_files(tmp_path: Path) -> list[Path]:
 
 
 def test_a_server_that_is_gone_is_an_outage_whatever_is_asked_of_it(
-    s3_url: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    bucket: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     with socket.socket() as silent:
         silent.bind(("127.0.0.1", 0))  # nobody listens
         monkeypatch.setenv("AWS_ENDPOINT_URL", f"http://127.0.0.1:{silent.getsockname()[1]}")
-        for call in everything(S3Store(BUCKET, "", tmp_path / "scratch")):
+        for call in everything(S3Store(bucket, "", tmp_path / "scratch")):
             with pytest.raises(StoreUnavailableError, match="does not answer") as caught:
                 call()
             assert "127.0.0.1" not in str(caught.value)
     assert scratch_files(tmp_path) == []
 
 
-def test_a_bucket_that_is_gone_is_no_empty_store(s3_url: str, tmp_path: Path) -> None:
+def test_a_bucket_that_is_gone_is_no_empty_store(s3: S3Server, tmp_path: Path) -> None:
     for call in everything(S3Store("no-such-bucket", "", tmp_path / "scratch")):
         with pytest.raises(StoreUnavailableError):
             call()
 
 
-def test_a_server_that_has_trouble_for_a_moment_is_asked_again(s3_url: str, s3_store: S3Store, tmp_path: Path) -> None:
+def test_a_server_that_has_trouble_for_a_moment_is_asked_again(bucket: str, tmp_path: Path) -> None:
     """The first two connections are dropped without an answer."""
     host, port = os.environ["AWS_ENDPOINT_URL"].removeprefix("http://").split(":")
     with _dropping_relay((host, int(port)), drops=2) as url, pytest.MonkeyPatch.context() as environment:
         environment.setenv("AWS_ENDPOINT_URL", url)
-        store = S3Store(BUCKET, tmp_path.name, tmp_path / "scratch")
+        store = S3Store(bucket, "", tmp_path / "scratch")
         store.check()
         assert store.size("writable") == 1
 
@@ -90,8 +95,8 @@ def test_what_is_uploaded_and_downloaded_leaves_no_local_file(s3_store: S3Store,
     assert scratch_files(tmp_path) == []
 
 
-def test_two_prefixes_of_a_bucket_are_two_stores(s3_url: str, tmp_path: Path) -> None:
-    first, second = (S3Store(BUCKET, f"{tmp_path.name}/{name}", tmp_path / "scratch") for name in ("a", "ab"))
+def test_two_prefixes_of_a_bucket_are_two_stores(bucket: str, tmp_path: Path) -> None:
+    first, second = (S3Store(bucket, name, tmp_path / "scratch") for name in ("a", "ab"))
     first.check()
     with first.writer("meshes") as writer:
         writer.write(b"first")
@@ -102,10 +107,10 @@ def test_two_prefixes_of_a_bucket_are_two_stores(s3_url: str, tmp_path: Path) ->
         second.size(key)
 
 
-def test_a_prefix_goes_whole_though_a_listing_has_many_pages(s3_store: S3Store, tmp_path: Path) -> None:
-    bucket = Bucket(BUCKET, prefix=tmp_path.name, client_options={"allow_http": True})
+def test_a_prefix_goes_whole_though_a_listing_has_many_pages(s3_store: S3Store, bucket: str) -> None:
+    raw = Bucket(bucket, prefix="a", client_options={"allow_http": True})
     for i in range(1_001):
-        obstore.put(bucket, f"results/many/{i}", b"")
+        obstore.put(raw, f"results/many/{i}", b"")
     assert len({listed.key for listed in s3_store.keys("results")}) == 1_001
     s3_store.delete_prefix("results/many")
     assert list(s3_store.keys()) == []
@@ -124,30 +129,55 @@ while True:
 """
 
 
-def test_an_upload_whose_process_is_killed_shows_either_whole_or_not_at_all(s3_store: S3Store, tmp_path: Path) -> None:
-    command = [sys.executable, "-c", KILLED, BUCKET, tmp_path.name, str(tmp_path / "scratch")]
+def test_an_upload_whose_process_is_killed_shows_either_whole_or_not_at_all(
+    s3_store: S3Store, bucket: str, tmp_path: Path
+) -> None:
+    command = [sys.executable, "-c", KILLED, bucket, "a", str(tmp_path / "scratch")]
     assert subprocess.run(command, check=False).returncode < 0
     assert {listed.size_bytes for listed in s3_store.keys("meshes")} <= {64 << 20}
     assert len(scratch_files(tmp_path)) == 1
-    S3Store(BUCKET, tmp_path.name, tmp_path / "scratch")
+    S3Store(bucket, "a", tmp_path / "scratch")
     assert scratch_files(tmp_path) == []
 
 
-def test_an_upload_that_the_server_breaks_off_leaves_no_parts_behind(
-    s3_url: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+def test_an_upload_that_the_server_breaks_off_leaves_nothing_to_be_seen(
+    s3: S3Server, bucket: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    client = boto3.client("s3", endpoint_url=os.environ["AWS_ENDPOINT_URL"])
-    client.create_bucket(Bucket="quadpatch-doomed")
     host, port = os.environ["AWS_ENDPOINT_URL"].removeprefix("http://").split(":")
     with _dropping_relay((host, int(port)), after_bytes=20 << 20) as url:
         monkeypatch.setenv("AWS_ENDPOINT_URL", url)
-        store = S3Store("quadpatch-doomed", "", tmp_path / "scratch")
+        store = S3Store(bucket, "", tmp_path / "scratch")
         (tmp_path / "large").write_bytes(b"0" * (40 << 20))
         with pytest.raises(StoreUnavailableError):
             store.put_file("results/large", tmp_path / "large")
-    assert client.list_objects_v2(Bucket="quadpatch-doomed")["KeyCount"] == 0
+    assert s3.client.list_objects_v2(Bucket=bucket)["KeyCount"] == 0
     assert scratch_files(tmp_path) == []
-    client.close()
+
+
+def test_memory_stays_small_however_large_the_object_is(s3_store: S3Store, bucket: str, tmp_path: Path) -> None:
+    command = [sys.executable, "-c", LARGE, bucket, str(tmp_path / "scratch")]
+    grown_mb = int(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
+    assert grown_mb < 64
+    assert s3_store.size("results/large") == 128 << 20
+
+
+LARGE = """
+import resource, sys
+from pathlib import Path
+from jobkit.s3_store import S3Store
+store = S3Store(sys.argv[1], "a", Path(sys.argv[2]))
+with store.writer("meshes") as writer:
+    writer.write(b"0")
+    writer.commit("results/small")
+before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+with store.writer("meshes") as writer:
+    for _ in range(128):
+        writer.write(bytes(1 << 20))
+    writer.commit("results/large")
+with store.local_file("results/large") as path:
+    assert path.stat().st_size == 128 << 20
+print((resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before) // 1024)
+"""
 
 
 class _dropping_relay:  # noqa: N801 - used like a function
