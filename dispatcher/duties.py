@@ -1,12 +1,16 @@
 """Everything that a leading dispatcher does, and how often."""
 
 from dispatcher.loop import Duty
+from dispatcher.retention import Sweeper, remove_expired
+from dispatcher.webhooks import deliver_webhooks, forget_old_deliveries
 from jobkit.database import Database
 from jobkit.overdue import TimeLimits
 from jobkit.queue import TaskQueue
 from jobkit.reconcile import Reconciled, reconcile
 from jobkit.settings import Settings
 from jobkit.store import ObjectStore
+
+_HOUR_S = 3_600.0
 
 
 def duties_of(settings: Settings, database: Database, store: ObjectStore, queue: TaskQueue) -> list[Duty]:
@@ -20,8 +24,15 @@ def duties_of(settings: Settings, database: Database, store: ObjectStore, queue:
     queue : TaskQueue
     """
     limits = TimeLimits(settings.queue_time_limit_s, settings.total_time_limit_s, settings.job_memory_limit_mb)
+    sweeper = Sweeper(database, store)
     return [
         Duty("jobs", settings.dispatch_s, lambda is_over: _look_after_jobs(database, queue, limits)),
+        Duty("webhooks", settings.dispatch_s, lambda is_over: deliver_webhooks(database, settings, is_over)),
+        Duty(
+            "webhook log", _HOUR_S, lambda is_over: forget_old_deliveries(database, settings.webhook_log_days, is_over)
+        ),
+        Duty("retention", settings.sweep_s, lambda is_over: remove_expired(settings, database, store, is_over)),
+        Duty("sweep", settings.sweep_s, sweeper.sweep),
     ]
 
 

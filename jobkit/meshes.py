@@ -6,16 +6,20 @@ An analysis is fenced like a job: starting it raises `attempt`, and only the lat
 from dataclasses import dataclass
 from datetime import timedelta
 
-from sqlalchemy import select, update
+from sqlalchemy import exists, select, update
 from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
 from jobkit.clock import utc_now
 from jobkit.database import Database
 from jobkit.errors import MeshNotFoundError, StaleAttemptError
+from jobkit.expiry import expiry
 from jobkit.schema import Format, Mesh, MeshFacts, MeshLinks, MeshProblem, MeshState
 from jobkit.store import StoredObject
-from jobkit.tables import MeshRow
+from jobkit.tables import JobRow, MeshRow
+
+# Code of the problem of a mesh whose bytes are gone from the store.
+MESH_MISSING = "mesh_missing"
 
 
 @dataclass(frozen=True)
@@ -37,15 +41,23 @@ class Analysis:
 
 
 class Meshes:
-    """All meshes of a database."""
+    """All meshes of a database.
 
-    def __init__(self, database: Database) -> None:
+    Parameters
+    ----------
+    database : Database
+    retention_days : float
+        How long meshes are kept that no job uses, for what clients are told; 0: for ever.
+    """
+
+    def __init__(self, database: Database, retention_days: float = 0) -> None:
         self._database = database
+        self._retention_days = retention_days
 
     def add(self, stored: StoredObject, filename: str | None, mesh_format: Format | None) -> tuple[Mesh, bool]:
         """Note an upload; the same bytes are the same mesh.
 
-        A mesh that was rejected is analysed again when it comes back under another format.
+        A mesh that was rejected is analysed again when it comes back under another format, or was gone.
 
         Returns
         -------
@@ -61,7 +73,7 @@ class Meshes:
     def get(self, mesh_id: str) -> Mesh:
         """Return a mesh; raise MeshNotFoundError."""
         with self._database.read() as session:
-            return _to_mesh(_existing(session, mesh_id))
+            return self._show(session, _existing(session, mesh_id))
 
     def source(self, mesh_id: str) -> MeshSource:
         """Return where the bytes lie; raise MeshNotFoundError."""
@@ -119,11 +131,24 @@ class Meshes:
             if row is None:
                 row = MeshRow(id=stored.sha256, key=stored.key, size_bytes=stored.size_bytes, created_at=now, attempt=0)
                 session.add(row)
-                _restart(row, filename, mesh_format)
+                restart(row, filename, mesh_format)
+            elif is_missing(row):
+                restart(row, row.filename, row.format)
             elif row.state == MeshState.REJECTED and mesh_format not in (None, row.format):
-                _restart(row, filename, mesh_format)
-            row.updated_at = now
-            return _to_mesh(row), is_new
+                restart(row, filename, mesh_format)
+            row.updated_at = row.used_at = now
+            session.flush()
+            return self._show(session, row), is_new
+
+    def _show(self, session: Session, row: MeshRow) -> Mesh:
+        """Return the row as clients see it."""
+        is_used = session.scalar(select(exists().where(JobRow.mesh_id == row.id)))
+        expires_at = expiry(None if is_used else row.used_at, self._retention_days, row.pinned)
+        path = f"/v1/meshes/{row.id}"
+        names = Mesh.model_fields.keys() - {"links", "expires_at"}
+        values = {name: getattr(row, name) for name in names}
+        links = MeshLinks(self=path, content=f"{path}/content")
+        return Mesh.model_validate(values | {"links": links, "expires_at": expires_at})
 
     def _write(self, analysis: Analysis, values: dict[str, object]) -> None:
         with self._database.write() as session:
@@ -142,7 +167,13 @@ class Meshes:
                 )
 
 
-def _restart(row: MeshRow, filename: str | None, mesh_format: Format | None) -> None:
+def is_missing(row: MeshRow) -> bool:
+    """Tell whether a sweep found that the bytes of the mesh are gone."""
+    return row.problem is not None and row.problem.get("code") == MESH_MISSING
+
+
+def restart(row: MeshRow, filename: str | None, mesh_format: str | None) -> None:
+    """Let the mesh be analysed again, under that name and format."""
     row.filename, row.format = filename, mesh_format
     row.state, row.facts, row.problem = MeshState.ANALYSING.value, None, None
     row.lease_until = row.enqueued_at = None
@@ -157,20 +188,3 @@ def _existing(session: Session, mesh_id: str) -> MeshRow:
 
 def _to_source(row: MeshRow) -> MeshSource:
     return MeshSource(row.id, row.key, row.filename, row.format)  # type: ignore[arg-type]
-
-
-def _to_mesh(row: MeshRow) -> Mesh:
-    path = f"/v1/meshes/{row.id}"
-    return Mesh.model_validate(
-        {
-            "id": row.id,
-            "state": row.state,
-            "filename": row.filename,
-            "format": row.format,
-            "size_bytes": row.size_bytes,
-            "created_at": row.created_at,
-            "facts": row.facts,
-            "problem": row.problem,
-            "links": MeshLinks(self=path, content=f"{path}/content"),
-        }
-    )

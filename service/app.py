@@ -7,16 +7,37 @@ import anyio.to_thread
 from fastapi import FastAPI
 
 from jobkit.settings import Settings
+from jobkit.telemetry import Telemetry
 from service.auth import AuthMiddleware, check_exposure
 from service.document import TITLE, VERSION, install_document, operation_id
 from service.frame import FrameMiddleware
 from service.handlers import install_handlers
-from service.routes import health, jobs, meshes, models, repairs, results
+from service.metrics import StateCollector, new_registry
+from service.observe import ObserveMiddleware
+from service.routes import (
+    deliveries,
+    events,
+    health,
+    jobs,
+    meshes,
+    metrics,
+    models,
+    repairs,
+    results,
+    retention,
+    webhooks,
+)
 from service.services import open_services
 
 
-def create_app(settings: Settings) -> FastAPI:
+def create_app(settings: Settings, telemetry: Telemetry | None = None) -> FastAPI:
     """Build the application; connections are opened when it starts, not here.
+
+    Parameters
+    ----------
+    settings : Settings
+    telemetry : Telemetry, optional
+        Takes a span of each request; none are made unless given.
 
     Raises
     ------
@@ -36,7 +57,9 @@ def create_app(settings: Settings) -> FastAPI:
     )
     app.state.settings = settings
     app.state.max_json_bytes = settings.max_json_kb << 10
-    routers = [module.router for module in (meshes, jobs, results, repairs, models, health)]
+    app.state.registry = new_registry()
+    modules = (meshes, jobs, events, results, repairs, retention, models, webhooks, deliveries, health, metrics)
+    routers = [module.router for module in modules]
     for router in routers:
         app.include_router(router)
     install_document(app)
@@ -44,6 +67,7 @@ def create_app(settings: Settings) -> FastAPI:
     # The last one added is the outermost: ids and headers also stand on the answers of the auth middleware.
     app.add_middleware(AuthMiddleware, settings=settings)
     app.add_middleware(FrameMiddleware)
+    app.add_middleware(ObserveMiddleware, registry=app.state.registry, telemetry=telemetry or Telemetry())
     return app
 
 
@@ -51,7 +75,11 @@ def create_app(settings: Settings) -> FastAPI:
 async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     services = await anyio.to_thread.run_sync(open_services, app.state.settings)
     app.state.services = services
+    collector = StateCollector(services)
+    app.state.registry.register(collector)
     try:
-        yield
+        async with services.streams.running():
+            yield
     finally:
+        app.state.registry.unregister(collector)
         services.close()

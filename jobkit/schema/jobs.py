@@ -92,6 +92,16 @@ class Job(Response):
     max_attempts: int = Field(ge=1, description="Attempts before the job is given up.", examples=[3])
     stage: str | None = Field(default=None, description="Stage of the method at work.", examples=["inpaint"])
     percent: float = Field(ge=0, le=100, description="Share of the whole repair that is done.", examples=[62.5])
+    queue_position: int | None = Field(
+        default=None, ge=1, description="Its place among the jobs that wait, from 1; null once it runs.", examples=[3]
+    )
+    eta_s: float | None = Field(
+        default=None,
+        ge=0,
+        description="Estimated seconds to the end, waiting included, learned from past jobs of this size; null where "
+        "too little is known.",
+        examples=[42.0],
+    )
     created_at: Moment = Field(description="When it was accepted, RFC 3339.")
     started_at: Moment | None = Field(default=None, description="When its latest attempt started, RFC 3339.")
     finished_at: Moment | None = Field(default=None, description="When it ended, RFC 3339.")
@@ -101,6 +111,10 @@ class Job(Response):
     error: JobError | None = Field(default=None, description="Set once the state is `failed`.")
     result: JobResult | None = Field(default=None, description="Set once it succeeded.")
     rerun_of: JobId | None = Field(default=None, description="The job that this one repeats.")
+    pinned: bool = Field(default=False, description="Whether it is kept whatever the retention.")
+    expires_at: Moment | None = Field(
+        default=None, description="When it is removed with all it left, RFC 3339; null: not ended, or kept."
+    )
     revision: int = Field(ge=1, description="Raised by every change; the number of its latest event.", examples=[7])
     links: JobLinks = Field(description="Paths on this service.")
 

@@ -71,6 +71,10 @@ class Mesh(Response):
     format: Format | None = Field(default=None, description="As stated or seen; null: unknown.", examples=["ply"])
     size_bytes: int = Field(ge=0, description="Size of the file, in bytes.", examples=[3_212_000])
     created_at: Moment = Field(description="When it was first uploaded, RFC 3339.")
+    pinned: bool = Field(default=False, description="Whether it is kept whatever the retention.")
+    expires_at: Moment | None = Field(
+        default=None, description="When it is removed, RFC 3339; null: a job on it is there, or it is kept."
+    )
     facts: MeshFacts | None = Field(default=None, description="Set once the state is `ready`.")
     problem: MeshProblem | None = Field(default=None, description="Set once the state is `rejected`.")
     links: MeshLinks = Field(description="Paths on this service.")

@@ -7,6 +7,7 @@ from fastapi import APIRouter, Header, Query, Request
 from starlette.concurrency import run_in_threadpool
 from starlette.responses import Response
 
+from jobkit.removals import assure
 from jobkit.schema import Format, Mesh, MeshState
 from service.content import Content, content_response
 from service.formats import clean_filename, stated_format
@@ -133,6 +134,7 @@ def get_mesh_content(
 
 def register_mesh(services: Services, upload: Upload, filename: str | None, given: Format | None) -> tuple[Mesh, bool]:
     """Note an upload and ask for its analysis; return the mesh, and whether it is new."""
+    assure(services.database, services.store, upload.stored.key)
     name = clean_filename(filename or upload.filename)
     mesh, is_new = services.meshes.add(upload.stored, name, stated_format(given, name, upload.content_type))
     if mesh.state is MeshState.ANALYSING:

@@ -6,7 +6,7 @@ from typing import Any, Literal
 from fastapi import APIRouter, Request
 from starlette.responses import Response
 
-from jobkit.errors import JobHasNoResultError, JobNotFinishedError, ObjectNotFoundError
+from jobkit.errors import JobHasNoResultError, JobNotFinishedError, ObjectNotFoundError, ResultMissingError
 from jobkit.schema import Job
 from jobkit.store import result_key
 from service.content import OCTETS, Content, content_response, repaired_name
@@ -23,7 +23,7 @@ def _documented(media_type: str, schema: Mapping[str, Any]) -> dict[int | str, d
         200: {"description": "The whole file.", "content": content},
         206: {"description": "The range.", "content": {media_type: {"schema": BINARY}}},
         **not_modified(),
-        **problems(404, 409, 416),
+        **problems(404, 409, 410, 416),
     }
 
 
@@ -88,7 +88,11 @@ def _file_response(
     suffix = {"result": f".{job.result.format}" if job.result else "", "report": ".json", "preview": ".png"}[role]
     name = repaired_name(mesh.filename, mesh.id, suffix)
     key = result_key(job_id, job.attempt, file.name)
-    return content_response(request, services.store, Content(key, file.sha256, file.size_bytes, name, media_type))
+    try:
+        return content_response(request, services.store, Content(key, file.sha256, file.size_bytes, name, media_type))
+    except ObjectNotFoundError as error:
+        services.jobs.get(job_id)  # or was the job deleted at this moment?
+        raise ResultMissingError(f"the {role} of job {job_id} is gone from the store; run the job again") from error
 
 
 def _require_result(job: Job) -> None:

@@ -69,4 +69,4 @@ def test_a_file_that_the_store_has_lost_is_a_clear_error(
     finish(job_id)
     services.store.delete_prefix(f"results/{job_id}")
     answer = client.get(f"/v1/jobs/{job_id}/result")
-    assert (answer.status_code, answer.json()["code"]) == (404, "object_not_found")
+    assert (answer.status_code, answer.json()["code"]) == (410, "result_missing")

@@ -1,0 +1,55 @@
+"""The duties that remove what is past its retention, and hold database and store against each other."""
+
+from collections.abc import Callable
+
+from jobkit.clock import shared_now
+from jobkit.database import Database
+from jobkit.missing import Missing, MissingObjects
+from jobkit.retention import expire_jobs, expire_meshes
+from jobkit.settings import Settings
+from jobkit.store import ObjectStore
+from jobkit.sweep import Swept, sweep_objects
+
+
+def remove_expired(settings: Settings, database: Database, store: ObjectStore, is_over: Callable[[], bool]) -> str:
+    """Remove jobs and meshes past their retention; return how many went, in words."""
+    with database.read() as session:
+        now = shared_now(session)
+    jobs = expire_jobs(database, store, settings.job_retention_days, now, is_over)
+    # After the jobs, which hold on to their meshes.
+    meshes = expire_meshes(database, settings.mesh_retention_days, now, is_over)
+    return f"removed {jobs} jobs and {meshes} meshes" if jobs or meshes else ""
+
+
+class Sweeper:
+    """Deletes objects without a row, and marks rows without an object.
+
+    Parameters
+    ----------
+    database : Database
+    store : ObjectStore
+    """
+
+    def __init__(self, database: Database, store: ObjectStore) -> None:
+        self._database = database
+        self._store = store
+        self._missing = MissingObjects(database, store)
+
+    def sweep(self, is_over: Callable[[], bool]) -> str:
+        """Sweep both ways; return what was found, in words."""
+        with self._database.read() as session:
+            now = shared_now(session)
+        swept = sweep_objects(self._database, self._store, now, is_over)
+        missing = self._missing.look(is_over)
+        return "; ".join(_words(swept, missing))
+
+
+def _words(swept: Swept, missing: Missing) -> list[str]:
+    counts = [
+        (swept.objects, f"deleted {swept.objects} objects without a row, {swept.size_bytes} bytes"),
+        (missing.meshes, f"{missing.meshes} meshes are gone from the store and were marked"),
+        (missing.found_again, f"{missing.found_again} meshes are in the store again"),
+        (missing.results, f"{missing.results} finished jobs lack files of their result"),
+        (missing.models, f"{missing.models} models lack their file"),
+    ]
+    return [words for count, words in counts if count]

@@ -1,0 +1,193 @@
+"""How long jobs and meshes are kept: pins, deletion on request, and expiry.
+
+Rows go first, objects after them. A crash in between leaves objects that no row names, which the sweep removes
+(`jobkit/sweep.py`), and never a row whose file is gone. Files of a job lie under its own id, which never comes back, so
+they can go at once. The key of a mesh follows from its bytes, and the same bytes may be on their way in again at that
+very moment: those objects are left to the sweep altogether.
+"""
+
+import logging
+from collections.abc import Callable, Sequence
+from datetime import datetime, timedelta
+
+from sqlalchemy import CursorResult, Select, delete, exists, func, select, update
+from sqlalchemy.exc import IntegrityError
+from sqlalchemy.orm import Session
+
+from jobkit.clock import utc_now
+from jobkit.database import Database
+from jobkit.errors import (
+    JobNotFinishedError,
+    JobNotFoundError,
+    MeshInUseError,
+    MeshNotFoundError,
+    StoreUnavailableError,
+)
+from jobkit.schema import JobState
+from jobkit.store import ObjectStore
+from jobkit.tables import AttemptRow, EventRow, IdempotencyRow, JobRow, MeshRow
+
+# Of one transaction: long enough to be quick, short enough to hold up nobody.
+BATCH = 50
+ENDED = tuple(state.value for state in JobState if state.is_terminal)
+
+_log = logging.getLogger("quadpatch.retention")
+
+
+def pin_job(database: Database, job_id: str, is_pinned: bool) -> None:
+    """Keep a job whatever its age, or no longer; raise JobNotFoundError."""
+    with database.write() as session:
+        if not _hits(session.execute(update(JobRow).where(JobRow.id == job_id).values(pinned=is_pinned))):
+            raise JobNotFoundError(f"there is no job {job_id}")
+
+
+def pin_mesh(database: Database, mesh_id: str, is_pinned: bool) -> None:
+    """Keep a mesh whatever its age, or no longer; raise MeshNotFoundError."""
+    with database.write() as session:
+        if not _hits(session.execute(update(MeshRow).where(MeshRow.id == mesh_id).values(pinned=is_pinned))):
+            raise MeshNotFoundError(f"there is no mesh {mesh_id}")
+
+
+def delete_job(database: Database, store: ObjectStore, job_id: str) -> None:
+    """Remove a finished job for good, pinned or not: its row, and all that it left.
+
+    Raises
+    ------
+    JobNotFoundError
+        If there is no such job, or no longer.
+    JobNotFinishedError
+        If it has not ended.
+    """
+    with database.write() as session:
+        row = session.scalars(select(JobRow).where(JobRow.id == job_id).with_for_update()).one_or_none()
+        if row is None:
+            raise JobNotFoundError(f"there is no job {job_id}")
+        if row.state not in ENDED:
+            raise JobNotFinishedError(f"job {job_id} is {row.state}; cancel it first, and delete it once it has ended")
+        _delete_jobs(session, [row])
+    _drop_files(store, job_id)
+
+
+def delete_mesh(database: Database, mesh_id: str) -> None:
+    """Remove a mesh for good, pinned or not; its bytes are left to the sweep.
+
+    Raises
+    ------
+    MeshNotFoundError
+        If there is no such mesh, or no longer.
+    MeshInUseError
+        If jobs name it.
+    """
+    try:
+        with database.write() as session:
+            n_jobs = session.scalar(select(func.count()).select_from(JobRow).where(JobRow.mesh_id == mesh_id))
+            if n_jobs:
+                noun = "job names" if n_jobs == 1 else "jobs name"
+                raise MeshInUseError(f"{n_jobs} {noun} mesh {mesh_id}; delete them first")
+            if not _hits(session.execute(delete(MeshRow).where(MeshRow.id == mesh_id))):
+                raise MeshNotFoundError(f"there is no mesh {mesh_id}")
+    except IntegrityError as error:
+        raise MeshInUseError(f"1 job came to name mesh {mesh_id} at this moment") from error
+
+
+def expire_jobs(
+    database: Database, store: ObjectStore, days: float, now: datetime, is_over: Callable[[], bool] = lambda: False
+) -> int:
+    """Remove finished jobs that nobody pinned and that ended long ago.
+
+    Parameters
+    ----------
+    database : Database
+    store : ObjectStore
+    days : float
+        How long they are kept after their end; 0: for ever.
+    now : datetime
+    is_over : callable
+        Whether to break off; asked before each batch.
+
+    Returns
+    -------
+    int
+        How many went.
+    """
+    if days == 0:
+        return 0
+    old = JobRow.state.in_(ENDED) & JobRow.pinned.is_(False) & (JobRow.finished_at < now - timedelta(days=days))
+    query = select(JobRow).where(old).order_by(JobRow.finished_at).limit(BATCH).with_for_update(skip_locked=True)
+    removed = 0
+    while not is_over():
+        gone = _expire_batch(database, query)
+        for job_id in gone:
+            _drop_files(store, job_id)
+        removed += len(gone)
+        if len(gone) < BATCH:
+            break
+    return removed
+
+
+def expire_meshes(database: Database, days: float, now: datetime, is_over: Callable[[], bool] = lambda: False) -> int:
+    """Remove meshes that nobody pinned, that no job names, and that came out of use long ago.
+
+    Parameters
+    ----------
+    database : Database
+    days : float
+        How long they are kept after their upload and after the end of the last job on them; 0: for ever.
+    now : datetime
+    is_over : callable
+        Whether to break off; asked before each mesh.
+
+    Returns
+    -------
+    int
+        How many went. Their bytes are left to the sweep.
+    """
+    if days == 0:
+        return 0
+    is_free = ~exists().where(JobRow.mesh_id == MeshRow.id)
+    old = MeshRow.pinned.is_(False) & (MeshRow.used_at < now - timedelta(days=days)) & is_free
+    with database.read() as session:
+        ids = list(session.scalars(select(MeshRow.id).where(old).order_by(MeshRow.used_at)))
+    removed = 0
+    for mesh_id in ids:
+        if is_over():
+            break
+        try:
+            with database.write() as session:
+                # An upload or a job may have come in between; what counts is how it stands now.
+                removed += _hits(session.execute(delete(MeshRow).where(MeshRow.id == mesh_id, old)))
+        except IntegrityError:
+            continue  # a job came to name it while it was being deleted
+    return removed
+
+
+def _expire_batch(database: Database, query: Select[JobRow]) -> list[str]:
+    with database.write() as session:
+        rows = list(session.scalars(query))
+        _delete_jobs(session, rows)
+        return [row.id for row in rows]
+
+
+def _delete_jobs(session: Session, rows: Sequence[JobRow]) -> None:
+    """Delete jobs with all that names them, and note on their meshes until when these were in use."""
+    ids = [row.id for row in rows]
+    # In one order everywhere, so that two who do this can't wait for each other.
+    for row in sorted(rows, key=lambda row: row.mesh_id):
+        ended_at = row.finished_at or utc_now()
+        session.execute(
+            update(MeshRow).where(MeshRow.id == row.mesh_id, MeshRow.used_at < ended_at).values(used_at=ended_at)
+        )
+    for table in (IdempotencyRow, EventRow, AttemptRow):
+        session.execute(delete(table).where(table.job_id.in_(ids)))
+    session.execute(delete(JobRow).where(JobRow.id.in_(ids)))
+
+
+def _drop_files(store: ObjectStore, job_id: str) -> None:
+    try:
+        store.delete_prefix(f"results/{job_id}")
+    except StoreUnavailableError as error:
+        _log.warning("files of job %s are left to the sweep: %s", job_id, error)
+
+
+def _hits(result: object) -> bool:
+    return isinstance(result, CursorResult) and result.rowcount > 0

@@ -1,0 +1,65 @@
+"""What the leading dispatcher removes, on a real database and a real store."""
+
+from datetime import timedelta
+
+from dispatcher.duties import duties_of
+from dispatcher.retention import Sweeper, remove_expired
+from jobkit.database import Database
+from jobkit.jobs import Jobs
+from jobkit.meshes import Meshes
+from jobkit.queue import TaskQueue
+from jobkit.retention import pin_mesh
+from jobkit.settings import Settings
+from jobkit.store import ObjectStore
+from jobkit.sweep import GRACE
+from tests.jobkit.holdings import DAY, AgingStore, age_rows, finish, keys_in, new_job, put, upload
+
+
+def never() -> bool:
+    return False
+
+
+def test_expired_jobs_go_before_the_meshes_that_they_held(
+    settings: Settings, database: Database, store: ObjectStore
+) -> None:
+    mesh = upload(database, store, b"scan")
+    finish(database, store, Jobs(database).create(new_job(mesh))[0].id)
+    assert remove_expired(settings, database, store, never) == ""
+    age_rows(database, 31 * DAY)
+    assert remove_expired(settings, database, store, never) == "removed 1 jobs and 1 meshes"
+    assert remove_expired(settings, database, store, never) == ""
+
+
+def test_a_sweep_tells_what_it_found_in_either_direction(database: Database, store: ObjectStore) -> None:
+    aging = AgingStore(store)
+    kept, lost = upload(database, aging, b"kept"), upload(database, aging, b"lost")
+    pin_mesh(database, kept.id, True)
+    job = finish(database, aging, Jobs(database).create(new_job(kept))[0].id)
+    sweeper = Sweeper(database, aging)
+    assert sweeper.sweep(never) == ""
+    put(aging, b"nobody's")
+    store.delete(Meshes(database).source(lost.id).key)
+    store.delete_prefix(f"results/{job.id}")
+    aging.wait(GRACE + timedelta(minutes=1))
+    age_rows(database, GRACE + timedelta(minutes=1))
+    assert sweeper.sweep(never) == (
+        "deleted 1 objects without a row, 8 bytes; 1 meshes are gone from the store and were marked; "
+        "1 finished jobs lack files of their result"
+    )
+    upload(database, aging, b"lost")
+    store.delete(Meshes(database).source(lost.id).key)
+    assert "1 meshes are gone" in sweeper.sweep(never)
+    put(aging, b"lost")
+    assert "1 meshes are in the store again" in sweeper.sweep(never)
+
+
+def test_both_are_duties_of_the_dispatcher(settings: Settings, database: Database, store: ObjectStore) -> None:
+    queue = TaskQueue(settings.redis_url.get_secret_value(), settings.queue_name, 60)
+    duties = {duty.name: duty for duty in duties_of(settings, database, store, queue)}
+    upload(database, store, b"scan")
+    age_rows(database, 31 * DAY)
+    assert duties["retention"].work(never) == "removed 0 jobs and 1 meshes"
+    assert duties["sweep"].work(never) == ""
+    assert {duties[name].interval_s for name in ("retention", "sweep")} == {settings.sweep_s}
+    assert len(keys_in(store)) == 1
+    queue.close()
