@@ -25,6 +25,8 @@ EVENTS: Mapping[EventType, WebhookEvent] = MappingProxyType(
         "canceled": "job.canceled",
     }
 )
+# What depends on settings, other jobs or the hour; it would be wrong by the time that the message is read.
+UNTOLD = ("expires_at", "queue_position", "eta_s")
 
 
 def write_messages(session: Session, job_id: str, change: EventType, at: datetime) -> None:
@@ -41,7 +43,7 @@ def write_messages(session: Session, job_id: str, change: EventType, at: datetim
     if not wanted_by:
         return
     job = to_job(existing_job(session, job_id))
-    message = Message(type=event, timestamp=at, data={"job": job.model_dump(mode="json")})
+    message = Message(type=event, timestamp=at, data={"job": job.model_dump(mode="json", exclude=set(UNTOLD))})
     for webhook_id in wanted_by:
         session.add(new_delivery(session, webhook_id, message, job_id))
 

@@ -37,7 +37,7 @@ def create_app(settings: Settings, telemetry: Telemetry | None = None) -> FastAP
     ----------
     settings : Settings
     telemetry : Telemetry, optional
-        Takes a span of each request; none are made unless given.
+        Takes a span of each request, and is closed with the app; none are made unless given.
 
     Raises
     ------
@@ -58,6 +58,7 @@ def create_app(settings: Settings, telemetry: Telemetry | None = None) -> FastAP
     app.state.settings = settings
     app.state.max_json_bytes = settings.max_json_kb << 10
     app.state.registry = new_registry()
+    app.state.telemetry = telemetry or Telemetry()
     modules = (meshes, jobs, events, results, repairs, retention, models, webhooks, deliveries, health, metrics)
     routers = [module.router for module in modules]
     for router in routers:
@@ -67,7 +68,7 @@ def create_app(settings: Settings, telemetry: Telemetry | None = None) -> FastAP
     # The last one added is the outermost: ids and headers also stand on the answers of the auth middleware.
     app.add_middleware(AuthMiddleware, settings=settings)
     app.add_middleware(FrameMiddleware)
-    app.add_middleware(ObserveMiddleware, registry=app.state.registry, telemetry=telemetry or Telemetry())
+    app.add_middleware(ObserveMiddleware, registry=app.state.registry, telemetry=app.state.telemetry)
     return app
 
 
@@ -83,3 +84,5 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     finally:
         app.state.registry.unregister(collector)
         services.close()
+        # Here, since uvicorn ends the process by the signal that it got.
+        app.state.telemetry.close()

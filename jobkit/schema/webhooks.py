@@ -56,7 +56,8 @@ WebhookEvents = Annotated[
     Field(
         min_length=1,
         max_length=10,
-        description="What to hear of. A job that succeeded with warnings is `job.succeeded`.",
+        description="What to hear of; all ends of jobs unless given. With warnings or without, success is "
+        "`job.succeeded`.",
         examples=[["job.succeeded", "job.failed"]],
     ),
 ]
@@ -85,8 +86,8 @@ class NewWebhook(Request):
 class WebhookChange(Request):
     """What is to change in a subscription; what is left out or null stays as it is."""
 
-    url: WebhookUrl | None = None
-    events: WebhookEvents | None = None
+    url: WebhookUrl | None = Field(default=None, description="Where to send messages.")
+    events: WebhookEvents | None = Field(default=None, description="What to hear of.")
     description: WebhookDescription = None
     enabled: bool | None = Field(default=None, description="Whether anything is sent.", examples=[True])
 
@@ -174,8 +175,8 @@ class Message(Response):
     type: MessageType = Field(description="What happened.", examples=["job.succeeded"])
     timestamp: Moment = Field(description="When it happened, RFC 3339.")
     data: dict[str, Any] = Field(
-        description="`job`: the job right after the change, as `GET /v1/jobs/{job_id}` shows it; `webhook_id` in a "
-        "test message."
+        description="`job`: the job right after the change, as `GET /v1/jobs/{job_id}` shows it, but for "
+        "`queue_position`, `eta_s` and `expires_at`; `webhook_id` in a test message."
     )
 
 

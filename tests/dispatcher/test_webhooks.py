@@ -1,12 +1,18 @@
+import base64
+import hashlib
+import hmac
+import re
 import threading
 from collections import Counter
 from collections.abc import Callable
 from contextlib import ExitStack
 from datetime import timedelta
+from pathlib import Path
+from typing import Any
 
 import pytest
 from sqlalchemy import update
-from standardwebhooks import Webhook
+from standardwebhooks import Webhook, WebhookVerificationError
 
 from dispatcher.outbox import MAX_PER_WEBHOOK, claim_due
 from dispatcher.webhooks import deliver_webhooks, forget_old_deliveries
@@ -14,6 +20,7 @@ from jobkit.clock import utc_now
 from jobkit.database import Database
 from jobkit.deliveries import Deliveries
 from jobkit.jobs import Jobs
+from jobkit.outbox import UNTOLD
 from jobkit.schema import DeliveryState
 from jobkit.settings import Settings
 from jobkit.tables import DeliveryRow
@@ -43,7 +50,7 @@ def test_a_subscriber_hears_of_the_end_of_a_job(
     (request,) = receiver.received
     message = Webhook(webhook.secret).verify(request.body, request.headers)
     assert message["type"] == "job.failed"
-    assert message["data"] == {"job": Jobs(database).get(job_id).model_dump(mode="json")}
+    assert message["data"] == {"job": Jobs(database).get(job_id).model_dump(mode="json", exclude=set(UNTOLD))}
     assert message["data"]["job"]["error"]["message"] == "größer als 5 µm"
     (delivery,) = deliveries.page(webhook.id, 9).items
     assert (delivery.state, delivery.job_id) == (DeliveryState.DELIVERED, job_id)
@@ -219,3 +226,35 @@ def test_old_deliveries_are_removed_unless_the_time_is_up(
         session.execute(old.values(state="delivered", finished_at=utc_now() - timedelta(days=31)))
     assert forget_old_deliveries(database, 30.0, is_over) == words
     assert len(deliveries.page(webhook.id, 9).items) == left
+
+
+def test_the_lines_in_the_documentation_verify_a_message(
+    database: Database, settings: Settings, subscribe: Subscribe, deliveries: Deliveries
+) -> None:
+    page = (Path(__file__).parents[2] / "docs/api.md").read_text("utf-8")
+    (lines,) = re.findall(r"```python\n(from standardwebhooks.*?)```", page, re.DOTALL)
+    names: dict[str, Any] = {}
+    exec(lines, names)
+    with receiving() as receiver:
+        webhook = subscribe(receiver.url())
+        deliveries.send_test(webhook.id)
+        deliver_webhooks(database, settings, never)
+    (request,) = receiver.received
+    read_message = names["read_message"]
+    assert read_message(webhook.secret, request.headers, request.body)["type"] == "webhook.test"
+    with pytest.raises(WebhookVerificationError):
+        read_message(webhook.secret, request.headers, request.body.replace(b"test", b"tost"))
+
+
+def test_by_hand_the_signature_is_what_the_documentation_says(
+    database: Database, settings: Settings, subscribe: Subscribe, deliveries: Deliveries
+) -> None:
+    with receiving() as receiver:
+        webhook = subscribe(receiver.url())
+        deliveries.send_test(webhook.id)
+        deliver_webhooks(database, settings, never)
+    (request,) = receiver.received
+    key = base64.b64decode(webhook.secret.removeprefix("whsec_"))
+    signed = f"{request.headers['webhook-id']}.{request.headers['webhook-timestamp']}.".encode() + request.body
+    signature = base64.b64encode(hmac.new(key, signed, hashlib.sha256).digest()).decode()
+    assert request.headers["webhook-signature"] == f"v1,{signature}"
