@@ -6,7 +6,7 @@ READY  := $(VENV)/.ready
 # Twice quiet: errors only.
 PIP    := $(BIN)/python -m pip --quiet --quiet --disable-pip-version-check
 
-.PHONY: demo test check serve openapi bench bench-quality clean
+.PHONY: demo test test-postgres check serve openapi bench bench-quality clean
 
 $(READY): pyproject.toml constraints.txt
 	@echo "setting up $(VENV); this takes a few minutes the first time ..." >&2
@@ -25,6 +25,10 @@ serve: $(READY)           ## one box on http://127.0.0.1:8000 until Ctrl-C
 # One thread for each of the two processes: where four share two cores, each waits for the others.
 test: $(READY)            ## every test, with the real Valkey
 	@OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadfile
+
+test-postgres: $(READY)   ## the tests of service and workers on PostgreSQL and S3, both started by the tests
+	@TEST_BACKEND=postgres-s3 OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadfile \
+		tests/jobkit tests/service tests/worker tests/dispatcher tests/integration tests/contract tests/onebox
 
 check: $(READY)           ## ruff, import rules, types
 	$(BIN)/ruff check .

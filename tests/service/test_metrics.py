@@ -152,11 +152,11 @@ def test_without_its_queue_the_other_figures_are_still_there(settings: Settings)
     assert found[sample("jobs", state="queued")] == 0
 
 
-def test_without_its_database_the_other_figures_are_still_there(services: Services, settings: Settings) -> None:
+def test_without_its_database_the_other_figures_are_still_there(
+    services: Services, break_database: Callable[[], None]
+) -> None:
     services.database.close()
-    for path in settings.data_dir.glob("quadpatch.db*"):
-        path.unlink()
-    (settings.data_dir / "quadpatch.db").mkdir()
+    break_database()
     found = figures(services)
     assert found[sample("database_up")] == 0
     assert sample("jobs", state="queued") not in found

@@ -1,4 +1,4 @@
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import pytest
 from opentelemetry.sdk.trace import ReadableSpan, TracerProvider
@@ -49,9 +49,9 @@ def test_a_request_is_a_span_named_by_its_route(client: TestClient, exporter: In
 
 
 def test_a_request_that_the_service_fails_is_a_span_that_failed(
-    client: TestClient, services: Services, exporter: InMemorySpanExporter, settings: Settings
+    client: TestClient, services: Services, exporter: InMemorySpanExporter, break_store: Callable[[], None]
 ) -> None:
-    (settings.data_dir / "objects" / "incoming").rmdir()
+    break_store()
     assert client.post("/v1/meshes?filename=a.ply", content=b"ply").status_code == 503
     assert not only(exporter, "POST /v1/meshes").status.is_ok
 

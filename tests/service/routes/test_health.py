@@ -1,4 +1,4 @@
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -105,10 +105,8 @@ def test_without_its_queue_the_service_still_takes_jobs(without_queue: TestClien
     assert (answer.status_code, answer.json()["state"]) == (202, "queued")
 
 
-def test_a_store_that_cannot_be_written_is_not_ready(
-    client: TestClient, services: Services, settings: Settings
-) -> None:
-    (settings.data_dir / "objects" / "incoming").rmdir()
+def test_a_store_that_cannot_be_written_is_not_ready(client: TestClient, break_store: Callable[[], None]) -> None:
+    break_store()
     answer = client.get("/readyz")
     assert answer.status_code == 503
     assert answer.headers["retry-after"] == "2"

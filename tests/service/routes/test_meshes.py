@@ -1,6 +1,5 @@
 import hashlib
 from collections.abc import Callable, Iterator
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -8,6 +7,7 @@ from starlette.testclient import TestClient
 
 from jobkit.schema import MeshProblem
 from jobkit.settings import Settings
+from jobkit.store import ObjectStore
 from service.app import create_app
 from service.services import Services
 
@@ -21,8 +21,15 @@ def small(settings: Settings) -> Iterator[TestClient]:
         yield client
 
 
-def stored_files(settings: Settings) -> list[Path]:
-    return [path for path in (settings.data_dir / "objects").rglob("*") if path.is_file()]
+@pytest.fixture
+def stored_files(settings: Settings, store: ObjectStore) -> Callable[[], list[str]]:
+    """All that lies in the store, and what is on its way there."""
+
+    def listing() -> list[str]:
+        folders = (settings.data_dir / "objects" / "incoming", settings.data_dir / "scratch")
+        return [found.key for found in store.keys("meshes")] + [str(p) for f in folders for p in f.glob("*")]
+
+    return listing
 
 
 @pytest.mark.parametrize(
@@ -47,14 +54,14 @@ def test_a_mesh_can_be_uploaded_in_every_usual_way(client: TestClient, request_o
     assert client.get(mesh["links"]["content"]).content == DATA
 
 
-def test_the_same_bytes_are_the_same_mesh(client: TestClient, settings: Settings) -> None:
+def test_the_same_bytes_are_the_same_mesh(client: TestClient, stored_files: Callable[[], list[str]]) -> None:
     first = client.post("/v1/meshes?filename=a.ply", content=DATA)
     second = client.post("/v1/meshes?filename=b.ply", content=DATA)
     assert (first.status_code, second.status_code) == (201, 200)
     kept_from, kept_on_from = first.json().pop("expires_at"), second.json().pop("expires_at")
     assert kept_from < kept_on_from
     assert second.json() | {"expires_at": kept_from} == first.json()
-    assert len(stored_files(settings)) == 1
+    assert len(stored_files()) == 1
 
 
 def test_a_fresh_mesh_is_queued_for_its_analysis(client: TestClient, services: Services, mesh_id: str) -> None:
@@ -62,7 +69,9 @@ def test_a_fresh_mesh_is_queued_for_its_analysis(client: TestClient, services: S
 
 
 @pytest.mark.parametrize("kind", ["stated", "chunked", "form"])
-def test_a_body_over_the_limit_is_refused_and_leaves_nothing(small: TestClient, settings: Settings, kind: str) -> None:
+def test_a_body_over_the_limit_is_refused_and_leaves_nothing(
+    small: TestClient, stored_files: Callable[[], list[str]], kind: str
+) -> None:
     too_much = b"0" * ((1 << 20) + 1)
     if kind == "form":
         answer = small.post("/v1/meshes", files={"file": ("a.ply", too_much)})
@@ -71,7 +80,7 @@ def test_a_body_over_the_limit_is_refused_and_leaves_nothing(small: TestClient, 
     assert answer.status_code == 413
     assert answer.json()["code"] == "body_too_large"
     assert str(1 << 20) in answer.json()["detail"]
-    assert stored_files(settings) == []
+    assert stored_files() == []
 
 
 def test_a_body_of_exactly_the_limit_is_taken(small: TestClient) -> None:
@@ -93,11 +102,11 @@ def test_a_body_of_exactly_the_limit_is_taken(small: TestClient) -> None:
     ],
 )
 def test_an_upload_that_makes_no_sense_is_refused(
-    client: TestClient, settings: Settings, request_of: dict[str, Any], status: int, code: str
+    client: TestClient, stored_files: Callable[[], list[str]], request_of: dict[str, Any], status: int, code: str
 ) -> None:
     answer = client.post("/v1/meshes", **request_of)
     assert (answer.status_code, answer.json()["code"]) == (status, code)
-    assert stored_files(settings) == []
+    assert stored_files() == []
 
 
 def test_a_file_of_unknown_format_is_left_to_the_worker(client: TestClient) -> None:
