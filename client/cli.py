@@ -206,6 +206,33 @@ def cancel(
         screen.say(f"{canceled.id}: {canceled.state.value}")
 
 
+@app.command()
+def delete(
+    job: Annotated[str, typer.Argument(help="Id of the job.")],
+    url: UrlOption = DEFAULT_URL,
+    api_key: KeyOption = None,
+) -> None:
+    """Delete a finished job with its result; there is no way back."""
+    screen = Screen()
+    with _connected(screen, url, api_key) as client:
+        client.delete(job)
+    screen.say(f"{job}: deleted")
+
+
+@app.command()
+def pin(
+    job: Annotated[str, typer.Argument(help="Id of the job.")],
+    off: Annotated[bool, typer.Option("--off", help="Leave it to the retention again.")] = False,
+    url: UrlOption = DEFAULT_URL,
+    api_key: KeyOption = None,
+) -> None:
+    """Keep a job and its mesh, whatever the retention of the service."""
+    screen = Screen()
+    with _connected(screen, url, api_key) as client:
+        client.pin(job, not off)
+    screen.say(f"{job}: {'no longer pinned' if off else 'pinned'}")
+
+
 @contextmanager
 def _connected(screen: Screen, url: str, api_key: str | None) -> Iterator[Client]:
     """Open the service; whatever goes wrong becomes a line on stderr and an exit code."""

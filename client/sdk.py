@@ -166,6 +166,14 @@ class Client:
                 raise
             return self.job(job_id)
 
+    def delete(self, job_id: str) -> None:
+        """Delete a finished job with all it left. There is no way back."""
+        self._transport.request("DELETE", f"/v1/jobs/{job_id}")
+
+    def pin(self, job_id: str, is_pinned: bool = True) -> None:
+        """Keep a job whatever the retention, or no longer."""
+        self._transport.request("PUT" if is_pinned else "DELETE", f"/v1/jobs/{job_id}/pin")
+
     def download(
         self,
         job: Job,

@@ -35,7 +35,7 @@ IdempotencyKey = Annotated[
         alias="Idempotency-Key",
         pattern=r"^[!-~]{1,255}$",
         description="Any string of your own. A repeated request with the same key starts nothing twice: it gets the "
-        "job of the first time. Keys don't expire while their job is kept.",
+        "job of the first time. Keys expire with their job.",
         examples=["order-17-part-3"],
     ),
 ]

@@ -89,6 +89,7 @@ def test_a_database_that_was_just_set_up_deletes_nothing(database: Database, sto
 def test_files_that_are_no_objects_are_left_alone(database: Database, data_dir: Path, mesh: Mesh) -> None:
     store = open_store(f"file://{data_dir / 'objects'}")
     odd = data_dir / "objects" / "meshes" / ".keep"
+    odd.parent.mkdir(exist_ok=True)
     odd.touch()
     assert sweep_objects(database, store, utc_now() + 2 * GRACE) == Swept()
     assert odd.exists()

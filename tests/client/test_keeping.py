@@ -1,0 +1,36 @@
+"""Pins and deletions on the command line, against a real service."""
+
+from collections.abc import Callable
+from contextlib import AbstractContextManager
+from pathlib import Path
+from typing import Any
+
+from typer.testing import CliRunner
+
+from client.cli import app
+from client.exits import ExitCode
+from client.sdk import Client
+from jobkit.schema import JobSpec, JobState, SmoothMethod
+
+
+def test_a_job_is_pinned_unpinned_and_deleted(
+    serve: Callable[..., AbstractContextManager[Any]], tmp_path: Path
+) -> None:
+    scan = tmp_path / "scan.ply"
+    scan.write_bytes(b"ply")
+    with serve() as service, Client(service.url) as client:
+        mesh = client.upload(scan)
+        job = client.create_job(JobSpec(mesh_id=mesh.id, method=SmoothMethod(method="smooth")))
+
+        def run(*arguments: str) -> int:
+            return CliRunner().invoke(app, [*arguments, job.id, "--url", service.url]).exit_code
+
+        assert run("pin") == 0
+        assert client.job(job.id).pinned
+        assert run("pin", "--off") == 0
+        assert not client.job(job.id).pinned
+        assert run("delete") == ExitCode.REJECTED
+        assert client.cancel(job.id).state == JobState.CANCELED
+        assert run("delete") == 0
+        assert list(client.jobs()) == []
+        assert run("delete") == run("pin") == ExitCode.REJECTED
