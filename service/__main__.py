@@ -38,8 +38,7 @@ def main(arguments: list[str]) -> int:
         sys.stderr.write(f"quadpatch: {error}\n")
         return 1
     set_up_logs(settings)
-    with open_telemetry("api") as telemetry:
-        _serve(create_app(settings, telemetry), settings)
+    _serve(create_app(settings, open_telemetry("api")), settings)
     return 0
 
 
