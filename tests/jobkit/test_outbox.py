@@ -1,4 +1,6 @@
+import threading
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 from sqlalchemy import event, select
@@ -7,7 +9,7 @@ from jobkit.attempts import Attempts
 from jobkit.clock import utc_now
 from jobkit.database import Database
 from jobkit.endings import end_attempt, failure
-from jobkit.jobs import Jobs
+from jobkit.jobs import Jobs, NewJob
 from jobkit.outbox import UNTOLD
 from jobkit.schema import Job, JobError, JobResult, JobState, NewWebhook
 from jobkit.tables import DeliveryRow
@@ -97,3 +99,26 @@ def test_without_subscribers_a_change_costs_one_query_more_and_progress_none(dat
     event.remove(database.engine, "before_cursor_execute", note)
     assert len([statement for statement in statements if "webhooks" in statement]) == 1
     assert not [statement for statement in statements if "deliveries" in statement]
+
+
+def test_a_subscription_that_is_deleted_at_the_same_moment_never_undoes_the_end_of_a_job(
+    database: Database, new_job: NewJob, subscribe: Callable[..., str]
+) -> None:
+    jobs, webhooks = Jobs(database), Webhooks(database, lambda _: None)
+    created = [jobs.create(new_job)[0].id for _ in range(24)]
+    over = threading.Event()
+
+    def come_and_go() -> None:
+        while not over.is_set():
+            webhooks.delete(subscribe(["job.canceled"]))
+
+    with ThreadPoolExecutor(6) as pool:
+        churn = [pool.submit(come_and_go) for _ in range(3)]
+        try:
+            ended = [job.state for job in pool.map(jobs.request_cancel, created)]
+        finally:
+            over.set()
+        for turn in churn:
+            turn.result()
+    assert ended == [JobState.CANCELED] * len(created)
+    assert messages(database) == []
