@@ -5,13 +5,12 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
 import psutil
-from pydantic import SecretStr
 
 from jobkit.attempts import Attempts
 from jobkit.database import Database
@@ -40,15 +39,15 @@ class RunningService:
 
 
 @contextmanager
-def running_service(folder: Path, max_upload_mb: int) -> Iterator[RunningService]:
-    """Run a queue and `python -m service` in a folder."""
+def running_service(folder: Path, changes: Mapping[str, str | int]) -> Iterator[RunningService]:
+    """Run a queue and `python -m service` in a folder, with default settings but for these changes."""
     port = usable_port(HOST, 0)
     with running_valkey(folder / "valkey") as redis_url:
-        settings = Settings(data_dir=folder / "data", redis_url=SecretStr(redis_url), max_upload_mb=max_upload_mb)
-        named = {"DATA_DIR": str(settings.data_dir), "REDIS_URL": redis_url, "PORT": str(port)}
-        named["MAX_UPLOAD_MB"] = str(max_upload_mb)
+        settings = Settings.model_validate({"data_dir": folder / "data", "redis_url": redis_url, **changes})
+        named = {"DATA_DIR": settings.data_dir, "REDIS_URL": redis_url, "PORT": port}
+        named |= {name.upper(): value for name, value in changes.items()}
         own = {name: value for name, value in os.environ.items() if not name.startswith("QUADPATCH_")}
-        environment = own | {f"QUADPATCH_{name}": value for name, value in named.items()}
+        environment = own | {f"QUADPATCH_{name}": str(value) for name, value in named.items()}
         with (folder / "api.log").open("wb") as log:
             command = [sys.executable, "-m", "service"]
             process = subprocess.Popen(command, env=environment, stdout=log, stderr=subprocess.STDOUT)

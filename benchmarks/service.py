@@ -166,10 +166,14 @@ def main() -> int:
     parser.add_argument("--jobs", type=int, default=1000, help="jobs in the database")
     parser.add_argument("--seconds", type=float, default=20.0, help="length of each load")
     parser.add_argument("--mib", type=int, default=2048, help="size of the upload")
+    parser.add_argument("--database-url", default="", help="default: SQLite in the fresh folder")
+    parser.add_argument("--object-store-url", default="", help="default: the fresh folder")
     arguments = parser.parse_args()
+    changes = {name: getattr(arguments, name) for name in ("database_url", "object_store_url")}
+    changes["max_upload_mb"] = arguments.mib
     os.sched_setaffinity(0, sorted(os.sched_getaffinity(0))[:_CORES])
     console, holds = Console(), []
-    with tempfile.TemporaryDirectory() as folder, running_service(Path(folder), arguments.mib) as service:
+    with tempfile.TemporaryDirectory() as folder, running_service(Path(folder), changes) as service:
         if "polling" in arguments.what:
             table, held = polling_table(service, arguments)
             console.print(table)

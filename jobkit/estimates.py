@@ -156,11 +156,24 @@ class Estimates:
         self._due_at = self._past_due_at = -_NEVER
         self._speeds = Speeds(())
 
+    def refresh(self) -> None:
+        """Look anew if the last look is over a second old."""
+        # Whoever comes while somebody else looks takes what was seen before, if anything was.
+        if self._clock() < self._due_at or not self._lock.acquire(blocking=not math.isfinite(self._outlook.taken_at)):
+            return
+        try:
+            started = self._clock()
+            if started >= self._due_at:
+                self._outlook = self._look(started)
+                self._due_at = started + max(_LOOK_S, _LOOK_SHARE * (self._clock() - started))
+        finally:
+            self._lock.release()
+
     def complete(self, job: Job) -> Job:
-        """Return the job with its place in the queue and the seconds that it still takes."""
+        """Return the job with its place in the queue and the seconds that it still takes, as of the last look."""
         if job.state.is_terminal:
             return job
-        outlook = self._latest()
+        outlook = self._outlook
         left_s = outlook.left_s.get(job.id) if job.state != JobState.CANCELING else None
         if left_s is not None:
             left_s = round(max(left_s - (self._clock() - outlook.taken_at), 0.0), 1)
@@ -170,21 +183,8 @@ class Estimates:
         """Return a waiting job's place in the queue; one that came after the last look stands at the end."""
         if state != JobState.QUEUED:
             return None
-        positions = self._latest().positions
+        positions = self._outlook.positions
         return positions.get(job_id, len(positions) + 1)
-
-    def _latest(self) -> Outlook:
-        # Whoever comes while somebody else looks takes what was seen before, if anything was.
-        if self._clock() < self._due_at or not self._lock.acquire(blocking=not math.isfinite(self._outlook.taken_at)):
-            return self._outlook
-        try:
-            started = self._clock()
-            if started >= self._due_at:
-                self._outlook = self._look(started)
-                self._due_at = started + max(_LOOK_S, _LOOK_SHARE * (self._clock() - started))
-            return self._outlook
-        finally:
-            self._lock.release()
 
     def _look(self, started: float) -> Outlook:
         with self._database.read() as session:

@@ -20,6 +20,7 @@ from jobkit.settings import Settings
 from jobkit.shipped import seed_shipped
 from jobkit.store import ObjectStore, open_store
 from jobkit.webhooks import Webhooks
+from service.board import Board
 from service.streams import EventStreams
 
 
@@ -39,6 +40,7 @@ class Services:
     deliveries: Deliveries
     estimates: Estimates
     streams: EventStreams
+    board: Board
 
     def close(self) -> None:
         """Close all connections."""
@@ -62,6 +64,7 @@ def open_services(settings: Settings) -> Services:
     redis_url = settings.redis_url.get_secret_value()
     queue = TaskQueue(redis_url, settings.queue_name, settings.job_time_limit_s)
     jobs, meshes = Jobs(database, settings.job_retention_days), Meshes(database, settings.mesh_retention_days)
+    estimates = Estimates(database)
     return Services(
         settings,
         database,
@@ -73,8 +76,9 @@ def open_services(settings: Settings) -> Services:
         registry,
         Webhooks(database, partial(check_url, allowed=settings.webhook_networks)),
         Deliveries(database),
-        Estimates(database),
+        estimates,
         EventStreams(database, settings.max_streams),
+        Board(jobs, estimates),
     )
 
 

@@ -15,7 +15,6 @@ from service.routes.common import (
     described_header,
     etag_of,
     is_unchanged,
-    job_etag,
     job_response,
     json_response,
     linked,
@@ -76,6 +75,7 @@ async def create_job(
 def list_jobs(services: ServicesDep, limit: Limit = 20, cursor: Cursor = None, state: StateFilter = None) -> JobPage:
     """List jobs, newest first. Those that arrive meanwhile don't shift the pages."""
     page = services.jobs.page(limit, cursor, state)
+    services.estimates.refresh()
     return page.model_copy(update={"items": [services.estimates.complete(job) for job in page.items]})
 
 
@@ -88,14 +88,14 @@ async def get_job(
     if_none_match: IfNoneMatch = None,
 ) -> Response:
     """Show where a job stands. Its entity tag covers all but `eta_s`, which ages by itself."""
-    if if_none_match is not None and not preferred_wait_s(prefer):
-        tag = await run_in_threadpool(_present_etag, services, job_id)
+    if preferred_wait_s(prefer):
+        await _wait_for_end(services, job_id, prefer)
+    if if_none_match is not None:
+        sight = await services.board.glance(job_id)
+        tag = etag_of(sight.glance.revision, sight.queue_position, sight.glance.is_pinned)
         if is_unchanged(request, tag):
             return Response(status_code=304, headers={"ETag": tag})
-    job = await _wait_for_end(services, job_id, prefer)
-    if is_unchanged(request, job_etag(job)):
-        return Response(status_code=304, headers={"ETag": job_etag(job)})
-    response = job_response(job)
+    response = job_response(await services.board.job(job_id))
     response.status_code = 200
     note_applied(response, prefer)
     return response
@@ -113,7 +113,9 @@ async def get_job(
 )
 def cancel_job(services: ServicesDep, job_id: JobIdPath) -> Response:
     """Cancel a job; a second time changes nothing."""
-    return job_response(services.estimates.complete(services.jobs.request_cancel(job_id)))
+    canceled = services.jobs.request_cancel(job_id)
+    services.estimates.refresh()
+    return job_response(services.estimates.complete(canceled))
 
 
 @router.post(
@@ -151,10 +153,5 @@ async def _wait_for_end(services: Services, job_id: str, prefer: str | None) -> 
 
 
 def _look(services: Services, job_id: str) -> Job:
+    services.estimates.refresh()
     return services.estimates.complete(services.jobs.get(job_id))
-
-
-def _present_etag(services: Services, job_id: str) -> str:
-    """Return the entity tag that a job has now, without reading all of it: most polls find nothing new."""
-    seen = services.jobs.glance(job_id)
-    return etag_of(seen.revision, services.estimates.position(job_id, seen.state), seen.is_pinned)

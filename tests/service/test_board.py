@@ -1,0 +1,146 @@
+import threading
+from collections.abc import Collection
+from typing import Any
+
+import anyio
+import pytest
+
+from jobkit.attempts import Attempts
+from jobkit.database import Database
+from jobkit.errors import JobNotFoundError
+from jobkit.estimates import Estimates
+from jobkit.jobs import Glance, Jobs, NewJob
+from jobkit.meshes import Meshes
+from jobkit.schema import Job, JobSpec, JobState, ResolvedModel
+from jobkit.store import ObjectStore
+from service.board import Board
+
+
+class CountingJobs(Jobs):
+    """Counts the queries, and holds the first one up until it is let go."""
+
+    def __init__(self, database: Database) -> None:
+        super().__init__(database)
+        self.glanced: list[set[str]] = []
+        self.read_whole: list[set[str]] = []
+        self.has_begun = threading.Event()
+        self.may_go_on = threading.Event()
+
+    def glances(self, job_ids: Collection[str]) -> dict[str, Glance]:
+        self.glanced.append(set(job_ids))
+        found = super().glances(job_ids)
+        self.has_begun.set()
+        assert self.may_go_on.wait(60)
+        return found
+
+    def get_many(self, job_ids: Collection[str]) -> dict[str, Job]:
+        self.read_whole.append(set(job_ids))
+        return super().get_many(job_ids)
+
+
+@pytest.fixture
+def job(database: Database, store: ObjectStore) -> Job:
+    with store.writer("meshes") as writer:
+        writer.write(b"ply\n")
+        stored = writer.commit()
+    mesh = Meshes(database).add(stored, "scan.ply", "ply")[0]
+    new = NewJob(JobSpec(mesh_id=mesh.id), ResolvedModel(requested="self", kind="self"), max_attempts=2)
+    return Jobs(database).create(new)[0]
+
+
+@pytest.fixture
+def jobs(database: Database) -> CountingJobs:
+    return CountingJobs(database)
+
+
+def test_who_comes_during_a_look_shares_the_next_one_and_sees_what_has_changed_meanwhile(
+    database: Database, job: Job, jobs: CountingJobs
+) -> None:
+    found: dict[int, Any] = {}
+
+    async def look(place: int) -> None:
+        found[place] = await board.job(job.id)
+
+    async def live() -> None:
+        async with anyio.create_task_group() as tasks:
+            tasks.start_soon(look, 0)
+            await anyio.to_thread.run_sync(jobs.has_begun.wait)
+            await anyio.to_thread.run_sync(Attempts(database).start, job.id, "test", 30.0)
+            for place in range(1, 50):
+                tasks.start_soon(look, place)
+            await anyio.sleep(0)
+            jobs.may_go_on.set()
+
+    board = Board(jobs, Estimates(database))
+    anyio.run(live)
+    assert len(jobs.glanced) == 2
+    assert {found[place].state for place in range(1, 50)} == {JobState.RUNNING}
+
+
+def test_a_job_is_read_whole_once_for_each_change_and_only_if_somebody_wants_it(
+    database: Database, job: Job, jobs: CountingJobs
+) -> None:
+    jobs.may_go_on.set()
+    board = Board(jobs, Estimates(database))
+
+    async def live() -> None:
+        await board.glance(job.id)
+        assert (await board.job(job.id)).revision == 1
+        await board.job(job.id)
+        await anyio.to_thread.run_sync(Attempts(database).start, job.id, "test", 30.0)
+        assert (await board.glance(job.id)).glance.revision == 2
+        assert (await board.job(job.id)).revision == 2
+
+    anyio.run(live)
+    assert [ids for ids in jobs.read_whole if ids] == [{job.id}, {job.id}]
+
+
+def test_what_the_board_shows_is_what_the_database_holds(database: Database, job: Job) -> None:
+    board = Board(Jobs(database), Estimates(database))
+    attempts = Attempts(database)
+
+    async def live() -> None:
+        attempt = attempts.start(job.id, "test", 30).attempt
+        for percent in (10.0, 20.0):
+            attempts.report_progress(attempt, "fill", percent)
+            assert await board.job(job.id) == Jobs(database).get(job.id)
+
+    anyio.run(live)
+
+
+def test_one_unknown_job_leaves_the_others_their_answers(database: Database, job: Job) -> None:
+    board = Board(Jobs(database), Estimates(database))
+    refused = []
+
+    async def unknown() -> None:
+        with pytest.raises(JobNotFoundError):
+            await board.job("job_" + "0" * 26)
+        refused.append(True)
+
+    async def live() -> None:
+        async with anyio.create_task_group() as tasks:
+            tasks.start_soon(unknown)
+            assert (await board.job(job.id)).id == job.id
+
+    anyio.run(live)
+    assert refused
+
+
+def test_a_client_that_hangs_up_takes_nobody_elses_look_away(database: Database, job: Job, jobs: CountingJobs) -> None:
+    board = Board(jobs, Estimates(database))
+    found = []
+
+    async def look() -> None:
+        found.append(await board.job(job.id))
+
+    async def live() -> None:
+        async with anyio.create_task_group() as tasks, anyio.create_task_group() as hasty:
+            hasty.start_soon(look)
+            await anyio.sleep(0)
+            tasks.start_soon(look)
+            await anyio.to_thread.run_sync(jobs.has_begun.wait)
+            hasty.cancel_scope.cancel()
+            jobs.may_go_on.set()
+
+    anyio.run(live)
+    assert [seen.id for seen in found] == [job.id]
