@@ -1,14 +1,17 @@
 """Queue adapter: RQ as an executor only. The database is the truth; a lost queue is refilled from it.
 
 There is one queue for both kinds of tasks: RQ loses a job when a worker that listens to two queues is killed right
-after the pop. Analyses go to the front, they are short and somebody waits for them.
+after the pop. Analyses go to the front, they are short and somebody waits for them; so do jobs whose attempt was lost,
+they have waited already.
 """
 
 from collections.abc import Iterator
 from contextlib import contextmanager
 
 from redis import Redis
+from redis.backoff import ConstantBackoff
 from redis.exceptions import RedisError, ResponseError
+from redis.retry import Retry
 from rq import Queue
 from rq.serializers import JSONSerializer
 
@@ -19,6 +22,10 @@ INSPECT_MESH = "worker.jobs.inspect_mesh"
 # The engine has limits of its own; this one only frees a worker whose watch over the engine failed.
 _MARGIN_S = 60
 _SOCKET_TIMEOUT_S = 5.0
+_CONNECT_TIMEOUT_S = 2.0
+# A connection that broke is made anew once. Nobody waits here for a server that is away: the database has the job.
+_RETRIES = 1
+_RETRY_PAUSE_S = 0.1
 
 
 class TaskQueue:
@@ -35,14 +42,17 @@ class TaskQueue:
 
     def __init__(self, redis_url: str, name: str, time_limit_s: float) -> None:
         self.connection = Redis.from_url(
-            redis_url, socket_timeout=_SOCKET_TIMEOUT_S, socket_connect_timeout=_SOCKET_TIMEOUT_S
+            redis_url,
+            socket_timeout=_SOCKET_TIMEOUT_S,
+            socket_connect_timeout=_CONNECT_TIMEOUT_S,
+            retry=Retry(ConstantBackoff(_RETRY_PAUSE_S), _RETRIES),
         )
         self._queue = Queue(name, connection=self.connection, serializer=JSONSerializer)
         self._timeout_s = int(time_limit_s) + _MARGIN_S
 
     def enqueue_job(self, job_id: str, attempt: int) -> None:
         """Ask for an attempt at a job; `attempt` is the number that it will have. Raise QueueUnavailableError."""
-        self._enqueue(RUN_JOB, job_id, job_entry(job_id, attempt), at_front=False)
+        self._enqueue(RUN_JOB, job_id, job_entry(job_id, attempt), at_front=attempt > 1)
 
     def enqueue_inspection(self, mesh_id: str, attempt: int) -> None:
         """Ask for the analysis of a mesh; raise QueueUnavailableError."""

@@ -19,7 +19,7 @@ from jobkit.settings import Settings, load_settings
 from jobkit.store import ObjectStore, open_store
 from jobkit.telemetry import open_telemetry
 from worker.context import Context, use_context, worker_name
-from worker.executor import Executor
+from worker.executor import execute
 from worker.folders import worker_folder
 from worker.nursing import Nursery, NurseryLostError
 
@@ -65,9 +65,7 @@ def _run(settings: Settings, store: ObjectStore) -> int:
             logging.critical("%s", error)
             return _EXIT_BROKEN
         stack.enter_context(ready_file())
-        Executor(context.queue, settings.queue_name, context.name, context.draining).work(
-            logging_level=settings.log_level.upper()
-        )
+        execute(context.queue, settings.queue_name, context.name, context.draining, settings.log_level.upper())
     return 0
 
 

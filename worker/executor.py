@@ -2,30 +2,71 @@
 
 The heavy work is done by engine children, so nothing is gained by RQ's own fork per job, and much is lost: a killed
 parent would leave it running.
+
+RQ's worker gives up when Valkey goes away in the middle of a task. The task itself needs no Valkey, and the process has
+loaded much: so the worker of RQ is replaced by a fresh one as soon as there is a Valkey again.
 """
 
+import contextlib
+import logging
+import secrets
 import threading
+import time
 
+from redis.exceptions import RedisError
 from rq import Queue, SimpleWorker
+from rq.exceptions import StopRequested
 from rq.serializers import JSONSerializer
 
 from jobkit.queue import TaskQueue
+
+# RQ waits for a task for 15 s less than this, and notices a connection that hangs 10 s after that.
+_TTL_S = 25
+_PAUSE_S = 1.0
+
+_log = logging.getLogger("quadpatch.worker.executor")
+
+
+def execute(queue: TaskQueue, queue_name: str, name: str, draining: threading.Event, logging_level: str) -> None:
+    """Take tasks until the process is asked to stop.
+
+    Parameters
+    ----------
+    queue : TaskQueue
+    queue_name : str
+    name : str
+        Of this worker, for people.
+    draining : threading.Event
+        Set by SIGTERM or SIGINT once tasks have been taken.
+    logging_level : str
+        Of RQ's own words.
+    """
+    with contextlib.suppress(StopRequested):
+        while not draining.is_set():
+            try:
+                Executor(queue, queue_name, name, draining).work(logging_level=logging_level)
+            except RedisError as error:
+                _log.warning("the queue does not answer: %s", error)
+            if not draining.is_set():
+                time.sleep(_PAUSE_S)
 
 
 class Executor(SimpleWorker):  # type: ignore[misc]
     """An RQ worker that tells the running task when it is asked to stop."""
 
     # A Valkey that was restarted is back within a second; the default is a minute.
-    max_connection_wait_time = 5.0
+    max_connection_wait_time = 2.0
     log_result_lifespan = False
 
     def __init__(self, queue: TaskQueue, queue_name: str, name: str, draining: threading.Event) -> None:
         super().__init__(
             [Queue(queue_name, connection=queue.connection, serializer=JSONSerializer)],
-            name=name,
+            # RQ refuses a name that it takes for alive, as that of a worker that could not say farewell.
+            name=f"{name}-{secrets.token_hex(2)}",
             connection=queue.connection,
             serializer=JSONSerializer,
             log_job_description=False,
+            worker_ttl=_TTL_S,
         )
         self._draining = draining
 
@@ -33,3 +74,9 @@ class Executor(SimpleWorker):  # type: ignore[misc]
         """Pass the request on: the first SIGTERM or SIGINT drains, RQ itself obeys a second one at once."""
         self._draining.set()
         super().handle_warm_shutdown_request()
+
+    def set_shutdown_requested_date(self) -> None:
+        """Write nothing: this runs in a signal handler, and a Valkey that is away would fail the running task."""
+
+    def subscribe(self) -> None:
+        """Take no commands through Valkey: signals and the database say all that a worker needs to know."""

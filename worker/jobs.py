@@ -4,13 +4,20 @@ A task that comes twice, or too late, does nothing: only one can start an attemp
 """
 
 import logging
+import time
+from collections.abc import Callable
+from typing import TypeVar
 
-from jobkit.errors import NotFoundError, StaleAttemptError
+from jobkit.errors import DatabaseUnavailableError, NotFoundError, StaleAttemptError
 from jobkit.logs import log_about
+from jobkit.reconcile import GRACE_S
 from jobkit.schema import JobState
 from worker.analyses import analyse
-from worker.context import current_context
+from worker.context import Context, current_context
 from worker.repairs import repair
+
+_PAUSE_S = 0.5
+T = TypeVar("T")
 
 _log = logging.getLogger("quadpatch.worker.jobs")
 
@@ -19,8 +26,8 @@ def run_job(job_id: str) -> None:
     """Start an attempt at a job and work on it."""
     context = current_context()
     try:
-        started = context.attempts.start(job_id, context.name, context.settings.lease_s)
-    except (StaleAttemptError, NotFoundError) as error:
+        started = _patiently(context, lambda: context.attempts.start(job_id, context.name, context.settings.lease_s))
+    except (StaleAttemptError, NotFoundError, DatabaseUnavailableError) as error:
         _log.info("nothing to do: %s", error)
         return
     attempt = started.attempt
@@ -43,9 +50,28 @@ def inspect_mesh(mesh_id: str) -> None:
     """Analyse an uploaded mesh: format, size, boundary loops."""
     context = current_context()
     try:
-        analysis = context.meshes.start_analysis(mesh_id, context.name, context.settings.lease_s)
-    except (StaleAttemptError, NotFoundError) as error:
+        analysis = _patiently(
+            context, lambda: context.meshes.start_analysis(mesh_id, context.name, context.settings.lease_s)
+        )
+    except (StaleAttemptError, NotFoundError, DatabaseUnavailableError) as error:
         _log.info("nothing to do: %s", error)
         return
     with log_about(mesh_id=mesh_id, attempt=analysis.attempt):
         analyse(context, analysis)
+
+
+def _patiently(context: Context, start: Callable[[], T]) -> T:
+    """Start, and wait for a database that is away.
+
+    Workers that drop their entries would empty the queue in no time; after a while the dispatcher takes the entry for
+    lost and puts it into the queue again, so nothing is gained by waiting longer.
+    """
+    deadline = time.monotonic() + GRACE_S
+    while True:
+        try:
+            return start()
+        except DatabaseUnavailableError as error:
+            if context.draining.is_set() or time.monotonic() > deadline:
+                raise
+            _log.warning("a task waits to be started: %s", error)
+            time.sleep(_PAUSE_S)

@@ -92,8 +92,10 @@ def _become_engine(run: Callable[[], None], folder: Path, tie: Callable[[], None
         run()
         status = 0
     finally:
-        sys.stdout.flush()
-        sys.stderr.flush()
+        # On a full disk these words are lost, but the process must end here even so.
+        for stream in (sys.stdout, sys.stderr):
+            with contextlib.suppress(OSError):
+                stream.flush()
         # Not sys.exit: the parent's exit handlers are not this process's to run.
         os._exit(status)
 

@@ -8,16 +8,19 @@ import logging
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TypeVar
 
-from jobkit.attempts import StartedAttempt
+from jobkit.attempts import AT_WORK, StartedAttempt
+from jobkit.endings import Attempt, stale
 from jobkit.errors import (
     DatabaseUnavailableError,
+    JobNotFoundError,
     QueueUnavailableError,
     StaleAttemptError,
     StoreUnavailableError,
 )
 from jobkit.reconcile import submit_job
-from jobkit.schema import JobError, JobResult, JobState
+from jobkit.schema import Job, JobError, JobResult, JobState
 from jobkit.stages import StageSeconds
 from jobkit.telemetry import StageSpans
 from worker.context import Context
@@ -39,6 +42,8 @@ _PATIENCE_S = 120.0
 _PAUSE_S = 1.0
 _DRAINED = JobError(code="worker_drained", message="the worker was stopped in the middle of the job", retryable=True)
 
+T = TypeVar("T")
+
 _log = logging.getLogger("quadpatch.worker.repairs")
 
 
@@ -59,6 +64,9 @@ def repair(context: Context, started: StartedAttempt) -> JobState | None:
         state = _patiently(lambda: _settle(context, started, outcome))
     except StaleAttemptError as error:
         _log.warning("the attempt may write no more: %s", error)
+        # The answer to the commit that published it may have got lost with the connection: then the files are in use.
+        if _patiently(lambda: _has_published(context, started)):
+            return context.jobs.get(started.attempt.job_id).state
         _drop(context, started)
         return None
     if isinstance(outcome, _Repaired) and not state.has_result:
@@ -69,7 +77,15 @@ def repair(context: Context, started: StartedAttempt) -> JobState | None:
     return state
 
 
-def _patiently(settle: Callable[[], JobState]) -> JobState:
+def _has_published(context: Context, started: StartedAttempt) -> bool:
+    try:
+        job = context.jobs.get(started.attempt.job_id)
+    except JobNotFoundError:
+        return False
+    return job.attempt == started.attempt.number and job.state.has_result
+
+
+def _patiently(settle: Callable[[], T]) -> T:
     """Settle, and wait for a database that is away: work that is done is not to be done again for that."""
     deadline = time.monotonic() + _PATIENCE_S
     while True:
@@ -142,11 +158,21 @@ def _vitals(context: Context, started: StartedAttempt) -> Vitals:
     attempts, jobs, attempt, settings = context.attempts, context.jobs, started.attempt, context.settings
     return Vitals(
         renew=lambda memory_mb: attempts.heartbeat(attempt, settings.lease_s, memory_mb),
-        is_canceled=lambda: jobs.get(attempt.job_id).state == JobState.CANCELING,
+        is_canceled=lambda: _is_canceled(jobs.get(attempt.job_id), attempt),
         report=lambda stage, percent: attempts.report_progress(attempt, stage, percent),
         heartbeat_s=settings.heartbeat_s,
         lease_s=settings.lease_s,
     )
+
+
+def _is_canceled(job: Job, attempt: Attempt) -> bool:
+    """Tell whether somebody asked for the end; raise StaleAttemptError where the attempt has ended without its worker.
+
+    The dispatcher does not wait long for a worker that is slow to acknowledge a cancel.
+    """
+    if job.attempt != attempt.number or job.state.value not in AT_WORK:
+        raise stale(attempt)
+    return job.state is JobState.CANCELING
 
 
 def _settle(context: Context, started: StartedAttempt, outcome: _Repaired | Failure | StopReason) -> JobState:

@@ -1,0 +1,124 @@
+"""The end of an attempt when the database, or somebody else, comes in between."""
+
+from collections.abc import Callable, Iterator
+from contextlib import closing, contextmanager
+
+import pytest
+from sqlalchemy import select
+from sqlalchemy.orm import Session
+
+from jobkit.attempts import Attempts
+from jobkit.database import Database
+from jobkit.errors import DatabaseUnavailableError
+from jobkit.jobs import Jobs, NewJob
+from jobkit.meshes import Meshes
+from jobkit.queue import TaskQueue
+from jobkit.schema import Job, JobSpec, JobState, ResolvedModel
+from jobkit.settings import Settings
+from jobkit.store import ObjectStore, result_key
+from jobkit.tables import JobRow
+from tests.integration.conftest import ply_bytes, punched_relief
+from worker.context import Context, use_context
+from worker.jobs import run_job
+from worker.nursing import Nursery
+
+
+class Forgetful(Database):
+    """A database that commits, and is gone before it has said so: once, when `forgets` says so."""
+
+    def __init__(self, url: str, forgets: Callable[[Session], bool]) -> None:
+        super().__init__(url)
+        self._forgets = forgets
+        self.has_forgotten = False
+
+    @contextmanager
+    def write(self) -> Iterator[Session]:
+        with super().write() as session:
+            yield session
+        with self.read() as session:
+            is_due = not self.has_forgotten and self._forgets(session)
+        if is_due:
+            self.has_forgotten = True
+            raise DatabaseUnavailableError("the connection was lost")
+
+
+class Refusing(Database):
+    """A database that is away for the first so many writes."""
+
+    def __init__(self, url: str) -> None:
+        super().__init__(url)
+        self.refusals = 0
+
+    @contextmanager
+    def write(self) -> Iterator[Session]:
+        if self.refusals:
+            self.refusals -= 1
+            raise DatabaseUnavailableError("the database does not answer")
+        with super().write() as session:
+            yield session
+
+
+@contextmanager
+def working(settings: Settings, database: Database, store: ObjectStore) -> Iterator[Context]:
+    queue = TaskQueue(settings.redis_url.get_secret_value(), settings.queue_name, settings.job_time_limit_s)
+    with closing(queue), closing(database), Nursery(1) as nursery:
+        context = Context("w-1", settings, database, store, queue, nursery, 1)
+        context.work_folder.mkdir(parents=True)
+        with use_context(context):
+            yield context
+
+
+def new_job(context: Context) -> Job:
+    with context.store.writer("meshes") as writer:
+        writer.write(ply_bytes(*punched_relief(20, 1)))
+        stored = writer.commit()
+    mesh = Meshes(context.database).add(stored, "scan.ply", "ply")[0]
+    spec = JobSpec.model_validate({"mesh_id": mesh.id, "method": {"method": "smooth"}, "output": {"preview": False}})
+    return Jobs(context.database).create(NewJob(spec, ResolvedModel(requested="smooth", kind="none"), 3))[0]
+
+
+def has_result(session: Session) -> bool:
+    return any(JobState(state).has_result for state in session.scalars(select(JobRow.state)))
+
+
+def test_a_result_whose_publication_was_not_confirmed_keeps_its_files(
+    settings: Settings, database: Database, store: ObjectStore
+) -> None:
+    forgetful = Forgetful(settings.effective_database_url, has_result)
+    with working(settings, forgetful, store) as context:
+        job = new_job(context)
+        run_job(job.id)
+        ended = context.jobs.get(job.id)
+    assert forgetful.has_forgotten
+    assert ended.state.has_result
+    assert ended.result is not None
+    kept = {listed.key for listed in store.keys("results")}
+    assert kept == {result_key(job.id, 1, file.name) for file in ended.result.files}
+
+
+def test_a_task_waits_for_a_database_that_is_away(settings: Settings, store: ObjectStore) -> None:
+    refusing = Refusing(settings.effective_database_url)
+    with working(settings, refusing, store) as context:
+        job = new_job(context)
+        refusing.refusals = 2
+        run_job(job.id)
+        assert context.jobs.get(job.id).state.has_result
+    assert refusing.refusals == 0
+
+
+def test_an_attempt_that_was_ended_by_somebody_else_is_noticed_before_its_next_heartbeat(
+    settings: Settings, database: Database, store: ObjectStore, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from jobkit.errors import StaleAttemptError  # noqa: PLC0415
+    from worker.repairs import _vitals  # noqa: PLC0415
+
+    with working(settings, Database(settings.effective_database_url), store) as context:
+        job = new_job(context)
+        started = Attempts(database).start(job.id, "w-1", 30)
+        vitals = _vitals(context, started)
+        assert not vitals.is_canceled()
+        context.jobs.request_cancel(job.id)
+        assert vitals.is_canceled()
+        Attempts(database).acknowledge_cancel(started.attempt)
+        with pytest.raises(StaleAttemptError):
+            vitals.is_canceled()
