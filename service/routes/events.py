@@ -30,11 +30,10 @@ _RESPONSES: dict[int | str, dict[str, Any]] = {
 After = Annotated[int, Query(ge=0, le=_LARGEST, description="Only events with a higher number.")]
 PageLimit = Annotated[int, Query(ge=1, le=1000, description="Most events on the page; a stream has no limit.")]
 LastEventId = Annotated[
-    int | None,
+    str,
     Header(
         alias="Last-Event-ID",
-        ge=0,
-        le=_LARGEST,
+        pattern="^[0-9]{0,9}$",
         description="Of a stream: only events with a higher number, whatever `after` says. Browsers send it when they "
         "take up a broken stream.",
     ),
@@ -48,13 +47,13 @@ async def list_events(
     job_id: JobIdPath,
     after: After = 0,
     limit: PageLimit = 200,
-    last_event_id: LastEventId = None,
+    last_event_id: LastEventId = "",
 ) -> Response:
     """List everything that happened to a job, oldest first, or stream it with `Accept: text/event-stream`."""
     if not accepts_stream(request.headers.get("accept", "")):
         page = await run_in_threadpool(services.jobs.events, job_id, after, limit)
         return json_response(page, Vary="Accept")
-    known = after if last_event_id is None else last_event_id
+    known = int(last_event_id or after)
     job = await run_in_threadpool(services.jobs.glance, job_id)
     if job.state.is_terminal and known >= job.revision:
         return Response(status_code=HTTPStatus.NO_CONTENT, headers={"Vary": "Accept"})
