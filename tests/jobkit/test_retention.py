@@ -12,6 +12,7 @@ from jobkit.errors import (
     JobNotFoundError,
     MeshInUseError,
     MeshNotFoundError,
+    StoreUnavailableError,
 )
 from jobkit.jobs import Idempotency, Jobs, NewJob
 from jobkit.meshes import Meshes
@@ -204,14 +205,33 @@ def test_nothing_can_be_pinned_that_is_not_there(database: Database) -> None:
 
 
 @pytest.mark.parametrize("kills_after", [False, True])
+@pytest.mark.parametrize("is_asked_for", [False, True])
 def test_a_process_killed_between_row_and_files_leaves_no_row_behind(
-    database: Database, store: ObjectStore, new_job: NewJob, kills_after: bool
+    database: Database, store: ObjectStore, new_job: NewJob, is_asked_for: bool, kills_after: bool
 ) -> None:
     job = Jobs(database).create(new_job)[0]
     finish(database, store, job.id)
     killing = AgingStore(store)
     killing.kill_in, killing.kills_after = 0, kills_after
     with pytest.raises(KilledError):
-        expire_jobs(database, killing, 1, utc_now() + timedelta(days=2))
+        if is_asked_for:
+            delete_job(database, killing, job.id)
+        else:
+            expire_jobs(database, killing, 1, utc_now() + timedelta(days=2))
     with pytest.raises(JobNotFoundError):
         Jobs(database).get(job.id)
+
+
+def test_a_store_that_is_away_keeps_no_job_from_being_deleted(
+    database: Database, store: ObjectStore, new_job: NewJob
+) -> None:
+    class AwayStore(AgingStore):
+        def delete_prefix(self, prefix: str) -> None:
+            raise StoreUnavailableError("away")
+
+    job = Jobs(database).create(new_job)[0]
+    finish(database, store, job.id)
+    delete_job(database, AwayStore(store), job.id)
+    with pytest.raises(JobNotFoundError):
+        Jobs(database).get(job.id)
+    assert len(results(store)) == 1
