@@ -213,11 +213,15 @@ def test_a_process_killed_between_row_and_files_leaves_no_row_behind(
     finish(database, store, job.id)
     killing = AgingStore(store)
     killing.kill_in, killing.kills_after = 0, kills_after
-    with pytest.raises(KilledError):
+
+    def remove() -> None:
         if is_asked_for:
             delete_job(database, killing, job.id)
         else:
             expire_jobs(database, killing, 1, utc_now() + timedelta(days=2))
+
+    with pytest.raises(KilledError):
+        remove()
     with pytest.raises(JobNotFoundError):
         Jobs(database).get(job.id)
 
