@@ -30,7 +30,7 @@ _LISTED_AT_ONCE = 1_000
 _CHECK_KEY = "writable"
 # The API answers 503 and workers wait a while, so nobody waits here for long.
 _CONNECT_TIMEOUT_S = 3
-_REQUEST_TIMEOUT_S = 60
+_REQUEST_TIMEOUT_S = 120
 _MAX_RETRIES = 3
 _RETRY_TIMEOUT_S = 10
 
