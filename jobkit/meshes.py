@@ -3,6 +3,7 @@
 An analysis is fenced like a job: starting it raises `attempt`, and only the latest attempt may write.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import timedelta
 
@@ -10,7 +11,7 @@ from sqlalchemy import exists, select, update
 from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
-from jobkit.clock import utc_now
+from jobkit.clock import shared_now, utc_now
 from jobkit.database import Database
 from jobkit.errors import MeshNotFoundError, StaleAttemptError
 from jobkit.expiry import expiry
@@ -20,6 +21,8 @@ from jobkit.tables import JobRow, MeshRow
 
 # Code of the problem of a mesh whose bytes are gone from the store.
 MESH_MISSING = "mesh_missing"
+# Analyses before a mesh is given up.
+MAX_ANALYSES = 3
 
 
 @dataclass(frozen=True)
@@ -34,10 +37,11 @@ class MeshSource:
 
 @dataclass(frozen=True)
 class Analysis:
-    """One try at analysing a mesh."""
+    """One try at analysing a mesh; `is_last` where a failure of it rejects the mesh."""
 
     source: MeshSource
     attempt: int
+    is_last: bool = False
 
 
 class Meshes:
@@ -82,8 +86,8 @@ class Meshes:
 
     def start_analysis(self, mesh_id: str, worker: str, lease_s: float) -> Analysis:
         """Take a mesh for analysis; raise StaleAttemptError where another worker has it or nothing is to be done."""
-        now = utc_now()
         with self._database.write() as session:
+            now = shared_now(session)
             row = _existing(session, mesh_id)
             is_taken = row.lease_until is not None and row.lease_until > now
             if row.state != MeshState.ANALYSING or is_taken:
@@ -103,11 +107,11 @@ class Meshes:
             )
             if changed.rowcount != 1:  # type: ignore[attr-defined]
                 raise StaleAttemptError(f"mesh {mesh_id} was taken by another worker")
-            return Analysis(_to_source(row), row.attempt + 1)
+            return Analysis(_to_source(row), row.attempt + 1, row.attempt + 1 - row.forgiven >= MAX_ANALYSES)
 
     def renew(self, analysis: Analysis, lease_s: float) -> None:
         """Prolong the lease; raise StaleAttemptError where the analysis was taken away."""
-        self._write(analysis, {"lease_until": utc_now() + timedelta(seconds=lease_s)})
+        self._write(analysis, {}, lease_s)
 
     def publish(self, analysis: Analysis, facts: MeshFacts) -> None:
         """Write what the analysis found; raise StaleAttemptError."""
@@ -122,6 +126,14 @@ class Meshes:
     def release(self, analysis: Analysis) -> None:
         """Hand an analysis back undone; raise StaleAttemptError."""
         self._write(analysis, {"lease_until": None, "enqueued_at": None})
+
+    def forgive(self, analysis: Analysis, delay_s: float = 0.0) -> None:
+        """Hand an analysis back, and don't count it: what ended it lies outside of the mesh.
+
+        Nobody takes the mesh for `delay_s` seconds. Raises StaleAttemptError.
+        """
+        values = {"lease_until": None, "enqueued_at": None, "forgiven": MeshRow.forgiven + 1}
+        self._write(analysis, values, delay_s)
 
     def _add(self, stored: StoredObject, filename: str | None, mesh_format: Format | None) -> tuple[Mesh, bool]:
         now = utc_now()
@@ -150,8 +162,10 @@ class Meshes:
         links = MeshLinks(self=path, content=f"{path}/content")
         return Mesh.model_validate(values | {"links": links, "expires_at": expires_at})
 
-    def _write(self, analysis: Analysis, values: dict[str, object]) -> None:
+    def _write(self, analysis: Analysis, values: Mapping[str, object], lease_s: float = 0.0) -> None:
         with self._database.write() as session:
+            if lease_s:
+                values = {**values, "lease_until": shared_now(session) + timedelta(seconds=lease_s)}
             changed = session.execute(
                 update(MeshRow)
                 .where(
@@ -177,6 +191,8 @@ def restart(row: MeshRow, filename: str | None, mesh_format: str | None) -> None
     row.filename, row.format = filename, mesh_format
     row.state, row.facts, row.problem = MeshState.ANALYSING.value, None, None
     row.lease_until = row.enqueued_at = None
+    # As many tries as a new one.
+    row.forgiven = row.attempt
 
 
 def _existing(session: Session, mesh_id: str) -> MeshRow:

@@ -9,8 +9,9 @@ from datetime import datetime, timedelta
 
 from sqlalchemy import or_, select, update
 
-from jobkit.clock import shared_now, utc_now
+from jobkit.clock import shared_now
 from jobkit.database import Database
+from jobkit.meshes import MAX_ANALYSES
 from jobkit.overdue import TimeLimits, end_overdue
 from jobkit.queue import TaskQueue, job_entry, mesh_entry
 from jobkit.schema import JobState, MeshProblem, MeshState
@@ -18,7 +19,6 @@ from jobkit.tables import JobRow, MeshRow
 
 # Between the pop and the start of the attempt an entry is in neither place.
 GRACE_S = 10.0
-MAX_ANALYSES = 3
 
 
 @dataclass(frozen=True)
@@ -60,7 +60,7 @@ def submit_job(database: Database, queue: TaskQueue, job_id: str, attempt: int) 
         session.execute(
             update(JobRow)
             .where(JobRow.id == job_id, JobRow.state == JobState.QUEUED.value, JobRow.attempt == attempt)
-            .values(enqueued_at=utc_now())
+            .values(enqueued_at=shared_now(session))
         )
 
 
@@ -73,7 +73,7 @@ def submit_analysis(database: Database, queue: TaskQueue, mesh_id: str) -> None:
         return
     queue.enqueue_inspection(mesh_id, attempt + 1)
     with database.write() as session:
-        session.execute(update(MeshRow).where(MeshRow.id == mesh_id).values(enqueued_at=utc_now()))
+        session.execute(update(MeshRow).where(MeshRow.id == mesh_id).values(enqueued_at=shared_now(session)))
 
 
 def _enqueue_jobs(database: Database, queue: TaskQueue, waiting: set[str], now: datetime) -> int:
@@ -114,7 +114,7 @@ def _give_up_analyses(database: Database, now: datetime) -> None:
             update(MeshRow)
             .where(
                 MeshRow.state == MeshState.ANALYSING.value,
-                MeshRow.attempt >= MAX_ANALYSES,
+                MeshRow.attempt - MeshRow.forgiven >= MAX_ANALYSES,
                 MeshRow.lease_until < now,
             )
             .values(state=MeshState.REJECTED.value, problem=problem.model_dump(mode="json"), updated_at=now)

@@ -65,6 +65,7 @@ class MeshRow(Base):
     format: Mapped[str | None] = mapped_column(String(16))
     state: Mapped[str] = mapped_column(String(32))
     attempt: Mapped[int] = mapped_column(default=0)
+    forgiven: Mapped[int] = mapped_column(default=0)
     worker: Mapped[str | None] = mapped_column(String(128))
     lease_until: Mapped[datetime | None]
     enqueued_at: Mapped[datetime | None]

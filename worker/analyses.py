@@ -5,11 +5,11 @@ import logging
 
 from jobkit.errors import QueueUnavailableError, StaleAttemptError
 from jobkit.meshes import Analysis
-from jobkit.reconcile import MAX_ANALYSES, submit_analysis
+from jobkit.reconcile import submit_analysis
 from jobkit.schema import MeshFacts, MeshProblem
 from worker.context import Context
 from worker.facts import mesh_facts
-from worker.failures import Failure, StopReason
+from worker.failures import OUTAGE_DELAY_S, Failure, StopReason
 from worker.limits import EngineLimits
 from worker.outcomes import folder_with_mesh, outcome_of
 from worker.pulse import Pulse, Vitals
@@ -70,10 +70,17 @@ def _settle(context: Context, analysis: Analysis, outcome: MeshFacts | Failure |
         return
     if outcome is StopReason.LOST:
         raise StaleAttemptError(f"the analysis of mesh {analysis.source.mesh_id} lost its lease")
-    if isinstance(outcome, Failure) and (not outcome.retryable or analysis.attempt >= MAX_ANALYSES):
+    if isinstance(outcome, Failure) and outcome.is_outside:
+        # The dispatcher puts it into the queue again when the time has come.
+        context.meshes.forgive(analysis, OUTAGE_DELAY_S)
+        return
+    if isinstance(outcome, Failure) and (not outcome.retryable or analysis.is_last):
         context.meshes.reject(analysis, MeshProblem(code=outcome.code, message=outcome.message))
         return
-    context.meshes.release(analysis)
+    if outcome is StopReason.DRAINED:
+        context.meshes.forgive(analysis)
+    else:
+        context.meshes.release(analysis)
     try:
         submit_analysis(context.database, context.queue, analysis.source.mesh_id)
     except QueueUnavailableError:

@@ -1,5 +1,6 @@
 """The outermost frame of an engine child: sets the limits, and turns whatever is raised into a report."""
 
+import contextlib
 import os
 import traceback
 from collections.abc import Callable
@@ -31,13 +32,19 @@ def run_framed(folder: Path, descriptor: int, task: Callable[[EngineRequest, Rep
     except MemoryError:
         reporter.failed(over_memory(request.limits.memory_mb, reporter.stage))
     except OSError as error:
-        traceback.print_exc()
+        _print_traceback()
         reporter.failed(from_os_error(error, reporter.stage))
     except Exception:  # noqa: BLE001 - nothing above may see a traceback; the log gets it
-        traceback.print_exc()
+        _print_traceback()
         reporter.failed(Failure("engine_error", "the engine met an error that nobody foresaw", reporter.stage))
     else:
         reporter.done()
+
+
+def _print_traceback() -> None:
+    # The log lies on the same disk as all else: where that is full, the report matters more.
+    with contextlib.suppress(OSError):
+        traceback.print_exc()
 
 
 def _without_paths(message: str, folder: Path) -> str:

@@ -14,6 +14,7 @@ Codes made here, besides those of `quadpatch.errors`, which pass through:
     engine_crashed              the engine died of a signal, or without a word; another attempt may succeed
     engine_error                an error that nobody foresaw
     no_space                    the disk of the worker is full; the attempt is not counted
+    disk_error                  the disk of the worker can't be used; the attempt is not counted
     store_unavailable           the object store can't be read or written; the attempt is not counted
     mesh_missing                the mesh is gone from the store
     model_missing               the model is gone from the registry or the store
@@ -24,6 +25,10 @@ Codes made here, besides those of `quadpatch.errors`, which pass through:
 import enum
 import errno
 from dataclasses import dataclass
+
+# A full disk or a store that is away comes back by itself or by somebody's hand; asking every moment helps neither.
+OUTAGE_DELAY_S = 10.0
+_BROKEN_DISK = (errno.EIO, errno.EROFS, errno.EACCES, errno.EPERM, errno.ESTALE, errno.EMFILE, errno.ENFILE)
 
 
 class StopReason(enum.Enum):
@@ -98,9 +103,16 @@ def store_unavailable() -> Failure:
 
 
 def from_os_error(error: OSError, stage: str | None) -> Failure:
-    """Describe an operating system error; a full disk may have room again later, paths stay out of the message."""
+    """Describe an operating system error; paths stay out of the message.
+
+    A disk that is full, read-only or broken is no fault of the job: another worker may do it, or this one later.
+    """
     if error.errno in (errno.ENOSPC, errno.EDQUOT):
         return Failure("no_space", "the worker has no disk space left", stage, retryable=True, is_outside=True)
+    if error.errno in _BROKEN_DISK:
+        return Failure(
+            "disk_error", f"the worker's disk failed: {error.strerror}", stage, retryable=True, is_outside=True
+        )
     if error.errno == errno.EFBIG:
         return Failure("result_too_large", "a file of the result is larger than the limit", stage)
     return Failure("engine_error", f"the worker could not read or write a file: {error.strerror}", stage)

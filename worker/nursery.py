@@ -105,7 +105,11 @@ def _redirect(folder: Path) -> None:
     os.chdir(folder)
     os.umask(0o077)
     os.environ["TMPDIR"] = str(folder)
-    log = os.open("engine.log", os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600)
+    try:
+        log = os.open("engine.log", os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600)
+    except OSError:
+        # A full disk: the engine will find that out itself, and report it.
+        log = os.open(os.devnull, os.O_WRONLY)
     nothing = os.open(os.devnull, os.O_RDONLY)
     os.dup2(nothing, 0)
     os.dup2(log, 1)

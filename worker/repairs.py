@@ -24,7 +24,7 @@ from jobkit.schema import Job, JobError, JobResult, JobState
 from jobkit.stages import StageSeconds
 from jobkit.telemetry import StageSpans
 from worker.context import Context
-from worker.failures import Failure, StopReason
+from worker.failures import OUTAGE_DELAY_S, Failure, StopReason
 from worker.limits import EngineLimits
 from worker.models import model_argument
 from worker.outcomes import folder_with_mesh, outcome_of
@@ -35,8 +35,6 @@ from worker.watch import Observer, run_engine
 
 # A repair that is nearly done may finish when its worker is asked to stop; the others are handed back.
 _DRAIN_GRACE_S = 2.0
-# A full disk or a store that is away comes back by itself or by somebody's hand; asking every moment helps neither.
-_OUTAGE_DELAY_S = 10.0
 # How long an ended attempt waits for the database to take its result.
 _PATIENCE_S = 120.0
 _PAUSE_S = 1.0
@@ -184,7 +182,7 @@ def _settle(context: Context, started: StartedAttempt, outcome: _Repaired | Fail
             code=outcome.code, message=outcome.message, stage=outcome.stage or None, retryable=outcome.retryable
         )
         if outcome.is_outside:
-            return attempts.hand_back(attempt, error, _OUTAGE_DELAY_S)
+            return attempts.hand_back(attempt, error, OUTAGE_DELAY_S)
         return attempts.requeue(attempt, error) if outcome.retryable else attempts.fail(attempt, error)
     if outcome is StopReason.DRAINED:
         return attempts.hand_back(attempt, _DRAINED)

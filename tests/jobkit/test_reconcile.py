@@ -11,10 +11,10 @@ from jobkit.clock import utc_now
 from jobkit.database import Database
 from jobkit.errors import QueueUnavailableError
 from jobkit.jobs import Jobs
-from jobkit.meshes import Meshes
+from jobkit.meshes import MAX_ANALYSES, Meshes
 from jobkit.overdue import TimeLimits
 from jobkit.queue import INSPECT_MESH, RUN_JOB, TaskQueue, job_entry, mesh_entry
-from jobkit.reconcile import GRACE_S, MAX_ANALYSES, reconcile, submit_analysis, submit_job
+from jobkit.reconcile import GRACE_S, reconcile, submit_analysis, submit_job
 from jobkit.schema import Job, JobState, Mesh, MeshState
 from jobkit.settings import Settings
 
@@ -117,6 +117,21 @@ def test_an_analysis_that_kills_its_worker_is_given_up(database: Database, queue
     assert rejected.state == MeshState.REJECTED
     assert rejected.problem is not None
     assert rejected.problem.code == "analysis_failed"
+
+
+def test_an_analysis_that_met_an_outage_comes_back_after_a_while_and_is_not_counted(
+    database: Database, queue: TaskQueue, mesh: Mesh
+) -> None:
+    meshes = Meshes(database)
+    for _ in range(MAX_ANALYSES + 2):
+        analysis = meshes.start_analysis(mesh.id, "w", 30.0)
+        assert not analysis.is_last
+        meshes.forgive(analysis, 0.0)
+    meshes.forgive(meshes.start_analysis(mesh.id, "w", 30.0), 60.0)
+    now = utc_now()
+    assert reconcile(database, queue, LIMITS, now).enqueued_meshes == 0
+    assert reconcile(database, queue, LIMITS, now + timedelta(seconds=61)).enqueued_meshes == 1
+    assert meshes.get(mesh.id).state == MeshState.ANALYSING
 
 
 def test_the_password_of_the_queue_stands_in_no_error(settings: Settings) -> None:

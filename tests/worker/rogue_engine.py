@@ -59,6 +59,11 @@ class Deeds:
                 file.write(bytes(1 << 20))
 
     @staticmethod
+    def meet_a_full_disk(folder: Path) -> None:
+        os.dup2(os.open("/dev/full", os.O_WRONLY), 2)
+        Path("/dev/full").write_text("no room")
+
+    @staticmethod
     def start_a_grandchild(folder: Path) -> None:
         grandchild = subprocess.Popen(["sleep", "600"])
         (folder.parent / "grandchild").write_text(str(grandchild.pid))

@@ -2,25 +2,27 @@
 
 from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager
+from pathlib import Path
 
 import pytest
-from sqlalchemy import select
+from sqlalchemy import select, update
 from sqlalchemy.orm import Session
 
 from jobkit.attempts import Attempts
 from jobkit.database import Database
-from jobkit.errors import DatabaseUnavailableError
+from jobkit.errors import DatabaseUnavailableError, StaleAttemptError
 from jobkit.jobs import Jobs, NewJob
-from jobkit.meshes import Meshes
+from jobkit.meshes import MAX_ANALYSES, Meshes
 from jobkit.queue import TaskQueue
-from jobkit.schema import Job, JobSpec, JobState, ResolvedModel
+from jobkit.schema import Job, JobSpec, JobState, MeshState, ResolvedModel
 from jobkit.settings import Settings
-from jobkit.store import ObjectStore, result_key
-from jobkit.tables import JobRow
+from jobkit.store import ObjectStore, open_store, result_key
+from jobkit.tables import JobRow, MeshRow
 from tests.integration.conftest import ply_bytes, punched_relief
 from worker.context import Context, use_context
-from worker.jobs import run_job
+from worker.jobs import inspect_mesh, run_job
 from worker.nursing import Nursery
+from worker.repairs import _vitals
 
 
 class Forgetful(Database):
@@ -96,6 +98,22 @@ def test_a_result_whose_publication_was_not_confirmed_keeps_its_files(
     assert kept == {result_key(job.id, 1, file.name) for file in ended.result.files}
 
 
+def test_a_mesh_is_not_rejected_for_a_store_that_is_away(settings: Settings, tmp_path: Path) -> None:
+    disk = tmp_path / "disk"
+    database = Database(settings.effective_database_url)
+    with working(settings, database, open_store(f"file://{disk}")) as context:
+        mesh_id = new_job(context).mesh_id
+        disk.rename(tmp_path / "unmounted")
+        for _ in range(MAX_ANALYSES + 1):
+            inspect_mesh(mesh_id)
+            with database.write() as session:
+                session.execute(update(MeshRow).values(lease_until=None))
+        assert context.meshes.get(mesh_id).state is MeshState.ANALYSING
+        (tmp_path / "unmounted").rename(disk)
+        inspect_mesh(mesh_id)
+        assert context.meshes.get(mesh_id).state is MeshState.READY
+
+
 def test_a_task_waits_for_a_database_that_is_away(settings: Settings, store: ObjectStore) -> None:
     refusing = Refusing(settings.effective_database_url)
     with working(settings, refusing, store) as context:
@@ -107,11 +125,8 @@ def test_a_task_waits_for_a_database_that_is_away(settings: Settings, store: Obj
 
 
 def test_an_attempt_that_was_ended_by_somebody_else_is_noticed_before_its_next_heartbeat(
-    settings: Settings, database: Database, store: ObjectStore, monkeypatch: pytest.MonkeyPatch
+    settings: Settings, database: Database, store: ObjectStore
 ) -> None:
-    from jobkit.errors import StaleAttemptError  # noqa: PLC0415
-    from worker.repairs import _vitals  # noqa: PLC0415
-
     with working(settings, Database(settings.effective_database_url), store) as context:
         job = new_job(context)
         started = Attempts(database).start(job.id, "w-1", 30)

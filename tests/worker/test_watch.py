@@ -117,6 +117,14 @@ def test_an_engine_can_not_fill_the_disk(rogue_nursery: Nursery, tmp_path: Path)
     assert (tmp_path / "huge").stat().st_size == 4 << 20
 
 
+def test_an_engine_that_can_not_even_write_its_log_says_that_the_disk_is_full(
+    rogue_nursery: Nursery, tmp_path: Path
+) -> None:
+    """Otherwise it would look like a crash, and three of them end a job."""
+    failure = failure_of(rogue_nursery, tmp_path, "meet_a_full_disk")
+    assert (failure.code, failure.is_outside) == ("no_space", True)
+
+
 def test_what_an_engine_started_ends_with_it(rogue_nursery: Nursery, tmp_path: Path) -> None:
     folder = tmp_path / "request"
     folder.mkdir()

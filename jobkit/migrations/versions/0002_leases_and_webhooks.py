@@ -107,6 +107,7 @@ def upgrade() -> None:
 
     op.execute("UPDATE jobs SET queued_at = created_at")
     with op.batch_alter_table("meshes", schema=None) as batch_op:
+        batch_op.add_column(sa.Column("forgiven", sa.Integer(), nullable=False, server_default="0"))
         batch_op.add_column(sa.Column("pinned", sa.Boolean(), nullable=False, server_default=sa.false()))
         batch_op.add_column(sa.Column("used_at", sa.DateTime(timezone=True), nullable=False, server_default=LONG_AGO))
         batch_op.create_index(batch_op.f("ix_meshes_used_at"), ["used_at"], unique=False)
@@ -119,6 +120,7 @@ def downgrade() -> None:
         batch_op.drop_index(batch_op.f("ix_meshes_used_at"))
         batch_op.drop_column("used_at")
         batch_op.drop_column("pinned")
+        batch_op.drop_column("forgiven")
 
     with op.batch_alter_table("jobs", schema=None) as batch_op:
         batch_op.drop_index(batch_op.f("ix_jobs_finished_at"))
