@@ -25,7 +25,7 @@ from onebox.valkey import running_valkey
 
 HOST = "127.0.0.1"
 # Jobs that workers report progress of, as often as they do at most.
-_N_RUNNING, _PROGRESS_S = 4, 0.5
+N_RUNNING, _PROGRESS_S = 4, 0.5
 _START_S = 60.0
 
 
@@ -97,7 +97,7 @@ def furnish(settings: Settings, n_jobs: int) -> tuple[list[str], list[Attempt]]:
         attempt = attempts.start(job_id, "benchmark", 3600).attempt
         attempts.report_progress(attempt, "write", 99.0)
         attempts.publish(attempt, JobResult(format="ply", holes=HoleCounts(found=3, filled=3), seconds=8.0))
-    running = ids[n_jobs // 4 : n_jobs // 4 + _N_RUNNING]
+    running = ids[n_jobs // 4 : n_jobs // 4 + N_RUNNING]
     started = [attempts.start(job_id, f"benchmark-{i}", 3600).attempt for i, job_id in enumerate(running)]
     database.close()
     return ids, started

@@ -1,4 +1,4 @@
-"""What the service bears: clients that poll jobs, and the memory that a large upload takes.
+"""What the service bears: clients that poll and follow jobs, and the memory that a large upload takes.
 
 Run ``python -m benchmarks.service``. It starts a queue and the API of one box with their default settings in a fresh
 folder, on two cores together with the clients, fills the database with jobs in all states, and keeps some of them
@@ -17,12 +17,13 @@ import time
 from collections.abc import Iterator
 from dataclasses import asdict, replace
 from pathlib import Path
+from typing import Any
 
 from rich.console import Console
 from rich.table import Table
 
 from benchmarks.polling import Plan
-from benchmarks.served import HOST, RunningService, furnish, moving, running_service
+from benchmarks.served import HOST, N_RUNNING, RunningService, furnish, moving, running_service
 
 MOST_P95_MS = 50.0
 MOST_GROWTH_MB = 64.0
@@ -32,16 +33,8 @@ _MB = 1 << 20
 
 def measure_polling(service: RunningService, plan: Plan) -> dict[str, float]:
     """Let clients poll while some of the jobs move; times in milliseconds, rates a second, shares of one core."""
-    service.process.cpu_percent()
     before = service.process.cpu_times()
-    client = subprocess.run(
-        [sys.executable, "-m", "benchmarks.polling"],
-        input=json.dumps(asdict(plan)),
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    tally = json.loads(client.stdout)
+    tally = _run_clients("benchmarks.polling", plan)
     after = service.process.cpu_times()
     times = [1000 * seconds for seconds in tally["times"]]
     cuts = statistics.quantiles(times, n=100)
@@ -57,6 +50,30 @@ def measure_polling(service: RunningService, plan: Plan) -> dict[str, float]:
         "most": max(times),
         "cpu_ms": 1000 * cpu_s / len(times),
     }
+
+
+def measure_streams(service: RunningService, plan: Plan) -> dict[str, float]:
+    """Let clients follow jobs that move; delays in milliseconds, share of one core, memory of a stream in KiB."""
+    before, before_mb = service.process.cpu_times(), service.process.memory_info().rss / _MB
+    _forget_peak(service.process.pid)
+    tally = _run_clients("benchmarks.streaming", plan)
+    after = service.process.cpu_times()
+    cuts = statistics.quantiles([1000 * seconds for seconds in tally["delays"]], n=100)
+    return {
+        "events": len(tally["delays"]) / plan.seconds,
+        "errors": len(tally["errors"]),
+        "p50": cuts[49],
+        "p95": cuts[94],
+        "cpu": (after.user + after.system - before.user - before.system) / plan.seconds,
+        "each_kb": 1024 * (_peak_mb(service.process.pid) - before_mb) / plan.n_clients,
+    }
+
+
+def _run_clients(module: str, plan: Plan) -> dict[str, Any]:
+    command = [sys.executable, "-m", module]
+    client = subprocess.run(command, input=json.dumps(asdict(plan)), capture_output=True, text=True, check=True)
+    tally: dict[str, Any] = json.loads(client.stdout)
+    return tally
 
 
 def measure_upload(service: RunningService, mib: int, is_form: bool) -> dict[str, float]:
@@ -113,6 +130,21 @@ def polling_plans(paths: list[str], port: int, arguments: argparse.Namespace) ->
     yield "without a pause, If-None-Match", replace(plan, interval_s=0.0, is_conditional=True)
 
 
+def streams_table(service: RunningService, arguments: argparse.Namespace) -> tuple[Table, bool]:
+    """Measure event streams of jobs that move; return the table, and whether nothing was lost or came twice."""
+    table = Table(title=f"{arguments.clients} clients follow {N_RUNNING} jobs that move, {arguments.seconds:g} s")
+    for head in ("events/s", "errors", "delay p50 ms", "p95 ms", "share of one core", "KiB for each stream"):
+        table.add_column(head, justify="right")
+    _, attempts = furnish(service.settings, 4 * N_RUNNING)
+    paths = [f"/v1/jobs/{attempt.job_id}" for attempt in attempts]
+    with moving(service, attempts):
+        plan = Plan(HOST, service.port, paths, arguments.clients, arguments.seconds, 0.0, False)
+        seen = measure_streams(service, plan)
+    values = [f"{seen['p50']:.0f}", f"{seen['p95']:.0f}", f"{seen['cpu']:.0%}", f"{seen['each_kb']:.0f}"]
+    table.add_row(f"{seen['events']:.0f}", f"{seen['errors']:.0f}", *values)
+    return table, not seen["errors"]
+
+
 def polling_table(service: RunningService, arguments: argparse.Namespace) -> tuple[Table, bool]:
     """Measure every load; return the table, and whether those with a pause of a second keep the promise."""
     table = Table(title=f"{arguments.clients} clients poll {arguments.jobs} jobs, {arguments.seconds:g} s each")
@@ -161,7 +193,7 @@ def upload_table(service: RunningService, mib: int) -> tuple[Table, bool]:
 def main() -> int:
     """Read the command line and print the tables; return 1 where a promise is broken."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0] if __doc__ else None)
-    parser.add_argument("what", nargs="*", default=["polling", "upload"], choices=["polling", "upload"])
+    parser.add_argument("what", nargs="*", help="polling, streams or upload; default: all")
     parser.add_argument("--clients", type=int, default=200)
     parser.add_argument("--jobs", type=int, default=1000, help="jobs in the database")
     parser.add_argument("--seconds", type=float, default=20.0, help="length of each load")
@@ -174,12 +206,13 @@ def main() -> int:
     os.sched_setaffinity(0, sorted(os.sched_getaffinity(0))[:_CORES])
     console, holds = Console(), []
     with tempfile.TemporaryDirectory() as folder, running_service(Path(folder), changes) as service:
-        if "polling" in arguments.what:
-            table, held = polling_table(service, arguments)
-            console.print(table)
-            holds.append(held)
-        if "upload" in arguments.what:
-            table, held = upload_table(service, arguments.mib)
+        tables = {
+            "polling": lambda: polling_table(service, arguments),
+            "streams": lambda: streams_table(service, arguments),
+            "upload": lambda: upload_table(service, arguments.mib),
+        }
+        for name in arguments.what or tables:
+            table, held = tables[name]()
             console.print(table)
             holds.append(held)
     return 0 if all(holds) else 1
