@@ -7,7 +7,7 @@ from sqlalchemy import bindparam, select
 from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
-from jobkit.clock import utc_now
+from jobkit.clock import shared_now, utc_now
 from jobkit.database import Database
 from jobkit.errors import IdempotencyError, JobFinishedError, JobNotFoundError, MeshNotFoundError
 from jobkit.events import append_event, read_events
@@ -161,8 +161,8 @@ class Jobs:
         JobFinishedError
             If the job has ended otherwise.
         """
-        now = utc_now()
         with self._database.write() as session:
+            now = shared_now(session)
             # Or it might start between the two moves, and fit neither.
             existing_job(session, job_id, locked=True)
             _ = make_move(session, job_id, Move(JobState.QUEUED, JobState.CANCELED, "canceled"), now) or make_move(

@@ -137,3 +137,23 @@ def test_a_rejected_mesh_says_why_and_takes_no_job(client: TestClient, services:
     answer = client.post("/v1/jobs", json={"mesh_id": mesh_id, "method": {"method": "smooth"}})
     assert (answer.status_code, answer.json()["code"]) == (409, "mesh_rejected")
     assert "3 follow" in answer.json()["detail"]
+
+
+def test_while_the_store_is_away_clients_are_told_to_come_again(
+    client: TestClient, mesh_id: str, break_store: Callable[[], None]
+) -> None:
+    break_store()
+    for answer in (client.get(f"/v1/meshes/{mesh_id}/content"), client.post("/v1/meshes?filename=b.ply", content=DATA)):
+        assert (answer.status_code, answer.json()["code"]) == (503, "store_unavailable")
+        assert (answer.headers["retry-after"], answer.json()["retryable"]) == ("2", True)
+    assert client.get(f"/v1/meshes/{mesh_id}").status_code == 200
+
+
+def test_while_the_database_is_away_clients_are_told_to_come_again(
+    client: TestClient, services: Services, mesh_id: str, break_database: Callable[[], None]
+) -> None:
+    services.database.close()
+    break_database()
+    for answer in (client.get(f"/v1/meshes/{mesh_id}"), client.post("/v1/jobs", json={"mesh_id": mesh_id})):
+        assert (answer.status_code, answer.json()["code"]) == (503, "database_unavailable")
+        assert answer.headers["retry-after"] == "2"
