@@ -6,7 +6,7 @@ READY  := $(VENV)/.ready
 # Twice quiet: errors only.
 PIP    := $(BIN)/python -m pip --quiet --quiet --disable-pip-version-check
 
-.PHONY: demo test test-postgres check serve openapi bench bench-quality clean
+.PHONY: demo test test-postgres faults check serve openapi bench bench-quality clean
 
 $(READY): pyproject.toml constraints.txt
 	@echo "setting up $(VENV); this takes a few minutes the first time ..." >&2
@@ -29,6 +29,10 @@ test: $(READY)            ## every test, with the real Valkey
 test-postgres: $(READY)   ## the tests of service and workers on PostgreSQL and S3, both started by the tests
 	@TEST_BACKEND=postgres-s3 OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadfile \
 		tests/jobkit tests/service tests/worker tests/dispatcher tests/integration tests/contract tests/onebox
+
+# Network namespaces and disks that fill up need root; without it the suite says what it left out.
+faults: $(READY)          ## kill, cut off and starve a cluster of real processes: make faults ARGS="--seed 7 --backend sqlite-local"
+	@$(BIN)/python -m tests.faults $(ARGS)
 
 check: $(READY)           ## ruff, import rules, types
 	$(BIN)/ruff check .

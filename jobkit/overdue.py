@@ -21,7 +21,7 @@ from jobkit.tables import AttemptRow, JobRow
 from jobkit.transitions import Move, make_move
 
 # A worker that lives acknowledges a cancel within a second; after this long nobody waits for a dead one.
-CANCEL_PATIENCE_S = 2.0
+CANCEL_PATIENCE_S = 1.5
 # A worker that was last seen this close to its memory limit and then fell silent was ended by the kernel.
 _FULL_MEMORY = 0.9
 # Of one look; the rest comes with the next.

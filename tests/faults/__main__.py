@@ -20,7 +20,7 @@ def main(arguments: list[str]) -> int:
     parser = argparse.ArgumentParser(prog="make faults ARGS=...", description=__doc__)
     parser.add_argument("--seed", type=int, default=1, help="of all chance")
     parser.add_argument("--jobs", type=int, default=300, help="accepted jobs, at least")
-    parser.add_argument("--rounds", type=int, default=8, help="how often each fault strikes")
+    parser.add_argument("--rounds", type=int, default=4, help="how often each outage strikes; kills do twice as often")
     parser.add_argument("--backend", choices=("sqlite-local", "postgres-s3"), default="postgres-s3")
     parser.add_argument("--loopback", action="store_true", help="make no network namespaces")
     parser.add_argument("--keep", type=Path, help="folder for logs and data, kept; default: a temporary one")
@@ -28,7 +28,11 @@ def main(arguments: list[str]) -> int:
     logging.basicConfig(level=logging.INFO, format="%(asctime)s %(message)s")
     logging.getLogger("httpx").setLevel(logging.WARNING)
     campaign = Campaign(
-        Plan(chosen.seed, chosen.jobs), chosen.backend, chosen.rounds, wants_namespaces=not chosen.loopback
+        Plan(chosen.seed, chosen.jobs),
+        chosen.backend,
+        chosen.rounds,
+        wants_namespaces=not chosen.loopback,
+        kills_per_outage=2,
     )
     if chosen.keep is not None:
         chosen.keep.mkdir(parents=True)

@@ -33,12 +33,18 @@ class Campaign:
     plan : Plan
     backend : "sqlite-local" or "postgres-s3"
     rounds : int
-        How often each fault strikes, about.
+        How often each outage strikes.
     pause_s : (float, float)
-        Shortest and longest pause between two faults of one kind.
-    leases : dict
-        Settings of leases; those of a deployment by default.
+        Shortest and longest pause between two kills, and between two outages.
+    settings : dict
+        Variables for all processes; by default they run as in a deployment.
+    kills, outages : sequence of Fault
+        Both strike at the same time. Where there are namespaces, links go down, too.
     wants_namespaces : bool
+    lease_s : float
+        Of attempts.
+    kills_per_outage : int
+        How often each kill strikes for every time that an outage does.
     """
 
     plan: Plan
@@ -50,6 +56,7 @@ class Campaign:
     outages: Sequence[Fault] = OUTAGES
     wants_namespaces: bool = True
     lease_s: float = 15.0
+    kills_per_outage: int = 1
 
 
 @dataclass(frozen=True)
@@ -105,7 +112,8 @@ def _fight(campaign: Campaign, field: Field, urls: list[str], book: Book, outage
 
     def kill() -> None:
         try:
-            _strike_all(campaign, field, campaign.kills)
+            # Each is over sooner than an outage, so there is time for more of them.
+            _strike_all(campaign, field, campaign.kills, campaign.kills_per_outage)
         except BaseException as error:  # noqa: BLE001 - raised again below, in the thread that everybody sees
             failures.append(error)
         finally:
@@ -126,9 +134,9 @@ def _fight(campaign: Campaign, field: Field, urls: list[str], book: Book, outage
         raise failures[0]
 
 
-def _strike_all(campaign: Campaign, field: Field, faults: Sequence[Fault]) -> None:
+def _strike_all(campaign: Campaign, field: Field, faults: Sequence[Fault], times: int = 1) -> None:
     rng = random.Random(f"{campaign.plan.seed}-{faults[0].__name__}")
-    row = [fault for fault in faults for _ in range(campaign.rounds)]
+    row = [fault for fault in faults for _ in range(campaign.rounds * times)]
     rng.shuffle(row)
     for fault in row:
         time.sleep(rng.uniform(*campaign.pause_s))

@@ -1,5 +1,6 @@
 """Small disks of memory that can be filled up or made read-only; plain folders where this user may not mount."""
 
+import contextlib
 import errno
 import os
 import subprocess
@@ -57,7 +58,8 @@ class Disk:
         if not self.is_mounted:
             # Root ignores the mode, but root can mount.
             for folder in (self.folder, *(path for path in self.folder.rglob("*") if path.is_dir())):
-                folder.chmod(0o755 if mode == "rw" else 0o555)
+                with contextlib.suppress(FileNotFoundError):  # removed since it was listed
+                    folder.chmod(0o755 if mode == "rw" else 0o555)
             return True
         command = ["mount", "-o", f"remount,{mode}", str(self.folder)]
         return subprocess.run(command, check=False, capture_output=True).returncode == 0

@@ -1,13 +1,11 @@
 """What a fault leaves on record: when it struck, whom, and what shows that it did."""
 
 import threading
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from datetime import datetime
 
 from sqlalchemy import select
 
-from jobkit.clock import utc_now
 from jobkit.database import Database
 from jobkit.schema import JobState
 from jobkit.tables import JobRow, LeaderRow
@@ -82,10 +80,3 @@ def leader_holder(database: Database) -> str | None:
 def pid_in(name: str) -> int:
     """Return the process id in the name of a worker or a dispatcher."""
     return int(name.rsplit("-", 2)[1])
-
-
-def now_and(act: Callable[[], object]) -> datetime:
-    """Act, and return the moment right before."""
-    at = utc_now()
-    act()
-    return at

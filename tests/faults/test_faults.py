@@ -1,0 +1,54 @@
+"""A short campaign with a fixed seed. `make faults` runs the long one, with the leases of a deployment."""
+
+
+import pytest
+
+from tests.faults import faults
+from tests.faults.campaign import Campaign, Outcome, run_campaign
+from tests.faults.load import Plan
+from tests.faults.table import to_text
+from tests.faults.verdict import broken_promises
+
+# Short leases, so that what falls silent is missed within seconds.
+FAST = {"QUADPATCH_HEARTBEAT_S": "0.5", "QUADPATCH_DISPATCH_S": "0.3", "QUADPATCH_LEADER_LEASE_S": "2"}
+KILLS = (faults.kill_worker, faults.kill_engine, faults.kill_api, faults.kill_dispatcher)
+OUTAGES = (faults.kill_valkey, faults.flush_valkey, faults.stop_database, faults.refuse_store, faults.freeze_worker)
+
+pytestmark = pytest.mark.faults
+
+
+@pytest.fixture(scope="module")
+def outcome(tmp_path_factory: pytest.TempPathFactory) -> Outcome:
+    campaign = Campaign(
+        Plan(seed=5, n_jobs=25, n_stations=5),
+        "sqlite-local",
+        rounds=1,
+        pause_s=(0.2, 1.0),
+        settings=FAST,
+        kills=KILLS,
+        outages=OUTAGES,
+        wants_namespaces=False,
+        lease_s=3.0,
+    )
+    return run_campaign(campaign, tmp_path_factory.mktemp("faults"))
+
+
+def test_every_accepted_job_ends_once_and_nothing_stays_behind(outcome: Outcome) -> None:
+    assert broken_promises(outcome) == [], to_text(outcome)
+    assert outcome.account.n_accepted >= 25
+
+
+def test_every_fault_has_struck(outcome: Outcome) -> None:
+    struck = {strike.fault for strike in outcome.record.strikes}
+    expected = {
+        "worker killed",
+        "engine killed",
+        "API killed",
+        "leading dispatcher killed",
+        "Valkey killed",
+        "Valkey flushed",
+        "database away",
+        "store refuses",
+        "worker frozen",
+    }
+    assert struck == expected, to_text(outcome)
