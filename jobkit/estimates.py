@@ -32,6 +32,7 @@ MIN_PAST = 3
 _MAX_PAST = 500
 # A long queue takes long to look at: looks take a fiftieth of the time at most.
 _LOOK_S, _PAST_S, _LOOK_SHARE = 1.0, 30.0, 50
+_OLD_S = 2.0
 _NEVER = math.inf
 
 
@@ -156,10 +157,20 @@ class Estimates:
         self._due_at = self._past_due_at = -_NEVER
         self._speeds = Speeds(())
 
+    @property
+    def is_due(self) -> bool:
+        """Whether `refresh` would look."""
+        return self._clock() >= self._due_at
+
+    @property
+    def is_old(self) -> bool:
+        """Whether what was seen last should not be shown any more: looks are long overdue, or there was none."""
+        return self._clock() > self._due_at + _OLD_S
+
     def refresh(self) -> None:
         """Look anew if the last look is over a second old."""
-        # Whoever comes while somebody else looks takes what was seen before, if anything was.
-        if self._clock() < self._due_at or not self._lock.acquire(blocking=not math.isfinite(self._outlook.taken_at)):
+        # Whoever comes while somebody else looks takes what was seen before, unless that is too old.
+        if not self.is_due or not self._lock.acquire(blocking=self.is_old):
             return
         try:
             started = self._clock()

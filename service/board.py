@@ -7,18 +7,22 @@ request: a look that has begun takes nobody in.
 """
 
 import asyncio
+import logging
 from collections import OrderedDict
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import anyio.to_thread
+from sqlalchemy.exc import SQLAlchemyError
 
-from jobkit.errors import JobNotFoundError
+from jobkit.errors import DatabaseUnavailableError, JobNotFoundError
 from jobkit.estimates import Estimates
 from jobkit.jobs import Glance, Jobs
 from jobkit.schema import Job
 
 _MOST_KEPT = 1000
+
+_logger = logging.getLogger("service")
 
 
 @dataclass(frozen=True)
@@ -46,6 +50,7 @@ class Board:
         self._estimates = estimates
         self._one_at_a_time = asyncio.Lock()
         self._next = _Batch()
+        self._refreshing: asyncio.Task[None] | None = None
         self._kept: OrderedDict[str, tuple[Glance, Job]] = OrderedDict()
 
     async def glance(self, job_id: str) -> Sight:
@@ -60,6 +65,7 @@ class Board:
         return job
 
     async def _share(self, job_id: str, is_whole: bool) -> Sight:
+        self._keep_fresh()
         batch = self._next
         batch.wanted[job_id] = batch.wanted.get(job_id, False) or is_whole
         if batch.task is None:
@@ -70,13 +76,25 @@ class Board:
             raise JobNotFoundError(f"there is no job {job_id}")
         return sight
 
+    def _keep_fresh(self) -> None:
+        """See to estimates beside the looks: a long queue takes longer to go through than anybody should wait."""
+        if self._estimates.is_due and (self._refreshing is None or self._refreshing.done()):
+            self._refreshing = asyncio.create_task(self._refresh())
+
+    async def _refresh(self) -> None:
+        try:
+            await anyio.to_thread.run_sync(self._estimates.refresh)
+        except (DatabaseUnavailableError, SQLAlchemyError) as error:
+            _logger.warning("estimates wait for the database: %r", error.__cause__ or error)
+
     async def _look(self, batch: _Batch) -> dict[str, Sight]:
         async with self._one_at_a_time:
             self._next = _Batch()
             return await anyio.to_thread.run_sync(self._read, batch.wanted)
 
     def _read(self, wanted: Mapping[str, bool]) -> dict[str, Sight]:
-        self._estimates.refresh()
+        if self._estimates.is_old:
+            self._estimates.refresh()
         glances = self._jobs.glances(wanted)
         whole = {job_id: glance for job_id, glance in glances.items() if wanted[job_id]}
         jobs = self._whole(whole)
