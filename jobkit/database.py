@@ -114,7 +114,7 @@ class Database:
             with self._writer.connect() as connection:
                 cursor = connection.connection.cursor()
                 cursor.execute("PRAGMA journal_mode = WAL")
-                # Some changes need a table made anew; with keys held, dropping the old one would drop what refers to it.
+                # Some changes make a table anew; with keys held, the old one could not be dropped.
                 cursor.execute("PRAGMA foreign_keys = OFF")
                 try:
                     with connection.begin():
