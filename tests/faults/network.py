@@ -41,6 +41,10 @@ class Network(Protocol):
         """Bring the link back."""
         ...
 
+    def has_link(self, name: str) -> bool:
+        """Tell whether the process's own end of the link sees another end."""
+        ...
+
 
 @dataclass
 class Loopback:
@@ -65,6 +69,9 @@ class Loopback:
 
     def heal(self, name: str) -> None:
         raise NotImplementedError("loopback has no links")
+
+    def has_link(self, name: str) -> bool:
+        return True
 
 
 class Namespaces:
@@ -98,6 +105,11 @@ class Namespaces:
 
     def heal(self, name: str) -> None:
         _ip("link", "set", f"{self._tag}h{self._index(name)}", "up")
+
+    def has_link(self, name: str) -> bool:
+        index = self._index(name)
+        show = ["ip", "-n", f"{self._tag}n{index}", "link", "show", f"{self._tag}p{index}"]
+        return "LOWER_UP" in subprocess.run(show, check=True, capture_output=True, text=True).stdout
 
     def remove(self) -> None:
         """Remove all namespaces and links."""

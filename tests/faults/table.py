@@ -50,6 +50,7 @@ def to_text(outcome: Outcome) -> str:
         *(_times(f"  after: {fault}", values) for fault, values in sorted(outcome.recoveries_s.items())),
         _times("cancel", all_cancels_s(outcome), CANCEL_LIMIT_S),
         *(_times(f"  of: {kind} job", values) for kind, values in sorted(outcome.cancels_s.items())),
+        _counts("  running jobs were canceled in", Counter(_stages(outcome))),
         "",
         *_strikes(outcome),
         "",
@@ -59,6 +60,10 @@ def to_text(outcome: Outcome) -> str:
         *(f"BROKEN {name}: {jobs}" for name, jobs in account.violations.items() if jobs),
     ]
     return "\n".join(lines)
+
+
+def _stages(outcome: Outcome) -> list[str]:
+    return [cancel.stage or "no stage yet" for cancel in outcome.book.cancels if cancel.kind == "running"]
 
 
 def _strikes(outcome: Outcome) -> list[str]:

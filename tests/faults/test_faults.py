@@ -1,6 +1,5 @@
 """A short campaign with a fixed seed. `make faults` runs the long one, with the leases of a deployment."""
 
-
 import pytest
 
 from tests.faults import faults
