@@ -1,5 +1,6 @@
 """A 202 is a promise: it outlives the process that gave it, and the queue."""
 
+import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
@@ -17,6 +18,7 @@ from jobkit.queue import TaskQueue, job_entry
 from jobkit.reconcile import GRACE_S
 from jobkit.settings import Settings
 from jobkit.tables import JobRow
+from tests.dispatcher.process import dispatching
 
 SMOOTH = {"method": "smooth"}
 
@@ -37,10 +39,13 @@ def test_a_job_outlives_the_service_and_the_queue(
     Queue(settings.queue_name, connection=queue.connection, serializer=JSONSerializer).empty()
     with database.write() as session:
         session.execute(update(JobRow).values(enqueued_at=utc_now() - timedelta(seconds=GRACE_S + 1)))
-    with serve() as service:
+    with serve() as service, dispatching(settings):
         again = httpx.get(f"{service.url}/v1/jobs/{job['id']}", headers={"Prefer": "wait=1"}).json()
         assert again == job
-        assert job_entry(job["id"], 1) in queue.waiting()
+        deadline = time.monotonic() + 60
+        while job_entry(job["id"], 1) not in queue.waiting():
+            assert time.monotonic() < deadline
+            time.sleep(0.05)
     queue.close()
 
 

@@ -1,11 +1,7 @@
 """Subscriptions over HTTP, delivered by dispatchers in processes of their own, one of them killed at work."""
 
-import os
-import subprocess
-import sys
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from typing import Any
 
 import httpx
@@ -16,31 +12,10 @@ from jobkit.clock import utc_now
 from jobkit.database import Database
 from jobkit.settings import Settings
 from jobkit.tables import DeliveryRow
+from tests.dispatcher.process import dispatching
 from tests.dispatcher.receivers import LOOPBACK, receiving
 
 ALLOWED = {"webhook_allowed_networks": LOOPBACK}
-
-
-@contextmanager
-def dispatching(settings: Settings) -> Iterator[subprocess.Popen[bytes]]:
-    values = {
-        "data_dir": settings.data_dir,
-        "database_url": settings.database_url.get_secret_value(),
-        "object_store_url": settings.object_store_url,
-        "redis_url": settings.redis_url.get_secret_value(),
-        "queue_name": settings.queue_name,
-        "dispatch_s": 0.1,
-        "leader_lease_s": 1,
-        **ALLOWED,
-    }
-    named = {f"QUADPATCH_{name.upper()}": str(value) for name, value in values.items()}
-    environment = {name: value for name, value in os.environ.items() if not name.startswith("QUADPATCH_")}
-    process = subprocess.Popen([sys.executable, "-m", "dispatcher"], env=environment | named)
-    try:
-        yield process
-    finally:
-        process.terminate()
-        process.wait(30)
 
 
 def test_the_end_of_a_job_reaches_its_subscriber_although_the_dispatcher_is_killed_in_the_middle(
@@ -51,14 +26,14 @@ def test_the_end_of_a_job_reaches_its_subscriber_although_the_dispatcher_is_kill
         mesh = client.post("/v1/meshes?filename=a.ply", content=b"ply").raise_for_status().json()
         spec = {"mesh_id": mesh["id"], "method": {"method": "smooth"}}
         job = client.post("/v1/jobs", json=spec).raise_for_status().json()
-        with dispatching(settings) as first:
+        with dispatching(settings, **ALLOWED) as first:
             client.post(job["links"]["cancel"]).raise_for_status()
             assert receiver.arrived.acquire(timeout=60)
             first.kill()
         receiver.hold.set()
         with database.write() as session:  # as if the claim had run out
             session.execute(update(DeliveryRow).values(next_try_at=utc_now()))
-        with dispatching(settings):
+        with dispatching(settings, **ALLOWED):
             assert receiver.arrived.acquire(timeout=60)
             delivery = wait_until_delivered(client, webhook)
         told, again = receiver.received

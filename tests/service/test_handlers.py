@@ -1,9 +1,12 @@
+import io
+import logging
 from collections.abc import Iterator
 
 import pytest
 from starlette.testclient import TestClient
 
 from jobkit.errors import JobkitError
+from jobkit.logs import set_up_logs
 from jobkit.settings import Settings
 from service.app import create_app
 from service.problems import STATUS_BY_ERROR, to_problem_error
@@ -103,9 +106,11 @@ def test_each_wrong_field_is_pointed_at(client: TestClient) -> None:
 
 
 def test_a_fault_is_answered_without_its_traceback_and_logged_with_it(
-    settings: Settings, caplog: pytest.LogCaptureFixture
+    settings: Settings, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    app = create_app(settings)
+    app, log = create_app(settings), io.StringIO()
+    monkeypatch.setattr(logging.getLogger(), "handlers", [])  # put back afterwards
+    set_up_logs(settings, log)
 
     @app.get("/fault")
     def fault() -> None:
@@ -117,5 +122,5 @@ def test_a_fault_is_answered_without_its_traceback_and_logged_with_it(
     assert answer.json()["code"] == "internal_error"
     assert "hunter2" not in answer.text
     assert answer.headers["x-content-type-options"] == "nosniff"
-    assert "hunter2" in caplog.text
-    assert "trace-me" in caplog.text
+    assert "hunter2" in log.getvalue()
+    assert "trace-me" in log.getvalue()

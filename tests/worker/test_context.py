@@ -19,8 +19,12 @@ def test_a_killed_worker_starts_again_under_its_process_id(queue: TaskQueue, set
         executor.register_birth()  # and no death: it was killed
 
 
-def test_rq_refuses_the_name_of_a_worker_that_was_killed(queue: TaskQueue, settings: Settings) -> None:
+def test_a_worker_whose_executor_is_replaced_registers_again(queue: TaskQueue, settings: Settings) -> None:
+    """RQ refuses a name that it takes for alive, as that of an executor that lost its Valkey."""
     name = worker_name(1)
-    Executor(queue, settings.queue_name, name, threading.Event()).register_birth()
+    first, second = (Executor(queue, settings.queue_name, name, threading.Event()) for _ in range(2))
+    first.register_birth()
+    second.register_birth()
+    second.name = first.name
     with pytest.raises(ValueError, match="active worker"):
-        Executor(queue, settings.queue_name, name, threading.Event()).register_birth()
+        second.register_birth()
