@@ -18,7 +18,9 @@ def run_request(folder: Path, descriptor: int) -> None:
     def do_the_deed(request: EngineRequest, reporter: Reporter) -> None:
         reporter.progress("fill", 0.5)
         getattr(Deeds, request.options["deed"])(folder)
-        (folder / "facts.json").write_text(json.dumps({"cwd": os.getcwd(), "pid": os.getpid()}))
+        (folder / "facts.json").write_text(
+            json.dumps({"cwd": os.getcwd(), "pid": os.getpid(), "names": list(os.environ)})
+        )
 
     run_framed(folder, descriptor, do_the_deed)
 

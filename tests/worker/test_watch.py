@@ -60,6 +60,17 @@ def test_an_engine_works_in_its_folder_and_reports_progress(rogue_nursery: Nurse
     assert engines() == []
 
 
+def test_an_engine_is_told_no_secret_of_its_worker(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("PYTHONPATH", str(Path(__file__).parent))
+    for name in ("QUADPATCH_DATABASE_URL", "QUADPATCH_API_KEYS", "AWS_SECRET_ACCESS_KEY", "HARMLESS"):
+        monkeypatch.setenv(name, "hunter2")
+    with Nursery(n_threads=1, engine="rogue_engine") as nursery:
+        run_engine(nursery, request("behave"), tmp_path, Observer(lambda stage, fraction: None, never))
+    names = json.loads((tmp_path / "facts.json").read_text())["names"]
+    assert "HARMLESS" in names
+    assert [name for name in names if name.startswith(("QUADPATCH_", "AWS_"))] == []
+
+
 def test_every_request_gets_a_fresh_process(rogue_nursery: Nursery, tmp_path: Path) -> None:
     pids = set()
     for number in range(3):
