@@ -10,7 +10,7 @@ from jobkit.tables import JobRow
 
 
 def existing_job(session: Session, job_id: str, *, locked: bool = False) -> JobRow:
-    """Return the row of a job as it stands now, and stays until the session ends if `locked`; raise JobNotFoundError."""
+    """Return the row of a job as it stands now, and until the session ends if `locked`; raise JobNotFoundError."""
     query = select(JobRow).where(JobRow.id == job_id).execution_options(populate_existing=True)
     row = session.scalars(query.with_for_update() if locked else query).one_or_none()
     if row is None:
