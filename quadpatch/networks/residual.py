@@ -30,6 +30,10 @@ ROUNDING = 0.3
 # Dimensions of one patch in (n, 1, N, N).
 _PATCH = (1, 2, 3)
 
+# Slope of the units below zero. With none at all, as in the paper's networks, the first steps from an answer of zero
+# can switch every unit of the last level off, and nothing ever moves them again.
+_LEAK = 0.1
+
 
 class Residual(nn.Module):
     """(n, 2, N, N) to (n, 1, N, N), N a multiple of 8."""
@@ -37,7 +41,9 @@ class Residual(nn.Module):
     def __init__(self, widths: tuple[int, ...] = WIDTHS) -> None:
         super().__init__()
         steps = list(pairwise(widths))
-        self.stem = nn.Sequential(nn.Conv2d(CHANNELS, widths[0], 6, stride=2, padding=2), nn.ReLU(), _Block(widths[0]))
+        self.stem = nn.Sequential(
+            nn.Conv2d(CHANNELS, widths[0], 6, stride=2, padding=2), nn.LeakyReLU(_LEAK), _Block(widths[0])
+        )
         self.down = nn.ModuleList(_down(fine, coarse) for fine, coarse in steps)
         self.up = nn.ModuleList(_up(coarse, fine) for fine, coarse in reversed(steps))
         self.joined = nn.ModuleList(_Block(fine) for fine, _ in reversed(steps))
@@ -53,7 +59,7 @@ class Residual(nn.Module):
             levels.append(down(levels[-1]))
         answer = levels.pop()
         for up, joined in zip(self.up, self.joined, strict=True):
-            answer = joined(functional.relu(up(answer) + levels.pop()))
+            answer = joined(_bent(up(answer) + levels.pop()))
         corrections: Tensor = self.last(answer)
         return corrections
 
@@ -67,11 +73,15 @@ class _Block(nn.Module):
 
     def forward(self, values: Tensor) -> Tensor:
         """Keep the shape."""
-        return functional.relu(values + self.second(functional.relu(self.first(values))))
+        return _bent(values + self.second(_bent(self.first(values))))
+
+
+def _bent(values: Tensor) -> Tensor:
+    return functional.leaky_relu(values, _LEAK)
 
 
 def _down(fine: int, coarse: int) -> nn.Sequential:
-    return nn.Sequential(nn.Conv2d(fine, coarse, 4, stride=2, padding=1), nn.ReLU(), _Block(coarse))
+    return nn.Sequential(nn.Conv2d(fine, coarse, 4, stride=2, padding=1), nn.LeakyReLU(_LEAK), _Block(coarse))
 
 
 def _up(coarse: int, fine: int) -> nn.Sequential:
