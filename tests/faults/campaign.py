@@ -19,7 +19,10 @@ from tests.faults.ledger import Account, cancels_s, recoveries_s, take_account
 from tests.faults.load import Book, Load, Plan, Station
 from tests.faults.network import open_network
 from tests.faults.probes import Probe
-from tests.faults.strikes import Record
+from tests.faults.strikes import Record, Strike
+
+_TRIES = 20
+_LOOK_S = 0.2
 
 _log = logging.getLogger("faults")
 
@@ -140,12 +143,22 @@ def _strike_all(campaign: Campaign, field: Field, faults: Sequence[Fault], times
     rng.shuffle(row)
     for fault in row:
         time.sleep(rng.uniform(*campaign.pause_s))
-        strike = fault(field)
+        strike = _strike(fault, field)
         if strike is None:
             field.record.note_missed(fault.__name__)
         else:
             field.record.note(strike)
             _log.info("%s: %s", strike.fault, strike.evidence)
+
+
+def _strike(fault: Fault, field: Field) -> Strike | None:
+    """Let a fault strike; where its victim has ended a moment too soon it looks for another one."""
+    for _ in range(_TRIES):
+        strike = fault(field)
+        if strike is not None:
+            return strike
+        time.sleep(_LOOK_S)
+    return None
 
 
 @contextmanager

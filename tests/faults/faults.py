@@ -206,12 +206,12 @@ def _killed(field: Field, fault: str, name: str, victim: Victim | None = None) -
     return Strike(fault, at, f"process {pid} ended with {death.returncode}", victim)
 
 
-def _killed_child(fault: str, process: psutil.Process, victim: Victim | None) -> Strike:
+def _killed_child(fault: str, process: psutil.Process, victim: Victim | None) -> Strike | None:
     at = utc_now()
     try:
         process.kill()
     except psutil.NoSuchProcess:
-        return Strike(fault, at, f"process {process.pid} was gone already")
+        return None
     _wait(lambda: not _is_alive(process), f"process {process.pid} lives on")
     return Strike(fault, at, f"process {process.pid} is gone", victim)
 

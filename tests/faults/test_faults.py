@@ -27,7 +27,8 @@ def outcome(tmp_path_factory: pytest.TempPathFactory) -> Outcome:
         kills=KILLS,
         outages=OUTAGES,
         wants_namespaces=False,
-        lease_s=3.0,
+        # Longer than the database is ever away: no worker falls silent for that.
+        lease_s=6.0,
     )
     return run_campaign(campaign, tmp_path_factory.mktemp("faults"))
 
