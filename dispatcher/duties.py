@@ -1,12 +1,13 @@
 """Everything that a leading dispatcher does, and how often."""
 
+from dispatcher.keeper import Keeper
 from dispatcher.loop import Duty
 from dispatcher.retention import Sweeper, remove_expired
 from dispatcher.webhooks import deliver_webhooks, forget_old_deliveries
 from jobkit.database import Database
 from jobkit.overdue import TimeLimits
 from jobkit.queue import TaskQueue
-from jobkit.reconcile import Reconciled, reconcile
+from jobkit.reconcile import reconcile
 from jobkit.settings import Settings
 from jobkit.store import ObjectStore
 
@@ -24,9 +25,12 @@ def duties_of(settings: Settings, database: Database, store: ObjectStore, queue:
     queue : TaskQueue
     """
     limits = TimeLimits(settings.queue_time_limit_s, settings.total_time_limit_s, settings.job_memory_limit_mb)
+    keeper = Keeper(
+        lambda takes_leases: reconcile(database, queue, limits, takes_leases=takes_leases), settings.heartbeat_s
+    )
     sweeper = Sweeper(database, store)
     return [
-        Duty("jobs", settings.dispatch_s, lambda is_over: _look_after_jobs(database, queue, limits)),
+        Duty("jobs", settings.dispatch_s, keeper.look),
         Duty("webhooks", settings.dispatch_s, lambda is_over: deliver_webhooks(database, settings, is_over)),
         Duty(
             "webhook log", _HOUR_S, lambda is_over: forget_old_deliveries(database, settings.webhook_log_days, is_over)
@@ -34,8 +38,3 @@ def duties_of(settings: Settings, database: Database, store: ObjectStore, queue:
         Duty("retention", settings.sweep_s, lambda is_over: remove_expired(settings, database, store, is_over)),
         Duty("sweep", settings.sweep_s, sweeper.sweep),
     ]
-
-
-def _look_after_jobs(database: Database, queue: TaskQueue, limits: TimeLimits) -> str:
-    found = reconcile(database, queue, limits)
-    return "" if found == Reconciled(0, 0, 0) else str(found)

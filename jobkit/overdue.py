@@ -37,8 +37,11 @@ class TimeLimits:
     memory_mb: int
 
 
-def end_overdue(database: Database, limits: TimeLimits, now: datetime) -> int:
-    """Take back, cancel or fail every job whose time is over at `now`; return how many there were."""
+def end_overdue(database: Database, limits: TimeLimits, now: datetime, *, takes_leases: bool = True) -> int:
+    """Take back, cancel or fail every job whose time is over at `now`; return how many there were.
+
+    Without `takes_leases`, leases that ran out are left alone for once.
+    """
     waits = JobRow.state == JobState.QUEUED.value
     works = JobRow.state == JobState.RUNNING.value
     is_old = JobRow.created_at < now - timedelta(seconds=limits.total_s)
@@ -52,8 +55,9 @@ def end_overdue(database: Database, limits: TimeLimits, now: datetime) -> int:
         (works & is_old, lambda session, row: _end(session, row, failure(_over_total(limits)), now)),
         (waits & is_old, lambda session, row: _give_up(session, row, _over_total(limits), now)),
         (waited, lambda session, row: _give_up(session, row, _over_queue(limits), now)),
-        (lost, lambda session, row: _end(session, row, _lost(session, row, limits), now)),
     ]
+    if takes_leases:
+        steps.append((lost, lambda session, row: _end(session, row, _lost(session, row, limits), now)))
     return sum(_take(database, condition, step) for condition, step in steps)
 
 

@@ -30,8 +30,10 @@ class Reconciled:
     enqueued_meshes: int
 
 
-def reconcile(database: Database, queue: TaskQueue, limits: TimeLimits, now: datetime | None = None) -> Reconciled:
-    """End what is overdue and refill the queue.
+def reconcile(
+    database: Database, queue: TaskQueue, limits: TimeLimits, now: datetime | None = None, *, takes_leases: bool = True
+) -> Reconciled:
+    """End what is overdue and refill the queue; without `takes_leases`, leases that ran out are left alone for once.
 
     Raises
     ------
@@ -39,7 +41,7 @@ def reconcile(database: Database, queue: TaskQueue, limits: TimeLimits, now: dat
         If Redis does not answer; leases have been taken back even so.
     """
     moment = now or _shared_moment(database)
-    ended = end_overdue(database, limits, moment)
+    ended = end_overdue(database, limits, moment, takes_leases=takes_leases)
     _give_up_analyses(database, moment)
     waiting = queue.waiting()
     jobs = _enqueue_jobs(database, queue, waiting, moment)

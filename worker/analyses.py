@@ -60,7 +60,6 @@ def _vitals(context: Context, analysis: Analysis) -> Vitals:
         is_canceled=lambda: False,
         report=lambda stage, percent: None,
         heartbeat_s=settings.heartbeat_s,
-        lease_s=settings.lease_s,
     )
 
 

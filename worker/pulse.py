@@ -19,6 +19,8 @@ from worker.progress import Progress
 
 # How soon a cancel is noticed, and how often progress is written at most.
 _TICK_S = 0.5
+# Longer than a database takes to be restarted or to fail over.
+PATIENCE_S = 120.0
 
 _log = logging.getLogger("quadpatch.worker.pulse")
 
@@ -35,15 +37,17 @@ class Vitals:
         Reads whether somebody asked for the end.
     report : callable
         Writes stage and percent; raises StaleAttemptError.
-    heartbeat_s, lease_s : float
-        Time between two renewals, and how long one lasts.
+    heartbeat_s : float
+        Seconds between two renewals.
+    patience_s : float
+        Seconds for which a database that is away is waited for: while it is, nobody else can start the job either.
     """
 
     renew: Callable[[int], object]
     is_canceled: Callable[[], bool]
     report: Callable[[str, float], None]
     heartbeat_s: float
-    lease_s: float
+    patience_s: float = PATIENCE_S
 
 
 class Pulse:
@@ -86,7 +90,7 @@ class Pulse:
                 self.stop_reason = StopReason.LOST
             except (DatabaseUnavailableError, SQLAlchemyError) as error:
                 _log.warning("a heartbeat failed: %s", error)
-                if time.monotonic() - self._renewed_at > self._vitals.lease_s:
+                if time.monotonic() - self._renewed_at > self._vitals.patience_s:
                     self.stop_reason = StopReason.LOST
 
     def _keep_alive(self) -> None:

@@ -28,15 +28,14 @@ from worker.failures import OUTAGE_DELAY_S, Failure, StopReason
 from worker.limits import EngineLimits
 from worker.models import model_argument
 from worker.outcomes import folder_with_mesh, outcome_of
-from worker.pulse import Pulse, Vitals
+from worker.pulse import PATIENCE_S, Pulse, Vitals
 from worker.results import drop_result, stage_seconds, store_result
 from worker.spec import repair_request
 from worker.watch import Observer, run_engine
 
 # A repair that is nearly done may finish when its worker is asked to stop; the others are handed back.
 _DRAIN_GRACE_S = 2.0
-# How long an ended attempt waits for the database to take its result.
-_PATIENCE_S = 120.0
+# Between two tries to settle an attempt while the database is away.
 _PAUSE_S = 1.0
 _DRAINED = JobError(code="worker_drained", message="the worker was stopped in the middle of the job", retryable=True)
 
@@ -85,7 +84,7 @@ def _has_published(context: Context, started: StartedAttempt) -> bool:
 
 def _patiently(settle: Callable[[], T]) -> T:
     """Settle, and wait for a database that is away: work that is done is not to be done again for that."""
-    deadline = time.monotonic() + _PATIENCE_S
+    deadline = time.monotonic() + PATIENCE_S
     while True:
         try:
             return settle()
@@ -159,7 +158,6 @@ def _vitals(context: Context, started: StartedAttempt) -> Vitals:
         is_canceled=lambda: _is_canceled(jobs.get(attempt.job_id), attempt),
         report=lambda stage, percent: attempts.report_progress(attempt, stage, percent),
         heartbeat_s=settings.heartbeat_s,
-        lease_s=settings.lease_s,
     )
 
 

@@ -28,8 +28,8 @@ class Patient:
         if self.renewal is not None:
             raise self.renewal
 
-    def vitals(self, lease_s: float = 30.0) -> Vitals:
-        return Vitals(self.renew, lambda: self.cancel, lambda *report: self.reports.append(report), 0.0, lease_s)
+    def vitals(self, patience_s: float = 30.0) -> Vitals:
+        return Vitals(self.renew, lambda: self.cancel, lambda *report: self.reports.append(report), 0.0, patience_s)
 
 
 def wait_for(reason: Callable[[], StopReason | None]) -> StopReason | None:
@@ -69,15 +69,15 @@ def test_an_attempt_that_was_taken_away_is_lost() -> None:
         assert wait_for(lambda: pulse.stop_reason) is StopReason.LOST
 
 
-@pytest.mark.parametrize(("lease_s", "reason"), [(0.0, StopReason.LOST), (3600.0, None)])
+@pytest.mark.parametrize(("patience_s", "reason"), [(0.0, StopReason.LOST), (3600.0, None)])
 @pytest.mark.parametrize(
     "error", [DatabaseUnavailableError("away"), OperationalError("UPDATE", {}, Exception("disk I/O error"))]
 )
-def test_a_database_that_is_away_costs_the_attempt_only_after_the_lease(
-    error: Exception, lease_s: float, reason: StopReason | None
+def test_a_database_that_is_away_is_waited_for_as_long_as_patience_lasts(
+    error: Exception, patience_s: float, reason: StopReason | None
 ) -> None:
     patient = Patient(renewal=error)
-    with Pulse(patient.vitals(lease_s)) as pulse:
+    with Pulse(patient.vitals(patience_s)) as pulse:
         if reason is None:
             assert patient.has_beaten.wait(10)
             assert pulse.stop_reason is None
