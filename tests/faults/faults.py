@@ -116,13 +116,14 @@ def freeze_worker(field: Field) -> Strike | None:
     if victim is None or pid is None:
         return None
     at = utc_now()
-    process = psutil.Process(pid)
-    process.suspend()
     try:
+        process = psutil.Process(pid)
+        process.suspend()
         time.sleep(field.lease_s + 3.0)
         is_stopped = process.status() == psutil.STATUS_STOPPED
-    finally:
         process.resume()
+    except psutil.NoSuchProcess:
+        return None  # a kill struck it in its sleep
     return Strike("worker frozen", at, f"process {pid} stopped: {is_stopped}, for {field.lease_s + 3:g} s", victim)
 
 
