@@ -45,7 +45,7 @@ def _run(settings: Settings, store: ObjectStore) -> None:
         redis_url = settings.redis_url.get_secret_value()
         queue = stack.enter_context(closing(TaskQueue(redis_url, settings.queue_name, settings.job_time_limit_s)))
         leadership = Leadership(database, DISPATCHER, _own_name(), settings.leader_lease_s)
-        duties = duties_of(settings, database, store, queue)
+        duties = duties_of(settings, database, store, queue, leadership)
         dispatch = Dispatch(leadership, settings.leader_lease_s / _RENEWALS_PER_LEASE, duties)
         for number in (signal.SIGTERM, signal.SIGINT):
             signal.signal(number, lambda *_: dispatch.stop())

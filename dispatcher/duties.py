@@ -5,6 +5,7 @@ from dispatcher.loop import Duty
 from dispatcher.retention import Sweeper, remove_expired
 from dispatcher.webhooks import deliver_webhooks, forget_old_deliveries
 from jobkit.database import Database
+from jobkit.leadership import Leadership
 from jobkit.overdue import TimeLimits
 from jobkit.queue import TaskQueue
 from jobkit.reconcile import reconcile
@@ -14,7 +15,9 @@ from jobkit.store import ObjectStore
 _HOUR_S = 3_600.0
 
 
-def duties_of(settings: Settings, database: Database, store: ObjectStore, queue: TaskQueue) -> list[Duty]:
+def duties_of(
+    settings: Settings, database: Database, store: ObjectStore, queue: TaskQueue, leadership: Leadership
+) -> list[Duty]:
     """Return the duties.
 
     Parameters
@@ -23,10 +26,14 @@ def duties_of(settings: Settings, database: Database, store: ObjectStore, queue:
     database : Database
     store : ObjectStore
     queue : TaskQueue
+    leadership : Leadership
+        Of this dispatcher.
     """
     limits = TimeLimits(settings.queue_time_limit_s, settings.total_time_limit_s, settings.job_memory_limit_mb)
     keeper = Keeper(
-        lambda takes_leases: reconcile(database, queue, limits, takes_leases=takes_leases), settings.heartbeat_s
+        lambda takes_leases: reconcile(database, queue, limits, takes_leases=takes_leases),
+        lambda: leadership.found_unled_at,
+        settings.heartbeat_s,
     )
     sweeper = Sweeper(database, store)
     return [

@@ -1,13 +1,14 @@
-"""One leader among many processes: a row with a lease, taken and renewed by one conditional update.
+"""One leader among many processes: a row with a lease, taken and renewed under a lock on that row.
 
 Any number of dispatchers may run; the others stand by until the leader's lease runs out. A leader that was held up may
 believe in its lease for a moment too long, so what leaders do has to be harmless when it is done twice.
 """
 
+import time
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 
-from sqlalchemy import CursorResult, delete, select, update
+from sqlalchemy import delete, select
 from sqlalchemy.exc import IntegrityError
 
 from jobkit.clock import shared_now
@@ -16,6 +17,9 @@ from jobkit.tables import LeaderRow
 
 # What dispatchers lead.
 DISPATCHER = "dispatcher"
+
+# Of a lease, from the last renewal of one leader to the next one's first: it runs out, and others look now and then.
+_LONGEST_HANDOVER = 1.5
 
 
 @dataclass(frozen=True)
@@ -39,6 +43,12 @@ class Leadership:
         Name of the candidate; no two may have the same.
     lease_s : float
         Seconds without a renewal until somebody else may lead.
+
+    Attributes
+    ----------
+    found_unled_at : float
+        When, by the monotonic clock, this candidate last found that nobody had led for longer than a handover takes:
+        all dispatchers were gone, or the database was. Minus infinity before that.
     """
 
     def __init__(self, database: Database, name: str, holder: str, lease_s: float) -> None:
@@ -46,21 +56,28 @@ class Leadership:
         self._name = name
         self._holder = holder
         self._lease_s = lease_s
+        self.found_unled_at = float("-inf")
 
     def lead(self) -> bool:
         """Take the lead if nobody has it, or renew it; return whether this candidate leads now."""
         with self._database.write() as session:
             now = shared_now(session)
             until = now + timedelta(seconds=self._lease_s)
-            mine = update(LeaderRow).where(LeaderRow.name == self._name, LeaderRow.holder == self._holder)
-            if _hits(session.execute(mine.values(until=until))):
-                return True
-            free = update(LeaderRow).where(LeaderRow.name == self._name, LeaderRow.until < now)
-            if _hits(session.execute(free.values(holder=self._holder, until=until, since=now))):
-                return True
-            if session.get(LeaderRow, self._name) is not None:
-                return False
+            row = session.scalars(select(LeaderRow).where(LeaderRow.name == self._name).with_for_update()).one_or_none()
+            if row is not None:
+                return self._take(row, now, until)
         return self._found(until, now)
+
+    def _take(self, row: LeaderRow, now: datetime, until: datetime) -> bool:
+        if row.holder != self._holder and row.until >= now:
+            return False
+        unled_s = (now - row.until).total_seconds() + self._lease_s
+        if unled_s > _LONGEST_HANDOVER * self._lease_s:
+            self.found_unled_at = time.monotonic()
+        if row.holder != self._holder:
+            row.holder, row.since = self._holder, now
+        row.until = until
+        return True
 
     def resign(self) -> None:
         """Let somebody else lead at once; nothing happens where this candidate does not."""
@@ -84,7 +101,3 @@ def current_leader(database: Database, name: str) -> Leader | None:
         if row is None:
             return None
         return Leader(row.holder, row.since, (row.until - shared_now(session)).total_seconds())
-
-
-def _hits(result: object) -> bool:
-    return isinstance(result, CursorResult) and result.rowcount == 1

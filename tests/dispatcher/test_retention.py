@@ -6,6 +6,7 @@ from dispatcher.duties import duties_of
 from dispatcher.retention import Sweeper, remove_expired
 from jobkit.database import Database
 from jobkit.jobs import Jobs
+from jobkit.leadership import Leadership
 from jobkit.meshes import Meshes
 from jobkit.queue import TaskQueue
 from jobkit.retention import pin_mesh
@@ -55,7 +56,8 @@ def test_a_sweep_tells_what_it_found_in_either_direction(database: Database, sto
 
 def test_both_are_duties_of_the_dispatcher(settings: Settings, database: Database, store: ObjectStore) -> None:
     queue = TaskQueue(settings.redis_url.get_secret_value(), settings.queue_name, 60)
-    duties = {duty.name: duty for duty in duties_of(settings, database, store, queue)}
+    leadership = Leadership(database, "dispatcher", "a", 60)
+    duties = {duty.name: duty for duty in duties_of(settings, database, store, queue, leadership)}
     upload(database, store, b"scan")
     age_rows(database, 31 * DAY)
     assert duties["retention"].work(never) == "removed 0 jobs and 1 meshes"

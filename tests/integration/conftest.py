@@ -86,8 +86,8 @@ def _command(process: psutil.Process) -> list[str]:
         return []
 
 
-def punched_relief(n: int, n_holes: int = 4) -> tuple[Vertices, Triangles]:
-    """A wavy square of n by n vertices with a row of round holes."""
+def punched_relief(n: int, n_holes: int = 4, radius: float = 0.06) -> tuple[Vertices, Triangles]:
+    """A wavy square of side 1, n by n vertices, with a row of round holes."""
     axis = np.linspace(0.0, 1.0, n)
     x, y = np.meshgrid(axis, axis, indexing="xy")
     vertices = np.stack([x, y, 0.02 * np.sin(20.0 * x) * np.cos(15.0 * y)], axis=-1).reshape(-1, 3)
@@ -100,7 +100,7 @@ def punched_relief(n: int, n_holes: int = 4) -> tuple[Vertices, Triangles]:
     )
     middles = vertices[triangles].mean(axis=1)[:, :2]
     centres = np.stack([(np.arange(n_holes) + 0.5) / n_holes, np.full(n_holes, 0.5)], axis=1)
-    is_open = (np.linalg.norm(middles[:, None] - centres, axis=2) < 0.06).any(axis=1)
+    is_open = (np.linalg.norm(middles[:, None] - centres, axis=2) < radius).any(axis=1)
     kept = triangles[~is_open]
     used, renumbered = np.unique(kept, return_inverse=True)
     return vertices[used], renumbered.reshape(-1, 3).astype(np.int64)
@@ -146,4 +146,12 @@ def large_relief(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A relief of 25,600 vertices with four holes."""
     path = tmp_path_factory.mktemp("meshes") / "large.ply"
     path.write_bytes(ply_bytes(*punched_relief(160)))
+    return path
+
+
+@pytest.fixture(scope="session")
+def fine_relief(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A relief with small holes, 62,500 vertices."""
+    path = tmp_path_factory.mktemp("fine") / "fine.ply"
+    path.write_bytes(ply_bytes(*punched_relief(250, radius=0.02)))
     return path

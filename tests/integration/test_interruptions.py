@@ -7,6 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import httpx
 import pytest
 
 from client.errors import JobCanceledError, JobFailedError
@@ -41,6 +42,22 @@ def test_a_canceled_job_leaves_no_process_and_no_file(client: Client, box: Any, 
     assert box.engines() == []
     assert box.requests() == []
     assert not (box.data / "objects" / "results" / job.id).exists()
+
+
+def test_a_job_is_canceled_in_the_middle_of_native_code(client: Client, box: Any, fine_relief: Path) -> None:
+    mesh = client.wait_for_mesh(client.upload(fine_relief).id, timeout_s=60)
+    # Patches this small make thousands of quads: the mesher is at it for seconds, and never looks up.
+    method = {"method": "dictionary", "model": "self", "patches": {"length": 0.012}}
+    job = client.create_job(JobSpec.model_validate({"mesh_id": mesh.id, "method": method}))
+    wait_until(lambda: client.job(job.id).stage == "quadrangulate")
+    client.cancel(job.id)
+    with pytest.raises(JobCanceledError):
+        client.wait(job.id, timeout_s=30)
+    events = httpx.get(f"{box.url}/v1/jobs/{job.id}/events").json()["items"]
+    assert [event["type"] for event in events[-2:]] == ["cancel_requested", "canceled"]
+    assert events[-3]["data"]["stage"] == "quadrangulate"
+    assert box.engines() == []
+    assert box.requests() == []
 
 
 def test_an_engine_killed_in_every_attempt_ends_in_a_clear_failure(

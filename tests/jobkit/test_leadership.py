@@ -59,3 +59,17 @@ def test_of_many_that_start_at_once_one_leads(database: Database) -> None:
     for thread in threads:
         thread.join()
     assert len(leading) == 1
+
+
+def test_a_handover_is_no_outage_and_a_long_vacancy_is_one(database: Database) -> None:
+    """Whoever leads after the database was away learns of it, be it the same one or another."""
+    same, other = candidate(database, "a", 0.4), candidate(database, "b", 0.4)
+    assert same.lead()
+    time.sleep(0.45)
+    assert same.lead()
+    assert same.found_unled_at == float("-inf")
+    for late in (same, other):
+        time.sleep(0.8)
+        before = time.monotonic()
+        assert late.lead()
+        assert late.found_unled_at >= before
