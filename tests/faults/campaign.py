@@ -5,13 +5,14 @@ import random
 import threading
 import time
 from collections.abc import Iterator, Sequence
-from contextlib import ExitStack, closing, contextmanager
+from contextlib import ExitStack, closing, contextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import psutil
 
 from jobkit.database import Database
+from jobkit.errors import DatabaseUnavailableError
 from tests.faults.backends import Backend, BackendName, open_backend
 from tests.faults.cluster import APIS, WORKERS, Cluster, Setup
 from tests.faults.faults import KILLS, OUTAGES, Fault, Field, cut_off
@@ -152,11 +153,12 @@ def _strike_all(campaign: Campaign, field: Field, faults: Sequence[Fault], times
 
 
 def _strike(fault: Fault, field: Field) -> Strike | None:
-    """Let a fault strike; where its victim has ended a moment too soon it looks for another one."""
+    """Let a fault strike; where its victim, or the database, is gone at that moment it tries once more."""
     for _ in range(_TRIES):
-        strike = fault(field)
-        if strike is not None:
-            return strike
+        with suppress(DatabaseUnavailableError, psutil.NoSuchProcess):
+            strike = fault(field)
+            if strike is not None:
+                return strike
         time.sleep(_LOOK_S)
     return None
 
