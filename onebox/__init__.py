@@ -1,1 +1,1 @@
-"""One box: Valkey, API and workers on this machine, started and watched by one command."""
+"""One box: Valkey, dispatcher, API and workers on this machine, started and watched by one command."""

@@ -14,7 +14,7 @@ from onebox.serve import serve as run_serve
 _FAILED = 1
 
 app = typer.Typer(
-    help="One box: Valkey, API and workers on this machine, started and watched by one command.",
+    help="One box: Valkey, dispatcher, API and workers on this machine, started and watched by one command.",
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,

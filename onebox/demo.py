@@ -57,7 +57,7 @@ def demo(folder: Path) -> None:
             path.unlink(missing_ok=True)  # what lies there afterwards is of this run
     data = folder / "box"
     _clear(data)
-    screen.say("starting one box: Valkey, API, workers ...")
+    screen.say("starting one box: Valkey, dispatcher, API, workers ...")
     with running_box(data) as url, Client(url) as client:
         screen.say(f"one box is ready on {url}")
         try:
