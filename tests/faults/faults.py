@@ -87,7 +87,10 @@ def kill_nursery(field: Field) -> Strike | None:
     victim = _find_victim(field) if field.rng.random() < 0.7 else None
     worker = victim.worker if victim else field.rng.choice(WORKERS)
     nursery = next((child for child in field.cluster.children(worker) if _is_nursery(child)), None)
-    return None if nursery is None else _killed_child("nursery killed", nursery, victim)
+    # One that was picked by chance has to be idle: at work it might be at the last attempt that a job has.
+    if nursery is None or (victim is None and _children(nursery)):
+        return None
+    return _killed_child("nursery killed", nursery, victim)
 
 
 def kill_engine(field: Field) -> Strike | None:
