@@ -95,17 +95,14 @@ def _laplacian(vertices: Vertices, triangles: Triangles, *, uniform: bool) -> tu
     """Cotangent (or graph) Laplacian (n, n), rows summing to zero, and vertex areas (n,)."""
     n = len(vertices)
     corners = vertices[triangles]
-    rows, columns, weights = [], [], []
     double_area = length(cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]))
-    tiny = 1e-12 * double_area.mean() + 1e-300
+    weight = np.full((len(triangles), 3), 0.5) if uniform else 0.5 * _cotangents(corners, double_area)
+    rows, columns, weights = [], [], []
     for k in range(3):
         i, j = triangles[:, (k + 1) % 3], triangles[:, (k + 2) % 3]
-        u, v = corners[:, (k + 1) % 3] - corners[:, k], corners[:, (k + 2) % 3] - corners[:, k]
-        cotangent = np.einsum("ij,ij->i", u, v) / np.maximum(double_area, tiny)
-        weight = np.full(len(i), 0.5) if uniform else 0.5 * cotangent.clip(-_MAX_COTANGENT, _MAX_COTANGENT)
         rows += [i, j]
         columns += [j, i]
-        weights += [weight, weight]
+        weights += [weight[:, k], weight[:, k]]
     adjacency = sparse.csr_array(
         (np.concatenate(weights), (np.concatenate(rows), np.concatenate(columns))), shape=(n, n)
     )
@@ -114,6 +111,21 @@ def _laplacian(vertices: Vertices, triangles: Triangles, *, uniform: bool) -> tu
         return laplacian, np.ones(n)
     area = np.asarray(np.bincount(triangles.ravel(), np.repeat(double_area / 6, 3), minlength=n), np.float64)
     return laplacian, np.maximum(area, 1e-6 * area[area > 0].mean())
+
+
+def _cotangents(corners: FloatArray, double_area: FloatArray) -> FloatArray:
+    """Cotangents (m, 3) at the corners (m, 3, 3) of triangles; those of a sliver are scaled down together.
+
+    Cut off one by one, the large weights of a sliver would no longer cancel out, and one needle at a rim would crumple
+    the fill.
+    """
+    tiny = 1e-12 * double_area.mean() + 1e-300
+    cotangents = np.zeros((len(corners), 3))
+    for k in range(3):
+        u, v = corners[:, (k + 1) % 3] - corners[:, k], corners[:, (k + 2) % 3] - corners[:, k]
+        cotangents[:, k] = np.einsum("ij,ij->i", u, v) / np.maximum(double_area, tiny)
+    largest = np.abs(cotangents).max(axis=1, keepdims=True, initial=0.0)
+    return np.asarray(cotangents * (_MAX_COTANGENT / np.maximum(largest, _MAX_COTANGENT)))
 
 
 def triangles_around(triangles: Triangles, core: IntArray, n_vertices: int, n_rings: int) -> IntArray:
