@@ -6,7 +6,7 @@ import numpy as np
 
 from quadpatch.expectation import Expectation
 from quadpatch.fill_rule import FillRule
-from quadpatch.filling.fill import FilledMesh
+from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.inpainters.dictionary import learn_from_patches
 from quadpatch.inpainters.inpainter import Inpainter, Surroundings
 from quadpatch.judge import Evidence, gather, trusted
@@ -46,6 +46,8 @@ class Completion:
         How large an error to expect, as practice holes taught; None without practice.
     scale : PatchScale
     n_patches : int
+    undone : (n_holes,) bool or None
+        Holes whose displacement was taken back, since it made their fill fold or run through other surface.
     """
 
     filled: FilledMesh
@@ -55,6 +57,7 @@ class Completion:
     expectation: Expectation | None
     scale: PatchScale
     n_patches: int
+    undone: BoolArray | None = None
 
 
 @dataclass(frozen=True)

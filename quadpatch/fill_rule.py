@@ -13,7 +13,8 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from quadpatch.filling.fairing import Energy, triangles_around
-from quadpatch.filling.fill import FilledMesh, close_holes, fair_holes
+from quadpatch.filling.fill import close_holes, fair_holes
+from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.mesh.averages import mean_by
 from quadpatch.mesh.boundary import boundary_loops
 from quadpatch.mesh.distance import distance_to_mesh
@@ -125,6 +126,8 @@ def rim_misses(mesh: TriangleMesh, loops: list[IntArray], energies: Sequence[Ene
     told = np.zeros(len(loops), bool)
     told[hole_of_gone] = True
     told &= opened
+    # A rim that is joined to an island opens into two loops, which say nothing about the ring between them.
+    told &= np.array([len(np.unique(loop)) == len(loop) for loop in loops])
     if told.any():
         for number, energy in enumerate(energies):
             filled = fair_holes(closed, energy)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from quadpatch.expectation import Expectation
-from quadpatch.filling.fill import FilledMesh
+from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.mesh.averages import mean_by
 from quadpatch.mesh.holes import Hole, Selection
 from quadpatch.mesh.measures import diagonal
@@ -46,7 +46,10 @@ class HoleResult:
     expected_error : float or None
         Expected mean distance of the fill to the true surface.
     measures : dict
-        What the verdict rests on.
+        What the verdict rests on; `folds` and `crossings` count the faults that the check left.
+    fill : str
+        Which geometric fill carries it: `energies` (what suits the surface), or a plainer one, `thin_plate`, `membrane`
+        or `flat`, where others fold or run through other surface. Empty where nothing was filled.
     """
 
     hole: Hole
@@ -58,6 +61,7 @@ class HoleResult:
     n_new_vertices: int = 0
     n_new_triangles: int = 0
     measures: dict[str, float] = field(default_factory=dict)
+    fill: str = ""
 
 
 @dataclass(frozen=True)
@@ -175,7 +179,9 @@ def _verdict(i: int, n_new_vertices: int, completion: "Completion | None") -> tu
     if completion.trust[i]:
         return "filled", "", ""
     coverage = completion.evidence.coverage[i] if completion.evidence else 0.0
+    undone = completion.undone is not None and bool(completion.undone[i])
     reasons = (
+        (undone, "model_faulty", "displaced by the model, the fill folds or runs through other surface: it was undone"),
         (not n_new_vertices, "no_new_vertex", "so small that its rim alone spans it: there is nothing to displace"),
         (completion.expectation is None, "no_practice", "too little undamaged surface to try the model on"),
         (completion.believed == 0, "no_gain", "practice on this mesh showed no gain over the geometric fill"),

@@ -16,7 +16,9 @@ from quadpatch.completion import Completion
 from quadpatch.errors import NoQuadsError, OptionError, StageError
 from quadpatch.fill_rule import FillRule
 from quadpatch.filling.fairing import Energy
-from quadpatch.filling.fill import FilledMesh, close_flat
+from quadpatch.filling.faults import find_faults
+from quadpatch.filling.fill import close_flat
+from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.inpainters.heights import GLOBAL_ATOMS, HeightsInpainter, learn_heights
 from quadpatch.inpainters.inpainter import Inpainter
 from quadpatch.judge import HoleResult, count_new, evidence_of, gather, with_open_holes
@@ -33,7 +35,8 @@ from quadpatch.raycast import RayScene
 from quadpatch.reconstruction.displacement import rim_vertices
 from quadpatch.reconstruction.placement import place
 from quadpatch.stages import Stages
-from quadpatch.types import BoolArray, FloatArray, Patches, Progress, TriangleMesh, no_progress
+from quadpatch.types import BoolArray, FloatArray, Patches, Progress, TriangleMesh, Triangles, no_progress
+from quadpatch.verification import with_named_faults
 
 # The paper gives patch length, resolution and overlap for each of its objects. Where nobody does: patches nearly twice
 # as wide as the holes, bins as in the paper's networks, every vertex in about nine patches.
@@ -76,6 +79,7 @@ def inpaint_as_paper(
     stages: Stages | None = None,
     *,
     learn: bool = False,
+    obstacles: Triangles | None = None,
 ) -> Repair:
     """Repair the holes of a mesh by the method of the paper.
 
@@ -90,6 +94,8 @@ def inpaint_as_paper(
         Gets progress and seconds.
     learn : bool
         With no inpainter: learn a dictionary from the mesh's own patches.
+    obstacles : (k, 3) int64, optional
+        Triangles that the mesh leaves out; crossings of these are counted too.
 
     Returns
     -------
@@ -119,9 +125,11 @@ def inpaint_as_paper(
                 warnings.append("too little undamaged surface to learn from; the holes were closed, nothing more")
         except NoQuadsError as error:
             warnings.append(f"{error}; the holes were closed, nothing more")
+    placed = completion.filled if completion else filled
     with stages.stage("judge"):
         results = _results(holes, selection, filled, completion)
-    placed = completion.filled if completion else filled
+        # The paper checks nothing: what is wrong is named, and handed out all the same.
+        results = with_named_faults(results, selection.chosen, find_faults(placed, obstacles=obstacles))
     return Repair(placed, selection.chosen, results, NO_FAIRING, completion, warnings)
 
 

@@ -12,16 +12,19 @@ from quadpatch.completion import Completion, Problem, complete
 from quadpatch.errors import NoQuadsError
 from quadpatch.expectation import UNTRIED, Expectation
 from quadpatch.fill_rule import FillRule, learn_fill_rule
+from quadpatch.filling.checked_fill import CheckedFill, fill_checked
 from quadpatch.filling.fairing import THIN_PLATE, Energy
-from quadpatch.filling.fill import FilledMesh
+from quadpatch.filling.filled_mesh import FilledMesh
+from quadpatch.filling.islands import JoinedRims, join_islands
 from quadpatch.inpainters.inpainter import Inpainter
 from quadpatch.judge import HoleResult, judge
-from quadpatch.mesh.holes import Hole, find_holes, select_holes
+from quadpatch.mesh.holes import Hole, Selection, find_holes, select_holes
 from quadpatch.mesh.measures import diagonal, mean_edge_length
 from quadpatch.options import RepairOptions
 from quadpatch.practice import Practice, expect, practise
 from quadpatch.stages import Stages
-from quadpatch.types import TriangleMesh
+from quadpatch.types import TriangleMesh, Triangles
+from quadpatch.verification import verified_results, without_faults
 
 # From rough to smooth: a noisy or sharp-edged surface is continued best by the first, a smooth one by the last.
 ENERGIES = (
@@ -71,6 +74,7 @@ def inpaint(
     stages: Stages | None = None,
     *,
     learn: bool = False,
+    obstacles: Triangles | None = None,
 ) -> Repair:
     """Repair the holes of a mesh.
 
@@ -84,6 +88,8 @@ def inpaint(
         Gets progress and seconds.
     learn : bool
         Learn a dictionary from the mesh's own surface.
+    obstacles : (k, 3) int64, optional
+        Triangles that the mesh leaves out, such as repeated ones: a fill may not run through them either.
 
     Returns
     -------
@@ -99,8 +105,9 @@ def inpaint(
     with stages.stage("holes"):
         holes = find_holes(mesh)
         selection = select_holes(holes, options.holes, diagonal(mesh))
+        rims = join_islands(mesh, holes, selection.chosen)
     with stages.stage("fill"):
-        problem, expectation = _fill(mesh, selection.chosen, rng)
+        problem, expectation, checked = _fill(mesh, rims, obstacles, rng)
     completion, warnings = None, []
     if (inpainter is not None or learn) and len(problem.filled.vertex_hole):
         try:
@@ -110,24 +117,35 @@ def inpaint(
         except NoQuadsError as error:
             warnings.append(f"{error}; the holes were filled by geometry alone")
     with stages.stage("judge"):
+        verified = without_faults(completion, checked, obstacles)
+        completion = verified.completion
         if completion and completion.expectation is not None:
             expectation = completion.expectation
-        results = judge(holes, selection, problem.filled, completion, expectation)
+        results = judge(holes, _filled_ones(selection, rims), problem.filled, completion, expectation)
+        results = verified_results(results, rims, checked, verified.faults, diagonal(mesh))
     filled = completion.filled if completion else problem.filled
-    return Repair(filled, selection.chosen, results, problem.rule, completion, warnings)
+    return Repair(filled, rims.chosen, results, problem.rule, completion, warnings)
 
 
-def _fill(mesh: TriangleMesh, chosen: list[Hole], rng: np.random.Generator) -> tuple[Problem, Expectation]:
-    """Fill the holes as suits this surface; also the error to expect of that."""
+def _filled_ones(selection: Selection, rims: JoinedRims) -> Selection:
+    """Count islands among the holes without a fill of their own."""
+    joined = dict.fromkeys(rims.host_of, ("joined", ""))
+    return Selection(rims.chosen, {**selection.skipped, **joined})
+
+
+def _fill(
+    mesh: TriangleMesh, rims: JoinedRims, obstacles: Triangles | None, rng: np.random.Generator
+) -> tuple[Problem, Expectation, CheckedFill]:
+    """Fill the holes as suits this surface, and check it; also the error to expect of that."""
     edge = mean_edge_length(mesh)
-    diameters = [hole.diameter for hole in chosen]
-    practice = practise(mesh, float(np.median(diameters)), edge, rng) if chosen else None
+    diameters = [hole.diameter for hole in rims.chosen]
+    practice = practise(mesh, float(np.median(diameters)), edge, rng) if diameters else None
     rule, filled_again = suitable_rule(practice)
     expectation = UNTRIED
     if practice is not None and filled_again is not None:
         expectation = expect(practice, filled_again)
-    filled = rule.fill(mesh, [hole.loop for hole in chosen])
-    return Problem(filled, rule, diameters, edge, practice, filled_again), expectation
+    checked = fill_checked(mesh, rims.loops, rule.fill, obstacles)
+    return Problem(checked.filled, rule, diameters, edge, practice, filled_again), expectation, checked
 
 
 def suitable_rule(practice: Practice | None) -> tuple[FillRule, FilledMesh | None]:

@@ -13,7 +13,8 @@ from scipy.spatial import cKDTree
 
 from quadpatch.expectation import Expectation, learn_expectation
 from quadpatch.filling.fairing import Energy, triangles_around
-from quadpatch.filling.fill import ClosedMesh, FilledMesh, close_holes
+from quadpatch.filling.fill import ClosedMesh, close_holes
+from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.mesh.averages import mean_by
 from quadpatch.mesh.distance import distance_to_mesh
 from quadpatch.mesh.holes import loop_diameter

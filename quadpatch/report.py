@@ -80,6 +80,7 @@ def _hole(result: HoleResult) -> dict[str, Any]:
         "reason": result.reason or None,
         "confidence": result.confidence,
         "expected_error": result.expected_error,
+        "fill": result.fill or None,
         "new_vertices": result.n_new_vertices,
         "new_triangles": result.n_new_triangles,
         "measures": result.measures,

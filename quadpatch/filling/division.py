@@ -111,7 +111,8 @@ def _points_inside(loop: RimLoop, rim: Vertices, ends: IntArray, chords: FloatAr
     y = -cross(normals, x)
 
     def angle(vectors: FloatArray) -> FloatArray:
-        return np.arctan2(np.einsum("ijk,ik->ij", vectors, y), np.einsum("ijk,ik->ij", vectors, x)) % (2 * np.pi)
+        across, ahead = (np.einsum("ijk,ik->ij", vectors, axis) for axis in (y, x))
+        return np.asarray(np.arctan2(across, ahead) % (2 * np.pi))
 
     back = angle((np.roll(rim, 1, axis=0)[ends] - rim[ends])[:, None])
     turned = angle(chords)

@@ -8,12 +8,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from quadpatch.filling.fairing import THIN_PLATE, Energy, fair, triangles_around
+from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.filling.refinement import Refined, refine, relax
 from quadpatch.filling.triangulation import EdgeSet, triangulate_loops
 from quadpatch.mesh.averages import mean_by
 from quadpatch.mesh.boundary import directed_edges
-from quadpatch.mesh.normals import triangle_normals, vertex_normals
-from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Triangles
+from quadpatch.mesh.normals import triangle_normals, unit, vertex_normals
+from quadpatch.types import FloatArray, IntArray, TriangleMesh, Triangles
 
 # The minimum variation surface asks for the Laplacian at the rim and at one ring of vertices outside it, and that for
 # all triangles around these.
@@ -25,48 +26,6 @@ SECOND_OPINION = Energy(plate=1.0, variation=0.4)
 
 # Fill and thin plate of one hole further apart than this share of its width: something ran away.
 RUNAWAY_SHARE = 0.2
-
-
-@dataclass(frozen=True)
-class FilledMesh:
-    """A mesh with its holes closed: measured vertices and triangles first, unchanged, invented ones behind them.
-
-    Attributes
-    ----------
-    mesh : TriangleMesh
-    n_measured_vertices, n_measured_triangles : int
-    triangle_hole : (n_invented_triangles,) int64
-        Position in the list of loops of every invented triangle's hole.
-    vertex_hole : (n_invented_vertices,) int64
-    gap, rim_turn : (n_loops,) float64
-        See `ClosedMesh`.
-    unfilled : list of int
-        Positions of loops that could not be closed without giving an edge a third face.
-    """
-
-    mesh: TriangleMesh
-    n_measured_vertices: int
-    n_measured_triangles: int
-    triangle_hole: IntArray
-    vertex_hole: IntArray
-    gap: FloatArray
-    rim_turn: FloatArray
-    unfilled: list[int]
-
-    @property
-    def invented_triangles(self) -> BoolArray:
-        """(n_triangles,) bool, True = invented."""
-        return np.arange(len(self.mesh.triangles)) >= self.n_measured_triangles
-
-    @property
-    def invented_vertices(self) -> BoolArray:
-        """(n_vertices,) bool, True = invented."""
-        return np.arange(len(self.mesh.vertices)) >= self.n_measured_vertices
-
-    def with_vertices(self, invented: FloatArray) -> "FilledMesh":
-        """Return the same mesh with other positions (n_invented_vertices, 3) of the invented vertices."""
-        vertices = np.concatenate([self.mesh.vertices[: self.n_measured_vertices], invented])
-        return replace(self, mesh=TriangleMesh(vertices, self.mesh.triangles))
 
 
 @dataclass(frozen=True)
@@ -223,7 +182,7 @@ def _close(vertices: FloatArray, around: Triangles, loops: list[IntArray], taken
 
 
 def _rim_normals(vertices: FloatArray, around: Triangles, loops: list[IntArray]) -> list[FloatArray]:
-    """Look up the unit normals of the faces at the rim edges of every loop."""
+    """Look up the unit normals of the faces at the rim edges of every loop; a bridge lies between its neighbours'."""
     normals = triangle_normals(vertices, around)
     edges = directed_edges(around)
     keys = edges[:, 0] * np.int64(len(vertices)) + edges[:, 1]
@@ -231,7 +190,14 @@ def _rim_normals(vertices: FloatArray, around: Triangles, loops: list[IntArray])
     found = []
     for loop in loops:
         wanted = loop * np.int64(len(vertices)) + np.roll(loop, -1)
-        found.append(normals[order[np.searchsorted(keys, wanted, sorter=order)] // 3])
+        at = order[np.searchsorted(keys, wanted, sorter=order).clip(max=len(keys) - 1)]
+        of_loop = normals[at // 3]
+        bridge = keys[at] != wanted
+        if bridge.any():
+            of_loop[bridge] = 0.0
+            between = np.roll(of_loop, 1, axis=0) + np.roll(of_loop, -1, axis=0)
+            of_loop[bridge] = unit(between[bridge])
+        found.append(of_loop)
     return found
 
 

@@ -52,12 +52,31 @@ def _triangulate(
     loops: list[IntArray], vertices: Vertices, rim_normals: list[FloatArray], taken: "EdgeSet"
 ) -> list[Triangles | None]:
     """Triangulate every loop for itself."""
+    taken = taken.with_edges(np.concatenate([np.zeros((0, 2), np.int64), *(_bridges(loop) for loop in loops)]))
     rims = [RimLoop(loop, normals) for loop, normals in zip(loops, rim_normals, strict=True)]
     parts = [divide(rim, vertices, MAX_TABLE_SIZE, taken.pairs) for rim in rims]
     flat = [part for of_loop in parts for part in of_loop]
     found = iter(_by_length([p.vertices for p in flat], vertices, [p.normals for p in flat], taken))
     pieces = [[next(found) for _ in of_loop] for of_loop in parts]
-    return [None if not p or any(t is None for t in p) else np.concatenate(p) for p in pieces]  # type: ignore[arg-type]
+    return [_joined(p) for p in pieces]
+
+
+def _bridges(loop: IntArray) -> IntArray:
+    """Edges (k, 2) that no chord of a loop may repeat: its bridges to islands, and those from a vertex to itself."""
+    twice = np.unique(loop, return_counts=True)
+    ends = twice[0][twice[1] > 1]
+    edges = np.stack([loop, np.roll(loop, -1)], axis=1)
+    return np.concatenate([edges[np.isin(edges, ends).all(axis=1)], np.stack([ends, ends], axis=1)])
+
+
+def _joined(parts: list[Triangles | None]) -> Triangles | None:
+    """Put the triangulation of a loop together; None where a part is missing, or an edge has three triangles."""
+    found = [part for part in parts if part is not None]
+    if not found or len(found) < len(parts):
+        return None
+    triangles = np.concatenate(found)
+    edges = np.sort(directed_edges(triangles), axis=1)
+    return triangles if np.unique(edges, axis=0, return_counts=True)[1].max() <= 2 else None
 
 
 def _clashing(found: list[Triangles | None]) -> list[int]:

@@ -3,14 +3,13 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 from scipy.spatial import ConvexHull, QhullError
 from scipy.spatial.distance import cdist
 
 from quadpatch.errors import OptionError
 from quadpatch.mesh.boundary import boundary_loops
 from quadpatch.mesh.normals import vertex_normals
+from quadpatch.mesh.pieces import connected_pieces
 from quadpatch.options import HoleOptions
 from quadpatch.types import FloatArray, IntArray, TriangleMesh, Vertices
 
@@ -120,15 +119,12 @@ def find_holes(mesh: TriangleMesh) -> list[Hole]:
 
 def _pieces(mesh: TriangleMesh) -> tuple[IntArray, FloatArray]:
     """Find connected pieces: the number of the piece of every vertex (n,), and each piece's diagonal."""
-    n, triangles = len(mesh.vertices), mesh.triangles
-    start, end = triangles[:, :2].ravel(), triangles[:, 1:].ravel()
-    count, piece = connected_components(
-        coo_array((np.ones(len(start), bool), (start, end)), shape=(n, n)), directed=False
-    )
+    piece = connected_pieces(mesh)
+    count = int(piece.max(initial=-1)) + 1
     low, high = np.full((count, 3), np.inf), np.full((count, 3), -np.inf)
     np.minimum.at(low, piece, mesh.vertices)
     np.maximum.at(high, piece, mesh.vertices)
-    return piece.astype(np.int64), np.linalg.norm(high - low, axis=1)
+    return piece, np.linalg.norm(high - low, axis=1)
 
 
 def select_holes(holes: list[Hole], options: HoleOptions, diagonal: float) -> Selection:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
-from quadpatch.filling.fill import FilledMesh
+from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.patches.height_map import sample_height_maps
 from quadpatch.patches.scale import PatchScale
 from quadpatch.patches.seeds import Seeds, seed_points

@@ -12,7 +12,7 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse.linalg import splu
 
-from quadpatch.filling.fill import FilledMesh
+from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.mesh.boundary import directed_edges
 from quadpatch.mesh.normals import vertex_normals
 from quadpatch.patches.connectivity import bilinear, vertices_in_patches

@@ -6,7 +6,7 @@ lifted by the predicted height; the vertex comes to lie at the plain mean of the
 
 import numpy as np
 
-from quadpatch.filling.fill import FilledMesh
+from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.mesh.normals import vertex_normals
 from quadpatch.patches.connectivity import bilinear, vertices_in_patches
 from quadpatch.reconstruction.displacement import Displacement

@@ -7,7 +7,8 @@ from hypothesis import strategies as st
 
 from quadpatch.expectation import UNTRIED, USUAL_SLOPE, Expectation, learn_expectation
 from quadpatch.filling.fairing import THIN_PLATE
-from quadpatch.filling.fill import FilledMesh, close_holes, fair_holes
+from quadpatch.filling.fill import close_holes, fair_holes
+from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.types import FloatArray
 from tests.quadpatch.shapes import bumpy_plate
 

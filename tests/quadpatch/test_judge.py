@@ -7,7 +7,8 @@ import pytest
 from quadpatch.completion import Completion
 from quadpatch.expectation import Expectation
 from quadpatch.filling.fairing import THIN_PLATE
-from quadpatch.filling.fill import FilledMesh, close_holes, fair_holes
+from quadpatch.filling.fill import close_holes, fair_holes
+from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.judge import LEAST_COVERAGE, MOST_DISAGREEMENT, Evidence, confidence, gather, judge, trusted
 from quadpatch.mesh.holes import Selection, find_holes, select_holes
 from quadpatch.mesh.measures import diagonal

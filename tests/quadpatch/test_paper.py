@@ -107,7 +107,14 @@ def test_nothing_is_faired_gated_or_joined() -> None:
 def test_neither_confidence_nor_expected_error_is_made_up(repaired: Repair) -> None:
     for result in repaired.results:
         assert (result.confidence, result.expected_error) == (None, None)
-    assert repaired.results[1].measures.keys() == {"coverage", "spread", "departure", "rim_misfit"}
+    assert repaired.results[1].measures.keys() == {
+        "coverage",
+        "spread",
+        "departure",
+        "rim_misfit",
+        "folds",
+        "crossings",
+    }
     assert repaired.results[1].n_new_vertices > 0
     assert repaired.results[1].n_new_triangles > 0
 

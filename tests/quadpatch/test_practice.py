@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from quadpatch.filling.fairing import THIN_PLATE, Energy
-from quadpatch.filling.fill import FilledMesh, fair_holes
+from quadpatch.filling.fill import fair_holes
+from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.mesh.boundary import boundary_loops
 from quadpatch.mesh.measures import mean_edge_length
 from quadpatch.pipeline import ENERGIES, USUAL_ENERGY

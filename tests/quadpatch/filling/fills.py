@@ -3,7 +3,8 @@
 import numpy as np
 
 from quadpatch.filling.fairing import Energy
-from quadpatch.filling.fill import FilledMesh, close_holes, fair_holes
+from quadpatch.filling.fill import close_holes, fair_holes
+from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.mesh.boundary import boundary_loops
 from quadpatch.types import IntArray, TriangleMesh
 from tests.quadpatch.shapes import cylinder, joined, punched, sphere

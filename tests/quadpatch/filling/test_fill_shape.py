@@ -4,7 +4,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from quadpatch.filling.fairing import THIN_PLATE, Energy, fair
-from quadpatch.filling.fill import SECOND_OPINION, FilledMesh, close_flat, close_holes, fair_holes
+from quadpatch.filling.fill import SECOND_OPINION, close_flat, close_holes, fair_holes
+from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.types import FloatArray, TriangleMesh
 from tests.quadpatch.filling.fills import CLOSED, SMOOTH, all_loops, assert_keeps, filled, short_loops
 from tests.quadpatch.shapes import (

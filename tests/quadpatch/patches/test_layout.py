@@ -3,7 +3,8 @@ import pytest
 
 from quadpatch.errors import NoQuadsError
 from quadpatch.filling.fairing import THIN_PLATE
-from quadpatch.filling.fill import FilledMesh, close_holes, fair_holes
+from quadpatch.filling.fill import close_holes, fair_holes
+from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.mesh.boundary import boundary_loops
 from quadpatch.mesh.smoothing import laplacian_smooth
 from quadpatch.patches.layout import lay_out, patchify, pick, pick_patches, seeds_near, take

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from quadpatch.filling.fairing import THIN_PLATE
-from quadpatch.filling.fill import FilledMesh, close_holes, fair_holes
+from quadpatch.filling.fill import close_holes, fair_holes
+from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.mesh.boundary import boundary_loops
 from quadpatch.patches.height_map import sample_height_maps
 from quadpatch.patches.seeds import Seeds

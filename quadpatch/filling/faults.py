@@ -1,0 +1,171 @@
+"""Faults of a fill: edges at which it folds over, and triangles that run through other surface."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from quadpatch.filling.filled_mesh import FilledMesh
+from quadpatch.mesh.boundary import directed_edges, edge_keys
+from quadpatch.mesh.intersections import crossing_pairs, heights, touching_boxes
+from quadpatch.mesh.normals import triangle_normals
+from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Triangles
+
+# Two triangles whose normals differ by more fold over each other.
+FOLD_ANGLE_DEG = 150.0
+# Normals of triangles lower than this share of their longest edge are too unsure to call a fold wrong.
+UNSURE_HEIGHT = 1e-3
+# A wrong fill is worse than a right one with any number of doubtful edges.
+_WRONG = 1_000_000_000
+
+
+@dataclass(frozen=True)
+class Folds:
+    """Pairs of neighbouring triangles that turn by more than `FOLD_ANGLE_DEG`, a new one in each.
+
+    Attributes
+    ----------
+    pairs : (n, 2) int64
+        Triangles of the filled mesh.
+    edges : (n, 2) int64
+        The vertices they share.
+    hole : (n,) int64
+        Position of the loop that a new one of the two fills.
+    is_flat_rim : (n,) bool
+        True where the triangle on the measured side has no height, so its normal is noise.
+    is_excused : (n,) bool
+        True there, and where measured surface folds at one of the shared vertices itself.
+    is_sliver : (n,) bool
+        True where the new triangle is too low to tell.
+    """
+
+    pairs: IntArray
+    edges: IntArray
+    hole: IntArray
+    is_flat_rim: BoolArray
+    is_excused: BoolArray
+    is_sliver: BoolArray
+
+
+@dataclass(frozen=True)
+class Faults:
+    """What is wrong with the fill of every loop.
+
+    Attributes
+    ----------
+    folds : Folds
+    crossings : (n_loops,) int64
+        New triangles that run through measured or new surface.
+    """
+
+    folds: Folds
+    crossings: IntArray
+
+    @property
+    def n_folds(self) -> IntArray:
+        """Edges (n_loops,) at which the fill folds over, excused ones too."""
+        return self._count(np.ones(len(self.folds.hole), bool))
+
+    @property
+    def is_doubtful(self) -> BoolArray:
+        """Loops (n_loops,) that another fill may suit better: all faults but those of the measured surface."""
+        return (self._count(~self.folds.is_excused) > 0) | (self.crossings > 0)
+
+    @property
+    def is_wrong(self) -> BoolArray:
+        """Loops (n_loops,) whose fill is no surface to hand out."""
+        return (self._count(~self.folds.is_excused & ~self.folds.is_sliver) > 0) | (self.crossings > 0)
+
+    @property
+    def severity(self) -> IntArray:
+        """Order (n_loops,) of fills from good to bad: what makes a fill wrong counts before what makes it doubtful."""
+        doubtful = self._count(~self.folds.is_excused) + self.crossings
+        return np.asarray(np.where(self.is_wrong, _WRONG, 0) + doubtful)
+
+    def _count(self, which: BoolArray) -> IntArray:
+        return np.bincount(self.folds.hole[which], minlength=len(self.crossings))
+
+
+def find_faults(filled: FilledMesh, loops: IntArray | None = None, obstacles: Triangles | None = None) -> Faults:
+    """Look for folds and crossings in the fill of some loops.
+
+    Parameters
+    ----------
+    filled : FilledMesh
+    loops : (n,) int64, optional
+        Positions of the loops that are looked at; without, all of them. The fills of others are surface to be run into.
+    obstacles : (k, 3) int64, optional
+        Triangles of the file that the mesh leaves out, to be run into as well.
+    """
+    n_loops = len(filled.gap)
+    looked_at = np.ones(n_loops, bool) if loops is None else np.isin(np.arange(n_loops), loops)
+    return Faults(find_folds(filled, looked_at), _crossings(filled, looked_at, obstacles))
+
+
+def find_folds(filled: FilledMesh, looked_at: BoolArray) -> Folds:
+    """Look for folds in the fills of some loops (n_loops,)."""
+    vertices, triangles = filled.mesh.vertices, filled.mesh.triangles
+    hole = np.full(len(triangles), -1)
+    hole[filled.n_measured_triangles :] = filled.triangle_hole
+    near = np.flatnonzero(_near(filled, looked_at))
+    pairs, edges = _neighbours(triangles[near])
+    pairs = near[pairs]
+    normals = np.zeros((len(triangles), 3))
+    normals[near] = triangle_normals(vertices, triangles[near])
+    turn = np.einsum("ij,ij->i", normals[pairs[:, 0]], normals[pairs[:, 1]])
+    folded = turn < np.cos(np.radians(FOLD_ANGLE_DEG))
+    pairs, edges = pairs[folded], edges[folded]
+    is_new = hole[pairs] >= 0
+    unsure = heights(vertices, triangles[pairs.ravel()]).reshape(-1, 2) <= UNSURE_HEIGHT
+    turns_itself = np.zeros(len(vertices), bool)
+    turns_itself[edges[~is_new.any(axis=1)]] = True
+    of_rim = is_new.any(axis=1) & ~is_new.all(axis=1)
+    flat_rim = of_rim & (unsure & ~is_new).any(axis=1)
+    excused = flat_rim | (of_rim & turns_itself[edges].any(axis=1))
+    owner = hole[pairs].max(axis=1)
+    mine = np.asarray((owner >= 0) & looked_at[owner.clip(0)])
+    sliver = (unsure & is_new).any(axis=1)
+    return Folds(*(rows[mine] for rows in (pairs, edges, owner, flat_rim, excused, sliver)))
+
+
+def _near(filled: FilledMesh, looked_at: BoolArray) -> BoolArray:
+    """Triangles (n,) of some fills, and those that share a vertex with them."""
+    triangles = filled.mesh.triangles
+    own = np.zeros(len(triangles), bool)
+    own[filled.n_measured_triangles :] = looked_at[filled.triangle_hole]
+    touched = np.zeros(len(filled.mesh.vertices), bool)
+    touched[triangles[own]] = True
+    return np.asarray(touched[triangles].any(axis=1))
+
+
+def _neighbours(triangles: Triangles) -> tuple[IntArray, IntArray]:
+    """Pairs (n, 2) of triangles with a common edge, and that edge (n, 2); a crowded edge pairs each with the next."""
+    edges = directed_edges(triangles)
+    keys = edge_keys(edges, int(triangles.max(initial=0)) + 1)
+    order = np.argsort(keys, kind="stable")
+    twin = np.flatnonzero(keys[order][1:] == keys[order][:-1])
+    return np.stack([order[twin] // 3, order[twin + 1] // 3], axis=1), edges[order[twin]]
+
+
+def _crossings(filled: FilledMesh, looked_at: BoolArray, obstacles: Triangles | None) -> IntArray:
+    triangles, mine = filled.mesh.triangles, np.zeros(len(filled.mesh.triangles), bool)
+    mine[filled.n_measured_triangles :] = looked_at[filled.triangle_hole]
+    if not mine.any():
+        return np.zeros(len(filled.gap), np.int64)
+    others = triangles[~mine] if obstacles is None else np.concatenate([triangles[~mine], obstacles])
+    around = TriangleMesh(filled.mesh.vertices, others)
+    near = others[touching_boxes(*_boxes(filled, looked_at), around)]
+    pairs = crossing_pairs(TriangleMesh(around.vertices, np.concatenate([triangles[mine], near])))
+    owner = filled.triangle_hole[mine[filled.n_measured_triangles :]]
+    return np.bincount(owner[np.unique(pairs[pairs < len(owner)])], minlength=len(filled.gap))
+
+
+def _boxes(filled: FilledMesh, looked_at: BoolArray) -> tuple[FloatArray, FloatArray]:
+    """Bounding boxes of some fills: lowest and highest corners (n, 3)."""
+    new = filled.mesh.triangles[filled.n_measured_triangles :]
+    n_loops = len(filled.gap)
+    low, high = np.full((n_loops, 3), np.inf), np.full((n_loops, 3), -np.inf)
+    corners = filled.mesh.vertices[new]
+    np.minimum.at(low, filled.triangle_hole, corners.min(axis=1))
+    np.maximum.at(high, filled.triangle_hole, corners.max(axis=1))
+    there = looked_at & np.isfinite(low[:, 0])
+    return low[there], high[there]

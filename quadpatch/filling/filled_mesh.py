@@ -1,0 +1,94 @@
+"""A mesh whose holes are closed: measured surface first, unchanged, invented surface behind it."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh
+
+
+@dataclass(frozen=True)
+class FilledMesh:
+    """A mesh with its holes closed: measured vertices and triangles first, unchanged, invented ones behind them.
+
+    Attributes
+    ----------
+    mesh : TriangleMesh
+    n_measured_vertices, n_measured_triangles : int
+    triangle_hole : (n_invented_triangles,) int64
+        Position in the list of loops of every invented triangle's hole.
+    vertex_hole : (n_invented_vertices,) int64
+    gap, rim_turn : (n_loops,) float64
+        See `quadpatch.filling.fill.ClosedMesh`.
+    unfilled : list of int
+        Positions of loops that could not be closed without giving an edge a third face.
+    """
+
+    mesh: TriangleMesh
+    n_measured_vertices: int
+    n_measured_triangles: int
+    triangle_hole: IntArray
+    vertex_hole: IntArray
+    gap: FloatArray
+    rim_turn: FloatArray
+    unfilled: list[int]
+
+    @property
+    def invented_triangles(self) -> BoolArray:
+        """(n_triangles,) bool, True = invented."""
+        return np.arange(len(self.mesh.triangles)) >= self.n_measured_triangles
+
+    @property
+    def invented_vertices(self) -> BoolArray:
+        """(n_vertices,) bool, True = invented."""
+        return np.arange(len(self.mesh.vertices)) >= self.n_measured_vertices
+
+    def with_vertices(self, invented: FloatArray) -> "FilledMesh":
+        """Return the same mesh with other positions (n_invented_vertices, 3) of the invented vertices."""
+        vertices = np.concatenate([self.mesh.vertices[: self.n_measured_vertices], invented])
+        return replace(self, mesh=TriangleMesh(vertices, self.mesh.triangles))
+
+    def without(self, loops: IntArray) -> "FilledMesh":
+        """Return the mesh with some loops (k,) open again."""
+        new_vertices = self.mesh.vertices[self.n_measured_vertices :]
+        keep_vertex, keep = ~np.isin(self.vertex_hole, loops), ~np.isin(self.triangle_hole, loops)
+        to_kept = np.arange(len(self.mesh.vertices))
+        to_kept[self.n_measured_vertices :] = self.n_measured_vertices + np.cumsum(keep_vertex) - 1
+        new = to_kept[self.mesh.triangles[self.n_measured_triangles :][keep]]
+        mesh = TriangleMesh(
+            np.concatenate([self.mesh.vertices[: self.n_measured_vertices], new_vertices[keep_vertex]]),
+            np.concatenate([self.mesh.triangles[: self.n_measured_triangles], new]),
+        )
+        return replace(
+            self, mesh=mesh, triangle_hole=self.triangle_hole[keep], vertex_hole=self.vertex_hole[keep_vertex]
+        )
+
+    def with_fills(self, other: "FilledMesh", loops: IntArray) -> "FilledMesh":
+        """Take the fills of some loops (k,) from another fill of the same loops of the same mesh."""
+        base = self.without(loops)
+        taken = other.without(np.setdiff1d(np.arange(len(self.gap)), loops))
+        shift = len(base.mesh.vertices) - other.n_measured_vertices
+        new = taken.mesh.triangles[other.n_measured_triangles :]
+        new = np.where(new >= other.n_measured_vertices, new + shift, new)
+        mesh = TriangleMesh(
+            np.concatenate([base.mesh.vertices, taken.mesh.vertices[other.n_measured_vertices :]]),
+            np.concatenate([base.mesh.triangles, new]),
+        )
+        return replace(
+            base,
+            mesh=mesh,
+            triangle_hole=np.concatenate([base.triangle_hole, taken.triangle_hole]),
+            vertex_hole=np.concatenate([base.vertex_hole, taken.vertex_hole]),
+            unfilled=sorted(set(self.unfilled) - set(loops.tolist()) | set(other.unfilled) & set(loops.tolist())),
+        )
+
+    def as_part_of(self, loops: IntArray, whole: "FilledMesh") -> "FilledMesh":
+        """Renumber the fill of some loops (k,) of a list, of which `whole` fills all."""
+        return replace(
+            self,
+            triangle_hole=loops[self.triangle_hole],
+            vertex_hole=loops[self.vertex_hole],
+            gap=whole.gap,
+            rim_turn=whole.rim_turn,
+            unfilled=loops[self.unfilled].tolist(),
+        )

@@ -1,0 +1,124 @@
+"""Islands: loose pieces of surface that lie in a hole.
+
+An island that faces the way of the surface around its hole belongs to that surface: what is missing is the ring
+between two rims. The rims are joined by a bridge that is walked there and back, as is usual for polygons with holes:
+that makes one loop of them.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from quadpatch.mesh.holes import Hole
+from quadpatch.mesh.normals import vertex_normals
+from quadpatch.mesh.pieces import connected_pieces
+from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Vertices
+
+# Least cosine between the normals at both rims.
+LEAST_AGREEMENT = 0.5
+# An island may lie so far above or below the rim of its hole, in diameters of the hole.
+MOST_HEIGHT = 0.15
+
+
+@dataclass(frozen=True)
+class JoinedRims:
+    """Rims to be filled, islands included.
+
+    Attributes
+    ----------
+    loops : list of (n_loop,) int64
+        One for each chosen hole that is no island; a bridge is walked twice, so its vertices come twice.
+    chosen : list of Hole
+        Whose loops these are.
+    host_of : dict of int to int
+        Id of the hole that each island was joined to, by the id of the island's own border.
+    """
+
+    loops: list[IntArray]
+    chosen: list[Hole]
+    host_of: dict[int, int]
+
+
+def join_islands(mesh: TriangleMesh, holes: list[Hole], chosen: list[Hole]) -> JoinedRims:
+    """Join the borders of islands to the rims of the holes that they lie in.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+    holes : list of Hole
+        All of the mesh.
+    chosen : list of Hole
+        Those that are to be filled.
+    """
+    if len(holes) < 2 or not chosen:
+        return JoinedRims([hole.loop for hole in chosen], chosen, {})
+    centres = np.array([mesh.vertices[hole.loop].mean(axis=0) for hole in holes])
+    near = cKDTree(centres).query_ball_point(
+        [mesh.vertices[hole.loop].mean(axis=0) for hole in chosen], [hole.diameter / 2 for hole in chosen]
+    )
+    candidates = [
+        [holes[i] for i in found if _is_smaller(holes[i], hole)] for hole, found in zip(chosen, near, strict=True)
+    ]
+    if not any(candidates):
+        return JoinedRims([hole.loop for hole in chosen], chosen, {})
+    piece = connected_pieces(mesh)
+    normals = vertex_normals(mesh.vertices, mesh.triangles)
+    host_of: dict[int, int] = {}
+    rims: dict[int, IntArray] = {}
+    # The smallest hole around an island is its own.
+    for hole, found in sorted(zip(chosen, candidates, strict=True), key=lambda pair: pair[0].diameter):
+        rims[hole.id] = hole.loop
+        for island in found:
+            if island.id in host_of or piece[island.loop[0]] == piece[hole.loop[0]]:
+                continue
+            if _lies_in(mesh.vertices, normals, hole.loop, island.loop):
+                host_of[island.id] = hole.id
+                rims[hole.id] = _bridged(mesh.vertices, rims[hole.id], island.loop)
+    left = [hole for hole in chosen if hole.id not in host_of]
+    return JoinedRims([rims[hole.id] for hole in left], left, host_of)
+
+
+def _is_smaller(island: Hole, hole: Hole) -> bool:
+    return island.is_manifold and island.diameter < hole.diameter and island.id != hole.id
+
+
+def _lies_in(vertices: Vertices, normals: FloatArray, rim: IntArray, island: IntArray) -> bool:
+    """Whether an island lies within a rim, seen along the rim's normal, near its height, and faces its way."""
+    own, other = normals[rim].mean(axis=0), normals[island].mean(axis=0)
+    sizes = np.linalg.norm(own) * np.linalg.norm(other)
+    if not own @ other > LEAST_AGREEMENT * sizes or sizes == 0:
+        return False
+    centre = vertices[rim].mean(axis=0)
+    z = own / np.linalg.norm(own)
+    x = np.cross(z, np.eye(3)[np.abs(z).argmin()])
+    axes = np.stack([x / np.linalg.norm(x), np.cross(z, x / np.linalg.norm(x)), z], axis=1)
+    outer, inner = (vertices[rim] - centre) @ axes, (vertices[island] - centre) @ axes
+    slack = MOST_HEIGHT * float(np.linalg.norm(np.ptp(outer, axis=0)))
+    level = (inner[:, 2] > outer[:, 2].min() - slack) & (inner[:, 2] < outer[:, 2].max() + slack)
+    # A rim runs clockwise around its hole, the border of an island counter-clockwise around its surface.
+    runs_rightly = _signed_area(outer[:, :2]) < 0 < _signed_area(inner[:, :2])
+    return bool(level.all() and runs_rightly and _is_inside(outer[:, :2], inner[:, :2]).all())
+
+
+def _signed_area(corners: FloatArray) -> float:
+    x, y = corners.T
+    return float((x * np.roll(y, -1) - y * np.roll(x, -1)).sum() / 2)
+
+
+def _is_inside(polygon: FloatArray, points: FloatArray) -> BoolArray:
+    """Whether points (n, 2) lie inside a polygon (k, 2), by the parity of the edges to the right of them."""
+    start, end = polygon[None], np.roll(polygon, -1, axis=0)[None]
+    spans = (start[..., 1] > points[:, None, 1]) != (end[..., 1] > points[:, None, 1])
+    rise = np.where(spans, end[..., 1] - start[..., 1], 1.0)
+    at = start[..., 0] + (points[:, None, 1] - start[..., 1]) / rise * (end[..., 0] - start[..., 0])
+    inside: BoolArray = (spans & (at > points[:, None, 0])).sum(axis=1) % 2 == 1
+    return inside
+
+
+def _bridged(vertices: Vertices, rim: IntArray, island: IntArray) -> IntArray:
+    """Join two rims by their shortest bridge: (n_rim + n_island + 2,) int64."""
+    distance, at = cKDTree(vertices[rim]).query(vertices[island])
+    j = int(np.argmin(distance))
+    i = int(np.asarray(at)[j])
+    return np.concatenate([rim[: i + 1], np.roll(island, -j), island[j : j + 1], rim[i:]])

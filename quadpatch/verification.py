@@ -1,0 +1,117 @@
+"""What the check of a repair found, put into the results of its holes."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from quadpatch.completion import Completion
+from quadpatch.filling.checked_fill import CheckedFill
+from quadpatch.filling.faults import Faults, find_faults
+from quadpatch.filling.filled_mesh import FilledMesh
+from quadpatch.filling.islands import JoinedRims
+from quadpatch.judge import HoleResult, confidence
+from quadpatch.mesh.holes import Hole
+from quadpatch.types import BoolArray, Triangles
+
+
+@dataclass(frozen=True)
+class Verified:
+    """A completion whose faults were undone, and the faults that are left.
+
+    Attributes
+    ----------
+    completion : Completion or None
+    faults : Faults
+    """
+
+    completion: Completion | None
+    faults: Faults
+
+
+def without_faults(completion: Completion | None, checked: CheckedFill, obstacles: Triangles | None) -> Verified:
+    """Take the displacement back in holes where it brought in folds or crossings.
+
+    Parameters
+    ----------
+    completion : Completion or None
+    checked : CheckedFill
+        The fill before it was displaced.
+    obstacles : (k, 3) int64, optional
+        Triangles of the file that the mesh leaves out.
+    """
+    if completion is None or not completion.trust.any():
+        return Verified(completion, checked.faults)
+    faults = find_faults(completion.filled, obstacles=obstacles)
+    undone = np.zeros(len(completion.trust), bool)
+    worse = completion.trust & (faults.severity > checked.faults.severity)
+    # Taking one hole back may make it cross the displaced fill of another.
+    while worse.any():
+        undone |= worse
+        completion = replace(
+            completion,
+            filled=_taken_back(completion.filled, checked.filled, undone),
+            trust=completion.trust & ~undone,
+            undone=undone,
+        )
+        faults = find_faults(completion.filled, obstacles=obstacles)
+        worse = completion.trust & (faults.severity > checked.faults.severity)
+    return Verified(completion, faults)
+
+
+def _taken_back(displaced: FilledMesh, before: FilledMesh, holes: BoolArray) -> FilledMesh:
+    new = displaced.mesh.vertices[displaced.n_measured_vertices :]
+    old = before.mesh.vertices[before.n_measured_vertices :]
+    return displaced.with_vertices(np.where(holes[displaced.vertex_hole][:, None], old, new))
+
+
+def verified_results(
+    results: list[HoleResult], rims: JoinedRims, checked: CheckedFill, faults: Faults, size: float
+) -> list[HoleResult]:
+    """Add to every hole's result how it was filled and what the check found.
+
+    Parameters
+    ----------
+    results : list of HoleResult
+        One per hole, by id.
+    rims : JoinedRims
+    checked : CheckedFill
+    faults : Faults
+        Of the mesh that is handed out.
+    size : float
+        Diagonal of the object's bounding box, in mesh units.
+    """
+    by_id = {result.hole.id: result for result in results}
+    for i, hole in enumerate(rims.chosen):
+        result = by_id[hole.id]
+        if i in checked.refused:
+            by_id[hole.id] = HoleResult(hole, "refused", *checked.refused[i])
+        elif result.verdict.startswith("filled"):
+            by_id[hole.id] = _verified(result, checked, faults, i, size)
+    for island, host in rims.host_of.items():
+        why = f"an island in hole {host}: the ring between its border and the rim of that hole is filled"
+        by_id[island] = replace(by_id[island], verdict="filled_smooth", code="joined", reason=why)
+    return [by_id[result.hole.id] for result in results]
+
+
+def with_named_faults(results: list[HoleResult], chosen: list[Hole], faults: Faults) -> list[HoleResult]:
+    """Name the folds and crossings of every filled hole in its measures."""
+    found = {hole.id: _counts(faults, i) for i, hole in enumerate(chosen)}
+    return [
+        replace(result, measures={**result.measures, **found[result.hole.id]})
+        if result.verdict.startswith("filled") and result.hole.id in found
+        else result
+        for result in results
+    ]
+
+
+def _counts(faults: Faults, i: int) -> dict[str, float]:
+    return {"folds": float(faults.n_folds[i]), "crossings": float(faults.crossings[i])}
+
+
+def _verified(result: HoleResult, checked: CheckedFill, faults: Faults, i: int, size: float) -> HoleResult:
+    result = replace(result, fill=checked.fill[i], measures={**result.measures, **_counts(faults, i)})
+    departure = float(checked.departure[i])
+    if result.expected_error is None or departure <= result.expected_error:
+        return result
+    # The fill that suits the surface best did not hold: how far the plainer one departs from it is a sign of its error.
+    return replace(result, expected_error=departure, confidence=confidence(departure, size))
