@@ -107,7 +107,8 @@ def test_nothing_is_faired_gated_or_joined() -> None:
 def test_neither_confidence_nor_expected_error_is_made_up(repaired: Repair) -> None:
     for result in repaired.results:
         assert (result.confidence, result.expected_error) == (None, None)
-    assert repaired.results[1].measures.keys() == {
+    measures = {"coverage", "spread", "departure", "rim_misfit", "folds", "crossings"}
+    assert repaired.results[1].measures.keys() == measures
         "coverage",
         "spread",
         "departure",
