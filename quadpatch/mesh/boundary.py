@@ -45,14 +45,12 @@ def boundary_loops(triangles: Triangles) -> Boundary:
     Boundary
         Loops in the order of their lowest vertex index, each starting there. Empty for a closed mesh.
     """
-    edges, bad_vertices = _boundary_edges(triangles)
+    edges, is_bad = _boundary_edges(triangles)
     walks, open_walks = _walk(edges, _exits(triangles, edges))
     loops = [(loop, True) for walk in walks for loop in _simple_loops(walk)]
     # A chain that can't be closed in the direction of its faces: the faces around it disagree.
     loops += [(chain, False) for chain in open_walks]
-    loops = [
-        (np.roll(loop, -int(np.argmin(loop))), good and not np.isin(loop, bad_vertices).any()) for loop, good in loops
-    ]
+    loops = [(np.roll(loop, -int(np.argmin(loop))), good and not is_bad[loop].any()) for loop, good in loops]
     loops.sort(key=lambda item: tuple(item[0][:2]))
     return Boundary([loop for loop, _ in loops], [good for _, good in loops])
 
@@ -86,14 +84,16 @@ def _edge_counts(triangles: Triangles) -> IntArray:
     return counts
 
 
-def _boundary_edges(triangles: Triangles) -> tuple[IntArray, IntArray]:
-    """Directed boundary edges (b, 2), and the vertices around which faces overlap or disagree."""
+def _boundary_edges(triangles: Triangles) -> tuple[IntArray, BoolArray]:
+    """Directed boundary edges (b, 2), and of every vertex whether faces overlap or disagree around it."""
     edges = directed_edges(triangles)
     counts = _edge_counts(triangles)
     boundary, crowded = edges[counts == 1], edges[counts > 2]
     n_vertices = int(triangles.max(initial=-1)) + 1
     arrivals, departures = (np.bincount(boundary[:, k], minlength=n_vertices) for k in (1, 0))
-    return boundary, np.union1d(crowded, np.flatnonzero(arrivals != departures))
+    is_bad: BoolArray = arrivals != departures
+    is_bad[crowded] = True
+    return boundary, is_bad
 
 
 def _exits(triangles: Triangles, edges: IntArray) -> dict[tuple[int, int], int]:
@@ -124,9 +124,10 @@ def _end_of_fan(third: dict[tuple[int, int], int], start: int, at: int) -> int:
 
 def _walk(edges: IntArray, exits: dict[tuple[int, int], int]) -> tuple[list[list[int]], list[IntArray]]:
     """Follow boundary edges head to tail; a Python loop over boundary vertices only."""
-    following: dict[int, list[int]] = {}
+    # The ends to go on to, highest first; a dict finds and drops any one of them, and the last one, in constant time.
+    following: dict[int, dict[int, None]] = {}
     for start, end in edges[np.lexsort((-edges[:, 1], edges[:, 0]))].tolist():
-        following.setdefault(start, []).append(end)
+        following.setdefault(start, {})[end] = None
     closed: list[list[int]] = []
     chains: list[IntArray] = []
     # Chains that can't close begin where more edges leave than arrive: walk those first, or they would eat loops.
@@ -143,20 +144,27 @@ def _walk(edges: IntArray, exits: dict[tuple[int, int], int]) -> tuple[list[list
     return closed, chains
 
 
-def _walk_from(start: int, following: dict[int, list[int]], exits: dict[tuple[int, int], int]) -> list[int]:
+def _walk_from(start: int, following: dict[int, dict[int, None]], exits: dict[tuple[int, int], int]) -> list[int]:
     """Use up edges from a vertex on, until the first one would come again or none is left."""
-    first = following[start][-1]
+    first = _last(following[start])
     walk, before, at = [start], -1, start
     while following.get(at):
         leaving = following[at]
         wanted = exits.get((before, at))
         if at == start and wanted == first:
             break
-        after = wanted if wanted in leaving else leaving[-1]
-        leaving.remove(after)
+        after = wanted if wanted is not None and wanted in leaving else _last(leaving)
+        del leaving[after]
         walk.append(after)
         before, at = at, after
     return walk
+
+
+def _last(leaving: dict[int, None]) -> int:
+    """Return the last key; `reversed` would pass over all keys that were deleted at the end, time and again."""
+    end, _ = leaving.popitem()
+    leaving[end] = None
+    return end
 
 
 def _simple_loops(walk: list[int]) -> list[IntArray]:

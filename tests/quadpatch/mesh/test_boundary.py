@@ -225,3 +225,16 @@ def test_a_loop_of_many_thousand_edges_is_walked_in_one_go() -> None:
     inner, outer = boundary_loops(ring).loops
     assert inner.tolist() == here.tolist()
     assert sorted(outer.tolist()) == list(range(n, 2 * n))
+
+
+@pytest.mark.parametrize("step", [1, 2])
+def test_ten_thousands_of_faces_around_a_vertex_or_on_an_edge_are_walked_one_by_one(step: int) -> None:
+    # Step 1: the pages of a book, all on the edge (0, 1). Step 2: triangles that share nothing but vertex 0.
+    n = 20_000
+    here = 1 + step * np.arange(n)
+    first = np.ones(n, np.int64) if step == 1 else here
+    boundary = boundary_loops(np.stack([np.zeros(n, np.int64), first, here + 1], 1))
+    assert boundary.is_manifold == [step == 2] * n
+    assert {frozenset(loop.tolist()) for loop in boundary.loops} == {
+        frozenset((0, a, b)) for a, b in zip(first.tolist(), (here + 1).tolist(), strict=True)
+    }
