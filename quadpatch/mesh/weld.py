@@ -1,15 +1,50 @@
-"""Joining vertices that a file repeats.
+"""A mesh file as one surface: vertices that it repeats joined, faces that say nothing new left out.
 
 STL repeats every vertex for every triangle, and exporters repeat vertices along seams, so the edges there look like
-boundaries. Only vertices on boundary edges are joined, and only where their coordinates are the same bits (0.0 and
--0.0 are one number): what lies inside a surface, or merely close by, is left as measured.
+boundaries. Only vertices on boundary edges are joined: where their coordinates are the same bits (0.0 and -0.0 are one
+number), and on demand where they are closer than a tolerance. What lies inside a surface is left as measured.
+
+Faces that repeat others, and fins, are left out, and faces that are turned over against their neighbours are turned
+back: holes are found, measured and filled on the surface that remains. The file keeps all of them.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
 
+from quadpatch.mesh.duplicate_faces import repeated_triangles
+from quadpatch.mesh.edge_groups import boundary_vertices
+from quadpatch.mesh.fins import fin_triangles
+from quadpatch.mesh.near_vertices import Tolerance, join_near
+from quadpatch.mesh.orientation import turned_triangles
 from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Triangles, Vertices
+
+
+@dataclass(frozen=True)
+class WeldCounts:
+    """What became of a file's vertices and triangles.
+
+    Attributes
+    ----------
+    equal_vertices, near_vertices : int
+        Vertices joined to an earlier one at the same position, and to one within the tolerance.
+    tolerance : float
+        In mesh units.
+    triangles : int
+        Of the file, those without three different corners aside.
+    duplicate_triangles, fin_triangles : int
+        Left out.
+    turned_triangles : int
+        Turned over.
+    """
+
+    equal_vertices: int
+    near_vertices: int
+    tolerance: float
+    triangles: int
+    duplicate_triangles: int
+    fin_triangles: int
+    turned_triangles: int
 
 
 @dataclass(frozen=True)
@@ -20,36 +55,70 @@ class Weld:
     ----------
     mesh : TriangleMesh
         Vertices in the order in which the file first names them; triangles in the file's order, without those whose
-        corners are not three different vertices.
+        corners are not three different vertices and without the ignored ones, and all of a piece in one direction.
     to_file : (n_welded,) int64
-        First file vertex of each welded vertex.
+        First file vertex of each welded vertex; of those that the triangles of `mesh` use, where there is one.
     from_file : (n_file,) int64
         Welded vertex of each file vertex.
+    ignored_triangles : (k, 3) int64
+        Repeated triangles and fins, in welded vertices.
+    is_turned : (n_triangles,) bool
+        Triangles of `mesh` whose direction is not that of the file.
+    counts : WeldCounts
     """
 
     mesh: TriangleMesh
     to_file: IntArray
     from_file: IntArray
+    ignored_triangles: Triangles
+    is_turned: BoolArray
+    counts: WeldCounts
 
 
-def weld(scan_vertices: Vertices, scan_triangles: Triangles) -> Weld:
-    """Join the vertices of boundary edges that lie at bit-identical positions.
+def weld(scan_vertices: Vertices, scan_triangles: Triangles, tolerance: Tolerance = 0.0) -> Weld:
+    """Join the vertices of boundary edges that lie at one position, and leave out redundant triangles.
 
     Parameters
     ----------
     scan_vertices : (n_file, 3) float64
         In mesh units; finite.
     scan_triangles : (m, 3) int64
+    tolerance : float or "auto"
+        How far apart vertices are joined, in mesh units; 0 joins those at bit-identical positions alone. See
+        `quadpatch.mesh.near_vertices`.
+
+    Raises
+    ------
+    OptionError
+        If the tolerance does not fit the mesh.
     """
     proper = _without_degenerate(scan_triangles)
-    first = np.arange(len(scan_vertices), dtype=np.int64)
-    candidates = np.flatnonzero(_on_boundary(proper, len(scan_vertices)))
-    first[candidates] = candidates[first_of_equal(scan_vertices[candidates])]
-    is_first = first == np.arange(len(first))
-    from_file = (np.cumsum(is_first) - 1)[first]
-    to_file = np.flatnonzero(is_first)
-    mesh = TriangleMesh(scan_vertices[to_file], _without_degenerate(from_file[proper]))
-    return Weld(mesh, to_file, from_file)
+    place = first_of_equal(scan_vertices)
+    repeated = repeated_triangles(proper, place)
+    to_file, from_file = _numbered(_join_equal(proper, repeated, place))
+    n_equal = len(scan_vertices) - len(to_file)
+    triangles = _without_degenerate(from_file[proper[~repeated]])
+    near, tolerance = join_near(TriangleMesh(scan_vertices[to_file], triangles), tolerance)
+    again = np.zeros(len(triangles), dtype=bool)
+    n_near = int((near != np.arange(len(near))).sum())
+    if n_near:
+        to_file, from_file = _numbered(to_file[near][from_file])
+        triangles = _without_degenerate(from_file[proper[~repeated]])
+        again = repeated_triangles(triangles, np.arange(len(to_file)))
+    copies = np.concatenate([from_file[proper[repeated]], triangles[again]])
+    triangles = triangles[~again]
+    is_fin = fin_triangles(scan_vertices[to_file], triangles)
+    fins, triangles = triangles[is_fin], triangles[~is_fin]
+    is_turned = turned_triangles(triangles, len(to_file))
+    triangles = np.where(is_turned[:, np.newaxis], triangles[:, ::-1], triangles)
+    return Weld(
+        TriangleMesh(scan_vertices[to_file], triangles),
+        to_file,
+        from_file,
+        np.concatenate([copies, fins]),
+        is_turned,
+        WeldCounts(n_equal, n_near, tolerance, len(proper), len(copies), len(fins), int(is_turned.sum())),
+    )
 
 
 def _without_degenerate(triangles: Triangles) -> Triangles:
@@ -58,20 +127,32 @@ def _without_degenerate(triangles: Triangles) -> Triangles:
     return triangles if proper.all() else triangles[proper]
 
 
-def _on_boundary(triangles: Triangles, n_vertices: int) -> BoolArray:
-    """Vertices of edges that exactly one triangle has, (n_vertices,)."""
-    starts = triangles.ravel()
-    ends = triangles[:, [1, 2, 0]].ravel()
-    keys = np.minimum(starts, ends) * n_vertices + np.maximum(starts, ends)
-    keys.sort()
-    differs = keys[1:] != keys[:-1]
-    alone = np.ones(len(keys), dtype=bool)
-    alone[1:] &= differs
-    alone[:-1] &= differs
-    result = np.zeros(n_vertices, dtype=bool)
-    result[keys[alone] // n_vertices] = True
-    result[keys[alone] % n_vertices] = True
-    return result
+def _join_equal(triangles: Triangles, repeated: BoolArray, place: IntArray) -> IntArray:
+    """Find the first boundary vertex at the position of each boundary vertex, (n_file,) int64; others are their own.
+
+    A vertex that repeated triangles alone use is joined to one of the triangles that they repeat.
+    """
+    kept = triangles[~repeated]
+    first = np.arange(len(place), dtype=np.int64)
+    candidates = np.flatnonzero(boundary_vertices(kept, len(place)))
+    at_place = np.zeros(len(place), np.int64)
+    # Of several values for one index the last one stays.
+    at_place[place[candidates[::-1]]] = candidates[::-1]
+    first[candidates] = at_place[place[candidates]]
+    if repeated.any():
+        is_used = np.zeros(len(place), dtype=bool)
+        is_used[kept] = True
+        spare = np.unique(triangles[repeated])
+        spare = spare[~is_used[spare]]
+        at_place[place[kept.ravel()]] = kept.ravel()
+        first[spare] = first[at_place[place[spare]]]
+    return first
+
+
+def _numbered(first: IntArray) -> tuple[IntArray, IntArray]:
+    """Give numbers to the vertices that stay; return the file's vertex of each, and the number of each file vertex."""
+    stays = first == np.arange(len(first))
+    return np.flatnonzero(stays), (np.cumsum(stays) - 1)[first]
 
 
 def first_of_equal(points: FloatArray) -> IntArray:

@@ -1,0 +1,105 @@
+"""Faces that repeat another face: the same three places, in either direction.
+
+A repeated face gives its edges a third face, or closes a surface that is open, so the hole at whose rim it lies is no
+hole any more. What a repeated face says of the surface, the first of its kind says as well.
+
+Two solids that touch have coincident faces too: the wall between them. It is no repetition, since each of the solids
+would be open without its own. So a connected group of repeated faces is left out only where the surface is manifold
+without it along most of the group's outline.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from quadpatch.mesh.edge_groups import EdgeGroups, components, group_edges
+from quadpatch.types import BoolArray, IntArray, Triangles
+
+
+def repeated_triangles(triangles: Triangles, place: IntArray) -> BoolArray:
+    """Find the triangles that repeat an earlier one and can be left out.
+
+    Parameters
+    ----------
+    triangles : (m, 3) int64
+    place : (n,) int64
+        A number of each vertex's position; vertices at one position have the same.
+
+    Returns
+    -------
+    (m,) bool
+        The first triangle of a kind is not among them.
+    """
+    corners = place[triangles]
+    first = first_with_same_corners(corners)
+    repeated: BoolArray = first != np.arange(len(triangles))
+    if not repeated.any():
+        return repeated
+    near = np.zeros(len(place), dtype=bool)
+    near[corners[repeated]] = True
+    # Only what touches a repeated face is looked at.
+    rows = np.flatnonzero(near[corners].any(axis=1))
+    is_doubled = np.zeros(len(triangles), dtype=bool)
+    is_doubled[first[repeated]] = True
+    wanted = _without_walls(group_edges(corners[rows], len(place)), repeated[rows], is_doubled[rows])
+    result = np.zeros(len(triangles), dtype=bool)
+    result[rows] = wanted
+    return result
+
+
+def first_with_same_corners(corners: Triangles) -> IntArray:
+    """Find the first triangle that has the same three corners as each, in any order.
+
+    Parameters
+    ----------
+    corners : (m, 3) int64
+
+    Returns
+    -------
+    (m,) int64
+        Positions in `corners`; a triangle with equal corners is like no other.
+    """
+    result = np.arange(len(corners))
+    hashes = _mixed(corners[:, 0]) + _mixed(corners[:, 1]) + _mixed(corners[:, 2])
+    ranked = np.sort(hashes)
+    shared = ranked[1:][ranked[1:] == ranked[:-1]]
+    if not len(shared):
+        return result
+    a, b, c = corners.T
+    rows = np.flatnonzero(np.isin(hashes, shared) & (a != b) & (b != c) & (c != a))
+    _, begins, kind = np.unique(np.sort(corners[rows], axis=1), axis=0, return_index=True, return_inverse=True)
+    result[rows] = rows[begins][kind.reshape(-1)]
+    return result
+
+
+def _mixed(numbers: IntArray) -> NDArray[np.uint64]:
+    """Scatter whole numbers over 64 bits, so that sums of three are as good as never equal by chance."""
+    mixed = (numbers.astype(np.uint64) + np.uint64(1)) * np.uint64(0x9E3779B97F4A7C15)
+    mixed ^= mixed >> np.uint64(32)
+    mixed *= np.uint64(0xD6E8FEB86659FD93)
+    return mixed ^ (mixed >> np.uint64(32))
+
+
+def _without_walls(groups: EdgeGroups, repeated: BoolArray, is_doubled: BoolArray) -> BoolArray:
+    """Drop the groups of repeated faces whose absence would leave three faces on most of their outline."""
+    triangle = groups.order // 3
+    n_kept = np.add.reduceat((~repeated)[triangle].astype(np.int64), groups.starts)
+    n_single = np.add.reduceat((~repeated & ~is_doubled)[triangle].astype(np.int64), groups.starts)
+    # An edge is on the outline of a doubled region where that ends, or meets what is not doubled.
+    is_outline, is_crowded = (n_single > 0) | (n_kept == 1), (n_single > 0) & (n_kept > 2)
+    group = _connected(groups, repeated)
+    rows = np.flatnonzero(repeated)
+    edges = groups.edge.reshape(-1, 3)[rows]
+    n_groups = int(group.max()) + 1
+    outline, crowded = (
+        np.bincount(group[rows], marked[edges].sum(axis=1), minlength=n_groups) for marked in (is_outline, is_crowded)
+    )
+    return repeated & (2 * crowded <= outline)[group]
+
+
+def _connected(groups: EdgeGroups, chosen: BoolArray) -> IntArray:
+    """Find the group of chosen triangles, joined by edges, of each triangle, (m,) int64; others are their own."""
+    triangle = groups.order // 3
+    inside = np.flatnonzero(chosen[triangle])
+    same = groups.edge[groups.order[inside[1:]]] == groups.edge[groups.order[inside[:-1]]]
+    links = np.stack([triangle[inside[:-1]][same], triangle[inside[1:]][same]], axis=1)
+    return components(links, len(chosen))

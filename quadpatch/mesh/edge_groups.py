@@ -1,0 +1,78 @@
+"""Faces around every edge: which of the directed edges of a mesh are the same edge."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from quadpatch.mesh.boundary import directed_edges, edge_keys
+from quadpatch.types import BoolArray, IntArray, Triangles
+
+
+@dataclass(frozen=True)
+class EdgeGroups:
+    """The directed edges of a mesh, sorted so that equal ones stand side by side.
+
+    Attributes
+    ----------
+    edges : (3 n_triangles, 2) int64
+        As `directed_edges` has them: edge ``3 t + k`` is of triangle t.
+    order : (3 n_triangles,) int64
+        Positions in `edges`, one edge behind the other, in the order of the triangles within each.
+    starts : (n_edges,) int64
+        Where each edge begins in `order`.
+    edge : (3 n_triangles,) int64
+        Number of the edge that each directed edge is.
+    count : (n_edges,) int64
+        Faces of each edge.
+    """
+
+    edges: IntArray
+    order: IntArray
+    starts: IntArray
+    edge: IntArray
+    count: IntArray
+
+    @property
+    def pairs(self) -> IntArray:
+        """Two directed edges of every edge with exactly two faces, (p, 2) int64."""
+        starts = self.starts[self.count == 2]
+        return np.stack([self.order[starts], self.order[starts + 1]], axis=1)
+
+    def ends(self) -> IntArray:
+        """Vertices of each edge, (n_edges, 2) int64."""
+        return self.edges[self.order[self.starts]]
+
+
+def group_edges(triangles: Triangles, n_vertices: int) -> EdgeGroups:
+    """Sort the directed edges of triangles (m, 3) by the edge that they are."""
+    edges = directed_edges(triangles)
+    keys = edge_keys(edges, max(n_vertices, 1))
+    order = np.argsort(keys, kind="stable")
+    begins = np.ones(len(keys), dtype=bool)
+    begins[1:] = keys[order][1:] != keys[order][:-1]
+    starts = np.flatnonzero(begins)
+    edge = np.zeros(len(keys), np.int64)
+    edge[order] = np.cumsum(begins) - 1
+    return EdgeGroups(edges, order, starts, edge, np.diff(np.append(starts, len(keys))))
+
+
+def boundary_vertices(triangles: Triangles, n_vertices: int) -> BoolArray:
+    """Vertices of edges that exactly one triangle has, (n_vertices,) bool."""
+    keys = edge_keys(directed_edges(triangles), max(n_vertices, 1))
+    keys.sort()
+    alone = np.ones(len(keys), dtype=bool)
+    differs = keys[1:] != keys[:-1]
+    alone[1:] &= differs
+    alone[:-1] &= differs
+    result = np.zeros(n_vertices, dtype=bool)
+    result[keys[alone] // n_vertices] = True
+    result[keys[alone] % n_vertices] = True
+    return result
+
+
+def components(links: IntArray, n: int) -> IntArray:
+    """Find the connected component of each of n things that some links (k, 2) join, (n,) int64."""
+    graph = coo_array((np.ones(len(links), bool), (links[:, 0], links[:, 1])), shape=(n, n))
+    return np.asarray(connected_components(graph, directed=False)[1], np.int64)
