@@ -25,7 +25,9 @@ from client.options import (
     MethodName,
     QuietOption,
     UrlOption,
+    WeldToleranceOption,
     make_spec,
+    tolerance,
 )
 from client.repairing import Task, format_of
 from client.repairing import repair as run_repair
@@ -71,6 +73,7 @@ def repair(  # noqa: PLR0913 - one parameter per option of the command line
     max_perimeter: MaxPerimeterOption = None,
     all_but_largest: AllButLargestOption = False,
     hole: HoleOption = None,
+    weld_tolerance: WeldToleranceOption = None,
     patch_length: Annotated[
         float | None,
         typer.Option(help="Side of a patch, in mesh units.", show_default="auto", rich_help_panel=_PATCHES),
@@ -123,6 +126,7 @@ def repair(  # noqa: PLR0913 - one parameter per option of the command line
             method=MethodChoice(method, model, patch_length, resolution, overlap, recipe, fit_steps, fit_seconds),
             rest={
                 "seed": seed,
+                "weld_tolerance": tolerance(weld_tolerance),
                 "label": label,
                 "output": {"format": format_ or format_of(output), "preview": preview is not None},
             },

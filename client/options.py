@@ -39,6 +39,15 @@ HoleOption = Annotated[
     list[int] | None,
     typer.Option("--hole", help="Fill just this hole; repeat for more. See `holes`.", rich_help_panel="Which holes"),
 ]
+WeldToleranceOption = Annotated[
+    str | None,
+    typer.Option(
+        metavar="AUTO|LENGTH",
+        help="Join boundary vertices this far apart, in mesh units; 0: only equal ones.",
+        show_default="auto",
+        rich_help_panel="Which holes",
+    ),
+]
 
 
 @dataclass(frozen=True)
@@ -79,6 +88,14 @@ def make_spec(mesh_id: str, holes: HoleChoice, method: MethodChoice, **rest: Any
     except ValidationError as error:
         lines = [f"{'.'.join(str(step) for step in e['loc'])}: {e['msg']}" for e in error.errors()]
         raise UsageError("; ".join(lines)) from error
+
+
+def tolerance(word: str | None) -> float | str | None:
+    """Read `--weld-tolerance`: a number where it is one; the job spec refuses other words than `auto`."""
+    try:
+        return None if word is None else float(word)
+    except ValueError:
+        return word
 
 
 def _method(choice: MethodChoice) -> dict[str, Any]:

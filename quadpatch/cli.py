@@ -10,7 +10,7 @@ from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated, Any, NoReturn
+from typing import Annotated, Any, Literal, NoReturn
 
 import typer
 from rich.console import Console
@@ -19,7 +19,7 @@ from rich.table import Table
 from rich.text import Text
 
 from quadpatch import types
-from quadpatch.errors import QuadpatchError
+from quadpatch.errors import OptionError, QuadpatchError
 from quadpatch.files import check_outputs, write_whole
 from quadpatch.options import DictionaryOptions, HoleOptions, NetworkOptions, PatchOptions, Recipe, RepairOptions
 
@@ -28,6 +28,14 @@ _errors = Console(stderr=True)
 FITTING = NetworkOptions()
 
 Source = Annotated[Path, typer.Argument(metavar="IN", help="Mesh: PLY, STL, OBJ, OFF, GLB/glTF or 3MF.")]
+
+WeldTolerance = Annotated[
+    str,
+    typer.Option(
+        metavar="AUTO|LENGTH",
+        help="Join boundary vertices this far apart (mesh units); 0: only equal ones; auto: as far as rounding goes.",
+    ),
+]
 
 
 @app.command()
@@ -59,6 +67,7 @@ def fill(  # noqa: PLR0913, PLR0917  one argument per flag
     ] = None,
     fit_steps: Annotated[int, typer.Option(help="Fit at most so many steps (model self-network).")] = FITTING.steps,
     fit_seconds: Annotated[float, typer.Option(help="Fit at most so long (model self-network).")] = FITTING.seconds,
+    weld_tolerance: WeldTolerance = "auto",
     seed: Annotated[int, typer.Option(help="Start of every random choice.")] = 0,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress, no summary.")] = False,
 ) -> None:
@@ -73,6 +82,7 @@ def fill(  # noqa: PLR0913, PLR0917  one argument per flag
             recipe,
             DictionaryOptions(atoms, nonzero),
             NetworkOptions(fit_steps, fit_seconds),
+            _tolerance(weld_tolerance),
         )
         check_outputs(source, [path for path in (output, report, picture) if path])
         result = repair_file(source, output, model, options, progress)
@@ -85,12 +95,16 @@ def fill(  # noqa: PLR0913, PLR0917  one argument per flag
 
 
 @app.command()
-def holes(source: Source, as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False) -> None:
+def holes(
+    source: Source,
+    weld_tolerance: WeldTolerance = "auto",
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+) -> None:
     """List the holes of a mesh file, and which of them would be filled."""
     from quadpatch.repair import inspect_file  # noqa: PLC0415  the libraries behind it take a second to load
 
     with _clear_errors():
-        facts = inspect_file(source)
+        facts = inspect_file(source, _tolerance(weld_tolerance))
     if as_json:
         print(json.dumps(facts, indent=2))  # noqa: T201  data for standard output
         return
@@ -104,6 +118,18 @@ def holes(source: Source, as_json: Annotated[bool, typer.Option("--json", help="
         fate = "fill" if row["chosen"] else f"leave open: {row['reason']}"
         table.add_row(str(row["id"]), str(row["edges"]), *numbers, f"{row['planarity']:.3f}", fate)
     Console().print(table)
+    for warning in facts["warnings"]:
+        _errors.print(Text(f"Warning: {warning}"))
+
+
+def _tolerance(word: str) -> float | Literal["auto"]:
+    """Read `--weld-tolerance`; what is neither `auto` nor a number raises OptionError."""
+    if word == "auto":
+        return "auto"
+    try:
+        return float(word)
+    except ValueError:
+        raise OptionError(f"--weld-tolerance must be auto or a number; it is {word!r}") from None
 
 
 def summary(report: dict[str, Any]) -> str:

@@ -131,6 +131,9 @@ class RepairOptions:
     dictionary : DictionaryOptions
     network : NetworkOptions
         Read where a network is fitted to the mesh.
+    weld_tolerance : float or "auto"
+        How far apart boundary vertices are taken for one, in mesh units: 0 for equal positions alone, `auto` for what
+        rounding in the file accounts for.
     """
 
     holes: HoleOptions = field(default_factory=HoleOptions)
@@ -139,8 +142,10 @@ class RepairOptions:
     recipe: Recipe = "default"
     dictionary: DictionaryOptions = field(default_factory=DictionaryOptions)
     network: NetworkOptions = field(default_factory=NetworkOptions)
+    weld_tolerance: float | Literal["auto"] = "auto"
 
     def __post_init__(self) -> None:
+        check_weld_tolerance(self.weld_tolerance)
         if self.recipe not in get_args(Recipe):
             raise OptionError(f"recipe must be one of {', '.join(get_args(Recipe))}; it is {self.recipe!r}")
         if self.recipe != "paper" and self.dictionary != DictionaryOptions():
@@ -162,6 +167,13 @@ class RepairOptions:
             return cls(HoleOptions(**holes), PatchOptions(**patches), dictionary=dictionary, network=network, **rest)
         except (TypeError, ValueError) as error:
             raise OptionError(f"options don't fit: {error}") from error
+
+
+def check_weld_tolerance(value: object) -> None:
+    """Raise OptionError for a tolerance that is neither `auto` nor a finite length of 0 or more."""
+    is_length = isinstance(value, (int, float)) and not isinstance(value, bool) and 0 <= value < math.inf
+    if value != "auto" and not is_length:
+        raise OptionError(f"weld_tolerance must be auto, or finite and 0 or more; it is {value}")
 
 
 def _check_length(name: str, value: float | None) -> None:

@@ -1,13 +1,14 @@
 """From file to file: what the command line and the worker's engine call."""
 
 import hashlib
-from dataclasses import replace
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from quadpatch.errors import EmptyMeshError, OptionError, TorchMissingError
+from quadpatch.formats.marks import NUMBERED
 from quadpatch.formats.reading import read_scan
 from quadpatch.formats.scan import Fill, Scan
 from quadpatch.formats.writing import check_suffix, write_scan
@@ -16,12 +17,21 @@ from quadpatch.inpainters.heights import HeightsInpainter
 from quadpatch.inpainters.inpainter import Inpainter
 from quadpatch.mesh.holes import find_holes, select_holes
 from quadpatch.mesh.measures import diagonal
+from quadpatch.mesh.near_vertices import Tolerance
+from quadpatch.mesh.orientation import triangles_facing_turned
 from quadpatch.mesh.weld import Weld, weld
 from quadpatch.model_file import Model, load_model, shipped_model
-from quadpatch.options import DictionaryOptions, NetworkOptions, RepairOptions
+from quadpatch.options import DictionaryOptions, NetworkOptions, RepairOptions, check_weld_tolerance
 from quadpatch.paper import NOTHING_TO_DO, inpaint_as_paper
 from quadpatch.pipeline import Repair, inpaint
-from quadpatch.report import UNKNOWN_UNIT, build_report, describe_hole, describe_mesh
+from quadpatch.report import (
+    UNKNOWN_UNIT,
+    build_report,
+    describe_hole,
+    describe_mesh,
+    describe_redundancy,
+    with_hole_numbers,
+)
 from quadpatch.stages import Stages
 from quadpatch.types import Progress, TriangleMesh, no_progress
 
@@ -73,24 +83,31 @@ def repair_file(
     stages = Stages(progress)
     inpainter, card = _resolve(model, options, progress)
     with stages.stage("read"):
-        scan, welded = _read(source)
+        scan, welded = _read(source, options.weld_tolerance)
     by_recipe = inpaint_as_paper if options.recipe == "paper" else inpaint
     repair = by_recipe(welded.mesh, inpainter, options, stages, learn=model == SELF)
     with stages.stage("write"):
         write_scan(output, scan, _fill(scan, welded, repair))
-    repair = replace(repair, warnings=[*repair.warnings, *_unit_warnings(scan, output)])
-    return build_report(scan, welded.mesh, repair, options, card, stages)
+    warnings = [*repair.warnings, *describe_redundancy(welded.counts), *_unit_warnings(scan, output)]
+    report = build_report(scan, welded, replace(repair, warnings=warnings), options, card, stages)
+    return with_hole_numbers(report, scan.next_hole_id if output.suffix.lower() in NUMBERED else None)
 
 
-def inspect_file(source: Path) -> dict[str, Any]:
-    """Facts and holes of a file, JSON-ready; `chosen` says what the automatic rule would fill."""
-    scan, welded = _read(source)
+def inspect_file(source: Path, weld_tolerance: Tolerance = "auto") -> dict[str, Any]:
+    """Facts and holes of a file, JSON-ready; `chosen` says what the automatic rule would fill.
+
+    The holes are those that a repair with the same tolerance finds.
+    """
+    check_weld_tolerance(weld_tolerance)
+    scan, welded = _read(source, weld_tolerance)
     mesh = welded.mesh
     holes = find_holes(mesh)
     selection = select_holes(holes, RepairOptions().holes, diagonal(mesh))
     return {
         **describe_mesh(scan, mesh),
         "length_unit": scan.unit or UNKNOWN_UNIT,
+        "welded": asdict(welded.counts),
+        "warnings": describe_redundancy(welded.counts),
         "holes": [
             {
                 **describe_hole(hole),
@@ -102,9 +119,9 @@ def inspect_file(source: Path) -> dict[str, Any]:
     }
 
 
-def _read(source: Path) -> tuple[Scan, Weld]:
+def _read(source: Path, weld_tolerance: Tolerance) -> tuple[Scan, Weld]:
     scan = read_scan(source)
-    welded = weld(scan.vertices, scan.triangles)
+    welded = weld(scan.vertices, scan.triangles, weld_tolerance)
     if not len(welded.mesh.triangles):
         raise EmptyMeshError(f"none of the {len(scan.triangles)} faces has three different corners")
     if not diagonal(welded.mesh) > LEAST_DIAGONAL:
@@ -190,18 +207,23 @@ def _check_recipe(model: Model, options: RepairOptions) -> None:
 
 
 def _fill(scan: Scan, welded: Weld, repair: Repair) -> Fill:
-    """Put the invented part of a repair into the file's own vertex numbers."""
+    """Put the invented part of a repair into the file's own vertex numbers, and its holes behind those marked there.
+
+    A hole whose rim was turned over for the repair is turned back with it.
+    """
     filled = repair.filled
+    new = filled.mesh.triangles[filled.n_measured_triangles :]
+    turned = triangles_facing_turned(new, filled.triangle_hole, welded.mesh.triangles[welded.is_turned])
     ids = np.array([hole.id for hole in repair.chosen], np.int64)
     confidence = np.array([repair.results[i].confidence or 0.0 for i in ids.tolist()])
     n_new = len(filled.vertex_hole)
     to_file = np.concatenate([welded.to_file, len(scan.vertices) + np.arange(n_new)])
     return Fill(
         filled.mesh.vertices[filled.n_measured_vertices :],
-        to_file[filled.mesh.triangles[filled.n_measured_triangles :]],
-        ids[filled.vertex_hole],
+        to_file[np.where(turned[:, np.newaxis], new[:, ::-1], new)],
+        scan.next_hole_id + ids[filled.vertex_hole],
         confidence[filled.vertex_hole],
-        ids[filled.triangle_hole],
+        scan.next_hole_id + ids[filled.triangle_hole],
         confidence[filled.triangle_hole],
     )
 

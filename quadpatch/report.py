@@ -7,6 +7,7 @@ from quadpatch.formats.scan import Scan
 from quadpatch.judge import HoleResult
 from quadpatch.mesh.holes import Hole
 from quadpatch.mesh.measures import mean_edge_length
+from quadpatch.mesh.weld import Weld, WeldCounts
 from quadpatch.options import RepairOptions
 from quadpatch.pipeline import Repair
 from quadpatch.stages import Stages
@@ -14,6 +15,9 @@ from quadpatch.types import TriangleMesh
 
 VERDICTS = ("filled", "filled_smooth", "skipped", "refused")
 UNKNOWN_UNIT = "mesh units"
+
+# With more copies than this share of the faces that they copy, a surface is doubled as a whole.
+DOUBLED_SHARE = 0.5
 
 
 def describe_mesh(scan: Scan, mesh: TriangleMesh) -> dict[str, Any]:
@@ -42,14 +46,48 @@ def describe_hole(hole: Hole) -> dict[str, Any]:
     }
 
 
+def describe_redundancy(counts: WeldCounts) -> list[str]:
+    """Say what the file holds more than once, or the wrong way round, in sentences for people."""
+    n, copies = counts.triangles, counts.duplicate_triangles
+    warnings = []
+    if copies > DOUBLED_SHARE * (n - copies):
+        warnings.append(
+            f"{copies:,} of {n:,} faces are exact copies of others: the surface is doubled; "
+            "holes were looked for on one copy, and the file keeps all"
+        )
+    elif copies:
+        warnings.append(f"{copies:,} faces are exact copies of others: ignored, and kept in the file")
+    if counts.fin_triangles:
+        warnings.append(
+            f"{counts.fin_triangles:,} faces hang on edges that have two faces without them: ignored as fins, "
+            "and kept in the file"
+        )
+    if counts.turned_triangles:
+        warnings.append(
+            f"{counts.turned_triangles:,} faces are turned over against their neighbours: taken for facing the other "
+            "way, and kept in the file as they are"
+        )
+    return warnings
+
+
+def with_hole_numbers(report: dict[str, Any], first: int | None) -> dict[str, Any]:
+    """Name the number that the file has for each filled hole: `first` plus its id, null where it has none."""
+    holes = [
+        {**row, "hole_id": None if first is None or not row["new_triangles"] else first + row["id"]}
+        for row in report["holes"]
+    ]
+    return {**report, "holes": holes}
+
+
 def build_report(
-    scan: Scan, mesh: TriangleMesh, repair: Repair, options: RepairOptions, model: dict[str, Any], stages: Stages
+    scan: Scan, welded: Weld, repair: Repair, options: RepairOptions, model: dict[str, Any], stages: Stages
 ) -> dict[str, Any]:
     """Put everything that a user may want to know about a repair into one JSON-ready object."""
     completion = repair.completion
     return {
         "schema": 1,
-        "source": describe_mesh(scan, mesh),
+        "source": describe_mesh(scan, welded.mesh),
+        "welded": asdict(welded.counts),
         "length_unit": scan.unit or UNKNOWN_UNIT,
         "model": model,
         "options": asdict(options),

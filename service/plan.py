@@ -32,7 +32,14 @@ def make_plan(spec: JobSpec, facts: MeshFacts, model: ResolvedModel, settings: S
         time_s=spec.limits.time_s or settings.job_time_limit_s,
         memory_mb=spec.limits.memory_mb or settings.job_memory_limit_mb,
     )
-    return Plan(mesh_id=spec.mesh_id, model=model, holes=holes, selected=reasons.count(None), limits=limits)
+    return Plan(
+        mesh_id=spec.mesh_id,
+        model=model,
+        holes=holes,
+        selected=reasons.count(None),
+        limits=limits,
+        is_exact=spec.weld_tolerance == "auto",
+    )
 
 
 def check_hole_ids(selection: HoleSelection, facts: MeshFacts) -> None:

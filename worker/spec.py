@@ -76,6 +76,7 @@ def method_options(spec: JobSpec, time_s: float) -> dict[str, Any]:
     patches = {} if isinstance(spec.method, SmoothMethod) else spec.method.patches.model_dump()
     recipe = spec.method.recipe if isinstance(spec.method, DictionaryMethod) else "default"
     options = {"holes": spec.holes.model_dump(), "patches": patches, "seed": spec.seed, "recipe": recipe}
+    options["weld_tolerance"] = spec.weld_tolerance
     if isinstance(spec.method, CnnMethod) and spec.method.model == SELF:
         fitting = spec.method.fitting
         options["network"] = {"steps": fitting.steps, "seconds": min(fitting.seconds, _FITTING_SHARE * time_s)}

@@ -163,5 +163,10 @@ class Plan(Response):
     mesh_id: MeshId
     model: ResolvedModel = Field(description="The model version it would be pinned to.")
     holes: list[PlannedHole] = Field(description="All holes of the mesh, longest rim first.")
+    is_exact: bool = Field(
+        default=True,
+        description="False with a `weld_tolerance` other than `auto`: the job finds the holes anew, and these are not "
+        "quite the ones that it will find.",
+    )
     selected: int = Field(ge=0, description="How many would be filled.", examples=[38])
     limits: Limits = Field(description="The ceilings that would hold.")

@@ -46,6 +46,9 @@ class MeshFacts(Response):
     diagonal: float = Field(ge=0, description="Diagonal of the bounding box, in mesh units.", examples=[3.46])
     mean_edge_length: float = Field(ge=0, description="Mean length of an edge, in mesh units.", examples=[0.02])
     holes: list[Hole] = Field(description="Boundary loops, longest rim first.")
+    warnings: list[str] = Field(
+        default_factory=list, description="What the file holds more than once, or the wrong way round, for people."
+    )
 
 
 class MeshProblem(Response):

@@ -1,8 +1,8 @@
 """What a job is asked to do. `{"mesh_id": …}` alone is a whole job."""
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, Self
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from jobkit.schema.base import REFERENCE_PATTERN, TEXT_PATTERN, WHOLE, MeshId, Request
 
@@ -125,6 +125,9 @@ class HoleSelection(Request):
     )
 
 
+Tolerance = Annotated[float, Field(ge=0, le=1e12)] | Literal["auto"]
+
+
 class Output(Request):
     """What the job hands back."""
 
@@ -151,6 +154,13 @@ class RepairSpec(Request):
 
     method: Method = Field(default_factory=default_method, description="How holes are filled.")
     holes: HoleSelection = Field(default_factory=HoleSelection, description="Which holes are filled.")
+    weld_tolerance: Tolerance = Field(
+        default="auto",
+        description="How far apart boundary vertices are taken for one, in mesh units: 0 joins equal positions alone, "
+        "`auto` what rounding in the file accounts for. Ids of holes are those found with `auto`, so that `holes.ids` "
+        "is refused with any other tolerance.",
+        examples=["auto", 0.001],
+    )
     output: Output = Field(default_factory=Output, description="What is handed back.")
     limits: Limits = Field(default_factory=Limits, description="Ceilings of one attempt.")
     seed: Seed = Field(default=0, description="Starts every random choice.", examples=[0])
@@ -162,6 +172,12 @@ class RepairSpec(Request):
         json_schema_extra=_name_property_pattern,
         examples=[{"order": "A-17"}],
     )
+
+    @model_validator(mode="after")
+    def _ids_need_the_known_holes(self) -> Self:
+        if self.weld_tolerance != "auto" and self.holes.ids is not None:
+            raise ValueError("holes.ids names holes found with the weld_tolerance auto: drop one of the two")
+        return self
 
 
 class JobSpec(RepairSpec):

@@ -56,6 +56,8 @@ class Scan:
         Length unit that the file states (`millimeter`, `meter`, ...), None where it states none.
     source : Source or None
         The file as it was, private to `quadpatch.formats`; None for a mesh that came from no file.
+    next_hole_id : int
+        First number for the marks of new holes: above 0 where an earlier repair left marks with numbers.
     """
 
     vertices: Vertices
@@ -63,6 +65,7 @@ class Scan:
     format: str
     unit: str | None = None
     source: Source | None = field(default=None, repr=False)
+    next_hole_id: int = 0
 
 
 @dataclass(frozen=True)

@@ -5,8 +5,9 @@ Boundary edges keep the direction of their face, so one face in the wrong direct
 
 import numpy as np
 
+from quadpatch.mesh.boundary import directed_edges, edge_keys
 from quadpatch.mesh.edge_groups import components, group_edges
-from quadpatch.types import BoolArray, Triangles
+from quadpatch.types import BoolArray, IntArray, Triangles
 
 
 def turned_triangles(triangles: Triangles, n_vertices: int) -> BoolArray:
@@ -41,3 +42,28 @@ def turned_triangles(triangles: Triangles, n_vertices: int) -> BoolArray:
     faces = np.bincount(as_is, minlength=int(component.max()) + 1)
     is_minority = (faces[as_is] < faces[turned]) | ((faces[as_is] == faces[turned]) & (as_is > turned))
     return np.asarray((as_is != turned) & is_minority)
+
+
+def triangles_facing_turned(new: Triangles, hole: IntArray, turned: Triangles) -> BoolArray:
+    """Find the new triangles of the holes whose rims lie for the most part at turned triangles.
+
+    Parameters
+    ----------
+    new : (l, 3) int64
+    hole : (l,) int64
+        Hole of each new triangle, counted from 0.
+    turned : (k, 3) int64
+
+    Returns
+    -------
+    (l,) bool
+    """
+    if not len(new) or not len(turned):
+        return np.zeros(len(new), dtype=bool)
+    n_vertices = int(max(new.max(), turned.max())) + 1
+    groups = group_edges(new, n_vertices)
+    on_rim = (groups.count == 1)[groups.edge]
+    at_turned = on_rim & np.isin(edge_keys(groups.edges, n_vertices), edge_keys(directed_edges(turned), n_vertices))
+    n_holes = int(hole.max()) + 1
+    rim, facing = (np.bincount(np.repeat(hole, 3), marked, minlength=n_holes) for marked in (on_rim, at_turned))
+    return np.asarray((2 * facing > rim)[hole])

@@ -4,19 +4,20 @@ All meshes of the default scene are placed by their nodes and joined; unit is th
 read, points and lines left out. Morph targets and skins are kept in the file and do not move the geometry.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from quadpatch.errors import EmptyMeshError, FormatError, IndexRangeError, ReadError
+from quadpatch.errors import EmptyMeshError, FormatError, IndexRangeError, MeshError, ReadError
 from quadpatch.formats.gltf.accessors import get_count, get_entry, get_list, get_object, read_accessor
 from quadpatch.formats.gltf.container import GltfFile, load_gltf
 from quadpatch.formats.gltf.scene import placed_nodes
 from quadpatch.formats.gltf.source import GltfSource, Primitive
 from quadpatch.formats.limits import ReadLimits, check_triangles, check_vertices, to_float64
+from quadpatch.formats.marks import next_hole_id
 from quadpatch.formats.parts import Part, place
 from quadpatch.formats.polygons import triangulate_strips
 from quadpatch.formats.scan import Scan
@@ -79,7 +80,8 @@ def read_gltf(data: bytes, limits: ReadLimits, folder: Path | None = None) -> Sc
     check_vertices(all_vertices)
     check_triangles(all_triangles, limits)
     kind = "glb" if file.is_binary else "gltf"
-    return Scan(all_vertices, all_triangles, kind, "meter", GltfSource(file, parts, nodes, primitives))
+    source = GltfSource(file, parts, nodes, primitives)
+    return Scan(all_vertices, all_triangles, kind, "meter", source, next_hole_id(_hole_marks(file, limits)))
 
 
 def _read_mesh(file: GltfFile, index: object, limits: ReadLimits) -> _Mesh:
@@ -156,3 +158,17 @@ def _read_attributes(
             # A wrong normal is no reason to refuse a scan; it counts as zero.
             found[name] = np.where(np.isfinite(values), values, 0.0)
     return found
+
+
+def _hole_marks(file: GltfFile, limits: ReadLimits) -> Iterator[FloatArray]:
+    """Read the numbers of the holes that an earlier repair filled."""
+    for mesh in get_list(file.document, "meshes"):
+        for primitive in get_list(mesh, "primitives") if isinstance(mesh, dict) else []:
+            attributes = get_object(primitive, "attributes") if isinstance(primitive, dict) else {}
+            if "_HOLE_ID" not in attributes:
+                continue
+            try:
+                yield to_float64(read_accessor(file, attributes["_HOLE_ID"], (1,), limits))[:, 0]
+            except MeshError:
+                # Of another program, which may call anything so.
+                continue

@@ -10,6 +10,7 @@ import numpy as np
 
 from quadpatch.errors import EmptyMeshError, FormatError, ReadError
 from quadpatch.formats.limits import ReadLimits, check_indices, check_triangles, check_vertices, to_float64
+from quadpatch.formats.marks import next_hole_id
 from quadpatch.formats.ply.appearance import ply_appearance
 from quadpatch.formats.ply.ascii import read_ascii_body
 from quadpatch.formats.ply.binary import read_binary_body
@@ -61,7 +62,8 @@ def read_ply(data: bytes, limits: ReadLimits) -> Scan:
     triangles, triangle_row, carrier = _triangles(by_name, vertices)
     check_triangles(triangles, limits)
     file = PlyFile(data, header, rows, carrier, triangle_row)
-    return Scan(vertices, triangles, "ply", source=PlySource(file))
+    marks = [column for read in rows if (column := read.scalar("hole_id")) is not None]
+    return Scan(vertices, triangles, "ply", source=PlySource(file), next_hole_id=next_hole_id(marks))
 
 
 def _check_count(element: Element, limits: ReadLimits) -> None:

@@ -4,18 +4,23 @@ Every build item is followed through its components, across model parts, and pla
 one that the root model states. Beam lattices, slices and volumes are no surface and are left out.
 """
 
+import re
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from quadpatch.errors import EmptyMeshError, ReadError, TooLargeError
 from quadpatch.formats.limits import ReadLimits, check_triangles, check_vertices
+from quadpatch.formats.marks import next_hole_id
 from quadpatch.formats.parts import Part, place
 from quadpatch.formats.scan import Scan
 from quadpatch.formats.threemf.model import Model, ModelObject, Placed, parse_model
 from quadpatch.formats.threemf.package import Package, open_package
 from quadpatch.formats.threemf.source import Origin, ThreemfSource
 from quadpatch.types import FloatArray
+
+# As our writers put them down.
+_HOLE_MARK = re.compile(rb' q:hole="([0-9]{1,9})"')
 
 # Components may be nested so that a file of a kilobyte places an object 2**50 times.
 _MOST_INSTANCES = 100_000
@@ -100,4 +105,5 @@ def read_threemf(data: bytes, limits: ReadLimits) -> Scan:
     check_triangles(all_triangles, limits)
     origins = [origin for origin, _, _ in build.placed]
     source = ThreemfSource(package, build.models, parts, origins)
-    return Scan(all_vertices, all_triangles, "3mf", root.unit, source)
+    marks = [np.array([float(n) for n in _HOLE_MARK.findall(model.text)]) for model in build.models.values()]
+    return Scan(all_vertices, all_triangles, "3mf", root.unit, source, next_hole_id(marks))
