@@ -135,7 +135,7 @@ def _equals(numbers: FloatArray, others: FloatArray) -> BoolArray:
 
 
 def _shortest_edges(mesh: TriangleMesh, noise: float) -> FloatArray:
-    """Shortest edge at each vertex that is longer than the noise, (n,) float64; infinite where there is none."""
+    """Shortest edge at each vertex that is longer than the noise, (n,) float64; 0 where there is none."""
     shortest = np.full(len(mesh.vertices), np.inf)
     for k in range(3):
         start, end = mesh.triangles[:, k], mesh.triangles[:, k - 2]
@@ -143,7 +143,8 @@ def _shortest_edges(mesh: TriangleMesh, noise: float) -> FloatArray:
         length[length <= noise] = np.inf
         np.minimum.at(shortest, start, length)
         np.minimum.at(shortest, end, length)
-    return shortest
+    # Where no edge is longer than the noise, noise and surface can't be told apart.
+    return np.where(np.isfinite(shortest), shortest, 0.0)
 
 
 def _near_pairs(points: Vertices, reach: FloatArray) -> IntArray | None:
