@@ -1,7 +1,7 @@
 import pytest
 
 from client.errors import UsageError
-from client.options import HoleChoice, MethodChoice, MethodName, make_spec
+from client.options import HoleChoice, MethodChoice, MethodName, make_spec, tolerance
 from jobkit.schema import CnnMethod, DictionaryMethod, Fitting
 
 MESH_ID = "0" * 64
@@ -41,6 +41,19 @@ def test_smooth_takes_neither_a_model_nor_patch_options() -> None:
     for choice in (MethodChoice("smooth", model="self"), MethodChoice("smooth", overlap=1)):
         with pytest.raises(UsageError, match="takes no model and no patch options"):
             make_spec(MESH_ID, HoleChoice(), choice)
+
+
+@pytest.mark.parametrize(("word", "value"), [("auto", "auto"), ("0", 0.0), ("0.25", 0.25)])
+def test_a_weld_tolerance_reaches_the_spec(word: str, value: float | str) -> None:
+    chosen = make_spec(MESH_ID, HoleChoice(), MethodChoice(), weld_tolerance=tolerance(word))
+    assert chosen.weld_tolerance == value
+    assert make_spec(MESH_ID, HoleChoice(), MethodChoice(), weld_tolerance=tolerance(None)).weld_tolerance == "auto"
+
+
+@pytest.mark.parametrize("word", ["-1", "nan", "near"])
+def test_a_weld_tolerance_that_is_none_is_named(word: str) -> None:
+    with pytest.raises(UsageError, match="weld_tolerance"):
+        make_spec(MESH_ID, HoleChoice(), MethodChoice(), weld_tolerance=tolerance(word))
 
 
 def test_an_option_out_of_its_range_is_named() -> None:

@@ -75,6 +75,7 @@ def test_plain_values_become_options() -> None:
         {"network": {"seconds": float("nan")}},
         {"network": {"seconds": "long"}},
         {"network": {"hours": 1}},
+        *({"weld_tolerance": value} for value in (-1.0, float("nan"), float("inf"), "near", True, None, [1])),
     ],
 )
 def test_what_can_not_be_meant_is_refused_with_a_code(values: dict[str, Any]) -> None:
@@ -88,6 +89,7 @@ def test_what_can_not_be_meant_is_refused_with_a_code(values: dict[str, Any]) ->
     [
         ({"holes": {"max_diameter": -1.0}}, r"holes\.max_diameter must be finite and greater than 0; it is -1"),
         ({"patches": {"resolution": 7}}, r"patches\.resolution must be a whole number between 8 and 128; it is 7"),
+        ({"weld_tolerance": -1}, "weld_tolerance must be auto, or finite and 0 or more; it is -1"),
         ({"seed": -1}, "seed must be a whole number of 0 or more; it is -1"),
         ({"colour": "red"}, "colour"),
         ({"recipe": "ours"}, "recipe must be one of default, paper; it is 'ours'"),

@@ -81,7 +81,7 @@ def test_the_report_is_plain_json_and_its_counts_add_up(repaired: tuple[str, Pat
     assert json.loads(json.dumps(report, allow_nan=False)) == report
     assert set(report) == {
         *("schema", "source", "length_unit", "model", "options"),
-        *("counts", "patches", "holes", "stages", "warnings"),
+        *("counts", "patches", "holes", "stages", "warnings", "welded"),
     }
     assert report["schema"] == 1
     assert report["model"]["name"] == model
@@ -112,6 +112,7 @@ def test_every_hole_is_measured_judged_and_explained(repaired: tuple[str, Path, 
         if hole["verdict"] == "skipped":
             assert hole["confidence"] is None
             assert hole["new_vertices"] == hole["new_triangles"] == 0
+            assert hole["hole_id"] is None
         else:
             assert 0 <= hole["confidence"] <= 1
             assert hole["confidence"] == pytest.approx(math.exp(-hole["expected_error"] / (0.003 * size)))

@@ -48,6 +48,12 @@ def test_every_option_of_a_job_reaches_the_method() -> None:
     )
 
 
+def test_the_weld_tolerance_of_a_job_reaches_the_method() -> None:
+    for tolerance in (0.0, 0.25, "auto"):
+        options = RepairOptions.from_dict(method_options(spec(weld_tolerance=tolerance), LIMITS.time_s))
+        assert options.weld_tolerance == tolerance
+
+
 def test_how_long_to_fit_a_network_reaches_the_method() -> None:
     method = {"method": "cnn", "model": "self", "fitting": {"steps": 30, "seconds": 45.0}, "patches": {"length": 2.0}}
     options = RepairOptions.from_dict(method_options(spec(method=method), LIMITS.time_s))

@@ -72,6 +72,20 @@ def test_what_is_not_in_the_contract_is_refused(change: dict[str, Any]) -> None:
         JobSpec.model_validate(MESH | change)
 
 
+def test_ids_of_holes_go_with_the_tolerance_that_they_were_found_with() -> None:
+    ids = {"ids": [0, 2]}
+    assert JobSpec.model_validate(MESH | {"holes": ids, "weld_tolerance": "auto"}).holes.ids == [0, 2]
+    assert JobSpec.model_validate(MESH | {"holes": {"max_diameter": 2.0}, "weld_tolerance": 0.5}).weld_tolerance == 0.5
+    with pytest.raises(ValidationError, match="drop one of the two"):
+        JobSpec.model_validate(MESH | {"holes": ids, "weld_tolerance": 0.5})
+
+
+@pytest.mark.parametrize("tolerance", [-1.0, float("inf"), float("nan"), "near", None, True])
+def test_a_weld_tolerance_is_auto_or_a_length(tolerance: Any) -> None:
+    with pytest.raises(ValidationError):
+        JobSpec.model_validate(MESH | {"weld_tolerance": tolerance})
+
+
 def test_a_whole_number_may_be_written_with_a_point() -> None:
     assert JobSpec.model_validate(MESH | {"seed": 7.0}).seed == 7
 

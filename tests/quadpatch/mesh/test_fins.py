@@ -131,7 +131,7 @@ def test_a_bubble_without_a_free_edge_is_no_fin() -> None:
 def test_a_large_scrap_is_kept() -> None:
     # A sheet of half the ball's faces that hangs on one edge.
     sheet = open_grid(20, 0.5)
-    both = joined(BALL, TriangleMesh(sheet.vertices + [0, 0, 5], sheet.triangles))
+    both = joined(BALL, TriangleMesh(sheet.vertices + np.array([0, 0, 5]), sheet.triangles))
     start, end = inner_edge_at_rim()
     joint = np.arange(len(both.vertices))
     joint[len(BALL.vertices)], joint[len(BALL.vertices) + 1] = start, end
