@@ -152,7 +152,7 @@ def _numbers(report: dict[str, Any]) -> list[int | None]:
 def _without_a_cap(path: Path, output: Path) -> Path:
     """Take the faces of a binary PLY around the lowest point away."""
     scan = read_scan(path)
-    gone = (scan.vertices[scan.triangles][:, :, 2] < -0.95).any(axis=1)
+    gone = (scan.vertices[scan.triangles][:, :, 2] < -0.98).any(axis=1)
     data = path.read_bytes()
     size = 13 + 9
     faces = np.frombuffer(data[-size * len(gone) :], np.uint8).reshape(len(gone), size)[~gone]
