@@ -1,0 +1,191 @@
+"""What is wrong with a repaired surface, judged without the method's own code.
+
+The judge is independent of `quadpatch`: files are read by trimesh, crossings are found by MeshLab (pymeshlab), and
+the rest is counted here. Vertices are joined where their coordinates are equal, since some formats repeat them. A fold
+does not depend on the direction of the triangles: it is an edge whose two triangles lie nearly on top of each other.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pymeshlab
+import trimesh
+
+from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Triangles, Vertices
+
+# Two triangles that turn by more than this at their common edge are folded over each other.
+FOLD_DEGREES = 150.0
+
+# Corners are exact to half a unit in the last place; an area vector shorter than what that does to it has no direction.
+_NOISE = 64 * float(np.finfo(np.float64).eps)
+
+# A new triangle of less area than this share of the squared diagonal is a sliver.
+_SLIVER_SHARE = 1e-12
+
+
+@dataclass(frozen=True)
+class SurfaceFaults:
+    """Faults of a repaired mesh that the mesh before did not have.
+
+    Attributes
+    ----------
+    is_kept : bool
+        The vertices and triangles of the mesh before come first, bit for bit.
+    n_new_triangles : int
+    n_boundary : int
+        Edges of one triangle, new or not.
+    n_nonmanifold : int
+        Edges of three or more different triangles, a new one among them.
+    n_doubled : int
+        New triangles on the same three corners as another one.
+    n_folds : int
+        Edges of new triangles, rim included, that turn by more than 150 degrees.
+    n_slivers : int
+        New triangles of nearly no area.
+    crossing : (n_crossing,) int64
+        New triangles that run through other surface, by position among the triangles of the mesh after.
+    """
+
+    is_kept: bool
+    n_new_triangles: int
+    n_boundary: int
+    n_nonmanifold: int
+    n_doubled: int
+    n_folds: int
+    n_slivers: int
+    crossing: IntArray
+
+    @property
+    def n_crossings(self) -> int:
+        """New triangles that run through other surface."""
+        return len(self.crossing)
+
+
+def find_faults(before: TriangleMesh, after: TriangleMesh) -> SurfaceFaults:
+    """Compare a mesh with its repair.
+
+    Parameters
+    ----------
+    before, after : TriangleMesh
+        As their files hold them, not welded.
+    """
+    is_kept = _starts_with(after.vertices, before.vertices) and _starts_with(after.triangles, before.triangles)
+    welded = _weld(after)
+    is_new = np.arange(len(welded.triangles)) >= len(before.triangles)
+    is_repeated = _repeats_another(welded.triangles)
+    is_counted = _is_proper(welded.triangles) & ~is_repeated
+    single, single_new = TriangleMesh(welded.vertices, welded.triangles[is_counted]), is_new[is_counted]
+    edge, n_edges = _edge_of_corner(single.triangles)
+    n_faces = np.bincount(edge, minlength=n_edges)
+    n_new_faces = np.bincount(edge[np.repeat(single_new, 3)], minlength=n_edges)
+    return SurfaceFaults(
+        is_kept,
+        int(is_new.sum()),
+        int((n_faces == 1).sum()),
+        int(((n_faces > 2) & (n_new_faces > 0)).sum()),
+        int((is_repeated & is_new).sum()),
+        _count_folds(single, single_new, edge),
+        int((_is_sliver(welded) & is_new).sum()),
+        np.flatnonzero(_crosses(welded) & is_new),
+    )
+
+
+def find_faults_in_files(before: Path, after: Path) -> SurfaceFaults:
+    """Compare a mesh file with its repair; both of a format that trimesh reads."""
+    return find_faults(read_as_is(before), read_as_is(after))
+
+
+def read_as_is(path: Path) -> TriangleMesh:
+    """Read a file by trimesh: vertices and triangles in the file's order, nothing joined or dropped."""
+    mesh = trimesh.load(path, process=False, force="mesh", maintain_order=True)
+    return TriangleMesh(np.asarray(mesh.vertices, np.float64), np.asarray(mesh.faces, np.int64))
+
+
+def _starts_with(rows: FloatArray | IntArray, first: FloatArray | IntArray) -> bool:
+    return len(rows) >= len(first) and rows[: len(first)].tobytes() == first.tobytes()
+
+
+def _weld(mesh: TriangleMesh) -> TriangleMesh:
+    """Join vertices of equal coordinates."""
+    # Adding 0.0 turns -0.0 into 0.0.
+    vertices, number = np.unique(mesh.vertices + 0.0, axis=0, return_inverse=True)
+    return TriangleMesh(vertices, number.ravel()[mesh.triangles])
+
+
+def _is_proper(triangles: Triangles) -> BoolArray:
+    a, b, c = triangles.T
+    return np.asarray((a != b) & (b != c) & (c != a))
+
+
+def _repeats_another(triangles: Triangles) -> BoolArray:
+    """Whether each triangle (m,) has the same three corners as an earlier one, in any order."""
+    is_first = np.zeros(len(triangles), dtype=bool)
+    is_first[np.unique(np.sort(triangles, axis=1), axis=0, return_index=True)[1]] = True
+    return ~is_first & _is_proper(triangles)
+
+
+def _edge_of_corner(triangles: Triangles) -> tuple[IntArray, int]:
+    """Find the number of the undirected edge from each corner to the next one (3 m,), and how many edges there are."""
+    ends = np.sort(np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
+    edges, edge = np.unique(ends, axis=0, return_inverse=True)
+    return edge.ravel(), len(edges)
+
+
+def _area_vectors(mesh: TriangleMesh) -> FloatArray:
+    a, b, c = (mesh.vertices[corner] for corner in mesh.triangles.T)
+    return np.asarray(np.cross(b - a, c - a))
+
+
+def _is_sliver(mesh: TriangleMesh) -> BoolArray:
+    size = np.linalg.norm(np.ptp(mesh.vertices, axis=0))
+    return np.asarray(np.linalg.norm(_area_vectors(mesh), axis=1) / 2 < _SLIVER_SHARE * size**2)
+
+
+def _count_folds(mesh: TriangleMesh, is_new: BoolArray, edge: IntArray) -> int:
+    """Count the edges of new triangles at which two triangles lie nearly on top of each other."""
+    vector = _area_vectors(mesh)
+    length = np.linalg.norm(vector, axis=1)
+    normal = vector / np.maximum(length, np.finfo(np.float64).tiny)[:, None]
+    corners = mesh.vertices[mesh.triangles]
+    longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1, initial=0)
+    has_normal = length > _NOISE * np.abs(mesh.vertices).max(initial=0) * longest
+    start = mesh.triangles.ravel()
+    folded = []
+    for one, other in _pairs(edge):
+        a, b = one // 3, other // 3
+        # Neighbours that agree about their direction pass the edge in opposite directions.
+        turn = np.where(start[one] != start[other], 1.0, -1.0) * np.einsum("ij,ij->i", normal[a], normal[b])
+        is_seen = (is_new[a] | is_new[b]) & has_normal[a] & has_normal[b]
+        folded.append(edge[one[is_seen & (turn < np.cos(np.radians(FOLD_DEGREES)))]])
+    return len(np.unique(np.concatenate([np.zeros(0, np.int64), *folded])))
+
+
+def _pairs(edge: IntArray) -> Iterator[tuple[IntArray, IntArray]]:
+    """Yield all pairs of corners that have an edge in common, as two arrays at a time."""
+    order = np.argsort(edge, kind="stable")
+    for step in range(1, len(order)):
+        is_same = edge[order[step:]] == edge[order[:-step]]
+        if not is_same.any():
+            return
+        yield order[:-step][is_same], order[step:][is_same]
+
+
+def _crosses(mesh: TriangleMesh) -> BoolArray:
+    """Whether each triangle (m,) runs through another one, as MeshLab finds it."""
+    found = np.zeros(len(mesh.triangles), dtype=bool)
+    proper = np.flatnonzero(_is_proper(mesh.triangles))
+    if not len(proper):
+        return found
+    meshes = pymeshlab.MeshSet(verbose=False)
+    meshes.add_mesh(pymeshlab.Mesh(_centred(mesh.vertices), mesh.triangles[proper].astype(np.int32)))
+    meshes.compute_selection_by_self_intersections_per_face()
+    found[proper] = meshes.current_mesh().face_selection_array().astype(bool)
+    return found
+
+
+def _centred(vertices: Vertices) -> Vertices:
+    """Bring the mesh into a box of diagonal 1 around the origin: MeshLab's tolerances are absolute."""
+    size = float(np.linalg.norm(np.ptp(vertices, axis=0)))
+    return np.asarray((vertices - vertices.mean(axis=0)) / (size or 1.0))
