@@ -1,8 +1,10 @@
 """What is wrong with a repaired surface, judged without the method's own code.
 
-The judge is independent of `quadpatch`: files are read by trimesh, crossings are found by MeshLab (pymeshlab), and
-the rest is counted here. Vertices are joined where their coordinates are equal, since some formats repeat them. A fold
-does not depend on the direction of the triangles: it is an edge whose two triangles lie nearly on top of each other.
+The judge is independent of `quadpatch`: files are read by trimesh, triangles that pass through others are found by
+MeshLab (pymeshlab), and the rest is counted here. MeshLab does not see two sheets in one plane, so triangles that lie
+on others are found by their centres. Vertices are joined where their coordinates are equal, since some formats repeat
+them. A fold does not depend on the direction of the triangles: it is an edge whose two triangles lie nearly on top of
+each other.
 """
 
 from collections.abc import Iterator
@@ -12,6 +14,7 @@ from pathlib import Path
 import numpy as np
 import pymeshlab
 import trimesh
+from scipy.spatial import cKDTree
 
 from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Triangles, Vertices
 
@@ -20,6 +23,11 @@ FOLD_DEGREES = 150.0
 
 # Corners are exact to half a unit in the last place; an area vector shorter than what that does to it has no direction.
 _NOISE = 64 * float(np.finfo(np.float64).eps)
+
+# Two triangles are in one plane up to this share of the mesh's diagonal, and a point is inside a triangle where each of
+# its barycentric coordinates is more than that: neighbours only touch.
+_SAME_PLANE = 1e-9
+_INSIDE = 1e-3
 
 # A new triangle of less area than this share of the squared diagonal is a sliver.
 _SLIVER_SHARE = 1e-12
@@ -45,7 +53,7 @@ class SurfaceFaults:
     n_slivers : int
         New triangles of nearly no area.
     crossing : (n_crossing,) int64
-        New triangles that run through other surface, by position among the triangles of the mesh after.
+        New triangles that run through other surface or lie on it, by position among the triangles of the mesh after.
     """
 
     is_kept: bool
@@ -59,7 +67,7 @@ class SurfaceFaults:
 
     @property
     def n_crossings(self) -> int:
-        """New triangles that run through other surface."""
+        """New triangles that run through other surface or lie on it."""
         return len(self.crossing)
 
 
@@ -88,7 +96,7 @@ def find_faults(before: TriangleMesh, after: TriangleMesh) -> SurfaceFaults:
         int((is_repeated & is_new).sum()),
         _count_folds(single, single_new, edge),
         int((_is_sliver(welded) & is_new).sum()),
-        np.flatnonzero(_crosses(welded) & is_new),
+        np.flatnonzero(_crosses(welded) & is_new | _lies_on_another(welded, is_new)),
     )
 
 
@@ -183,6 +191,44 @@ def _crosses(mesh: TriangleMesh) -> BoolArray:
     meshes.compute_selection_by_self_intersections_per_face()
     found[proper] = meshes.current_mesh().face_selection_array().astype(bool)
     return found
+
+
+def _lies_on_another(mesh: TriangleMesh, is_new: BoolArray) -> BoolArray:
+    """Whether each triangle (m,) is new and lies on one that it has no edge in common with, or that one on it."""
+    found = np.zeros(len(mesh.triangles), dtype=bool)
+    proper = np.flatnonzero(_is_proper(mesh.triangles))
+    if not is_new[proper].any():
+        return found
+    centres = mesh.vertices[mesh.triangles[proper]].mean(axis=1)
+    # Triangles of one size at a time, so that a few large ones do not make candidates of all.
+    reach = np.linalg.norm(mesh.vertices[mesh.triangles[proper]] - centres[:, None], axis=2).max(axis=1, initial=0)
+    level = np.frexp(reach)[1]
+    points = cKDTree(centres)
+    for step in np.unique(level):
+        of_level = proper[level == step]
+        near = points.query_ball_point(centres[level == step], np.ldexp(1.0, int(step)))
+        upper = np.repeat(of_level, [len(those) for those in near])
+        lower = proper[np.concatenate([np.array(those, np.int64) for those in near])]
+        is_asked = (is_new[lower] | is_new[upper]) & (lower != upper)
+        lower, upper = lower[is_asked], upper[is_asked]
+        lies = _has_on_it(mesh, upper, lower)
+        found[lower[lies]] = found[upper[lies]] = True
+    return found & is_new
+
+
+def _has_on_it(mesh: TriangleMesh, upper: IntArray, lower: IntArray) -> BoolArray:
+    """Whether each triangle (k,) has the centre of another one (k,) on it; those with an edge in common only fold."""
+    a, b, c = (mesh.vertices[corner] for corner in mesh.triangles[upper].T)
+    centre = mesh.vertices[mesh.triangles[lower]].mean(axis=1)
+    normal = np.cross(b - a, c - a)
+    square = np.maximum(np.einsum("ij,ij->i", normal, normal), np.finfo(np.float64).tiny)
+    by_b = np.einsum("ij,ij->i", np.cross(centre - a, c - a), normal) / square
+    by_c = np.einsum("ij,ij->i", np.cross(b - a, centre - a), normal) / square
+    height = np.abs(np.einsum("ij,ij->i", centre - a, normal)) / np.sqrt(square)
+    size = float(np.linalg.norm(np.ptp(mesh.vertices, axis=0)))
+    n_common = (mesh.triangles[upper][:, :, None] == mesh.triangles[lower][:, None]).sum(axis=(1, 2))
+    is_inside = np.minimum(np.minimum(by_b, by_c), 1 - by_b - by_c) > _INSIDE
+    return np.asarray(is_inside & (height < _SAME_PLANE * size) & (n_common < 2))
 
 
 def _centred(vertices: Vertices) -> Vertices:

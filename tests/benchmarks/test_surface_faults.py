@@ -5,24 +5,13 @@ import pytest
 
 from benchmarks.surface_faults import find_faults, find_faults_in_files
 from quadpatch.repair import repair_file
-from quadpatch.types import TriangleMesh, Triangles, Vertices
+from quadpatch.types import TriangleMesh
+from tests.quadpatch.faulty_shapes import grown
 from tests.quadpatch.shapes import joined, open_grid, punched, sphere, write_ply
 
 SHEET = open_grid(8)
 # Over the middle of the sheet, which lies in z = 0 with one unit between vertices.
 MIDDLE = 27
-
-
-def grown(
-    mesh: TriangleMesh, vertices: Vertices | list[list[float]], triangles: Triangles | list[list[int]]
-) -> TriangleMesh:
-    """Append vertices and triangles; negative corners count the new vertices from -1."""
-    rows = np.array(triangles, np.int64)
-    new = np.array(vertices, np.float64).reshape(-1, 3)
-    return TriangleMesh(
-        np.concatenate([mesh.vertices, new]),
-        np.concatenate([mesh.triangles, np.where(rows < 0, len(mesh.vertices) - 1 - rows, rows)]),
-    )
 
 
 def test_a_sound_repair_has_no_fault(tmp_path: Path) -> None:
@@ -85,6 +74,14 @@ def test_a_triangle_through_the_sheet_crosses_it_at_any_scale(scale: float, offs
     assert faults.crossing.tolist() == [len(moved.triangles)]
     above = find_faults(moved, grown(moved, blade + scale * np.array([0, 0, 1.5]), [[-1, -2, -3]]))
     assert above.n_crossings == 0
+
+
+@pytest.mark.parametrize("size", [0.2, 1.0, 5.0])
+@pytest.mark.parametrize("height", [0.0, 1e-12, 1e-3])
+def test_a_triangle_that_lies_on_the_sheet_crosses_it(height: float, size: float) -> None:
+    corners = SHEET.vertices[MIDDLE] + [0.11, 0.13, height] + size * np.array([[0, 0, 0], [1, 0, 0], [0.3, 0.9, 0]])
+    for order in ([[-1, -2, -3]], [[-1, -3, -2]]):
+        assert find_faults(SHEET, grown(SHEET, corners, order)).n_crossings == (height < 1e-6)
 
 
 def test_doubled_triangles_and_edges_of_three_are_counted_once_each() -> None:
