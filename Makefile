@@ -6,7 +6,7 @@ READY  := $(VENV)/.ready
 # Twice quiet: errors only.
 PIP    := $(BIN)/python -m pip --quiet --quiet --disable-pip-version-check
 
-.PHONY: demo test test-postgres faults check serve openapi bench bench-quality clean
+.PHONY: demo test test-postgres faults fuzz check serve openapi bench bench-quality bench-scans clean
 
 $(READY): pyproject.toml constraints.txt
 	@echo "setting up $(VENV); this takes a few minutes the first time ..." >&2
@@ -34,6 +34,9 @@ test-postgres: $(READY)   ## the tests of service and workers on PostgreSQL and 
 faults: $(READY)          ## kill, cut off and starve a cluster of real processes: make faults ARGS="--seed 7 --backend sqlite-local"
 	@$(BIN)/python -m tests.faults $(ARGS)
 
+fuzz: $(READY)            ## repair damaged meshes and judge what comes out: make fuzz ARGS="--count 300 --seed 1 --keep folder"
+	@OMP_NUM_THREADS=1 $(BIN)/python -m tests.fuzz $(ARGS)
+
 check: $(READY)           ## ruff, import rules, types
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
@@ -48,6 +51,9 @@ bench: $(READY)           ## speed of the method's stages
 
 bench-quality: $(READY)   ## repair quality beside the peers: make bench-quality BENCH=folder ARGS="--radius all"
 	@$(BIN)/python -m benchmarks.quality $(BENCH) $(ARGS)
+
+bench-scans: $(READY)     ## raw scans, judged hole by hole: make bench-scans SCANS=folder ARGS="--model smooth"
+	@$(BIN)/python -m benchmarks.scans $(SCANS) $(ARGS)
 
 clean:
 	rm -rf $(VENV) demo var build dist *.egg-info

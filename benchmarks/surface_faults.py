@@ -2,9 +2,9 @@
 
 The judge is independent of `quadpatch`: files are read by trimesh, triangles that pass through others are found by
 MeshLab (pymeshlab), and the rest is counted here. MeshLab does not see two sheets in one plane, so triangles that lie
-on others are found by their centres. Vertices are joined where their coordinates are equal, since some formats repeat
-them. A fold does not depend on the direction of the triangles: it is an edge whose two triangles lie nearly on top of
-each other.
+on others are found by their centres. Vertices are joined where their coordinates are equal but for rounding, since some
+formats repeat them. A fold does not depend on the direction of the triangles: it is an edge whose two triangles lie
+nearly on top of each other.
 """
 
 from collections.abc import Iterator
@@ -14,6 +14,8 @@ from pathlib import Path
 import numpy as np
 import pymeshlab
 import trimesh
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Triangles, Vertices
@@ -23,6 +25,9 @@ FOLD_DEGREES = 150.0
 
 # Corners are exact to half a unit in the last place; an area vector shorter than what that does to it has no direction.
 _NOISE = 64 * float(np.finfo(np.float64).eps)
+
+# Vertices so many units in the last place apart, of the largest coordinate, are one.
+_SAME_PLACE = 4
 
 # Two triangles are in one plane up to this share of the mesh's diagonal, and a point is inside a triangle where each of
 # its barycentric coordinates is more than that: neighbours only touch.
@@ -116,10 +121,15 @@ def _starts_with(rows: FloatArray | IntArray, first: FloatArray | IntArray) -> b
 
 
 def _weld(mesh: TriangleMesh) -> TriangleMesh:
-    """Join vertices of equal coordinates."""
-    # Adding 0.0 turns -0.0 into 0.0.
-    vertices, number = np.unique(mesh.vertices + 0.0, axis=0, return_inverse=True)
-    return TriangleMesh(vertices, number.ravel()[mesh.triangles])
+    """Join vertices that are a few units in the last place apart, of the precision that the mesh's numbers show."""
+    vertices, number = np.unique(mesh.vertices, axis=0, return_inverse=True)
+    is_single = np.array_equal(vertices, vertices.astype(np.float32))
+    unit = float(np.finfo(np.float32 if is_single else np.float64).eps) * np.abs(vertices).max(initial=0)
+    pairs = cKDTree(vertices).query_pairs(_SAME_PLACE * unit, output_type="ndarray")
+    graph = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(len(vertices),) * 2)
+    label = connected_components(graph, directed=False)[1]
+    _, first, joined = np.unique(label, return_index=True, return_inverse=True)
+    return TriangleMesh(vertices[first], joined[number.ravel()][mesh.triangles].astype(np.int64))
 
 
 def _is_proper(triangles: Triangles) -> BoolArray:

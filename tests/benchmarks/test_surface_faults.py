@@ -65,6 +65,22 @@ def test_a_fold_is_found_on_files_that_repeat_their_vertices() -> None:
     assert find_faults(flat, after).n_folds == 1
 
 
+@pytest.mark.parametrize("number", ["f4", "f8"])
+def test_vertices_that_differ_by_rounding_are_one(number: str, tmp_path: Path) -> None:
+    """Beside a seam that is torn in the last bit, a new triangle crosses nothing."""
+    precision = np.float32 if number == "f4" else np.float64
+    vertices = (SHEET.vertices + 10.1).astype(precision)
+    own = np.nextafter(vertices[:2], precision(100))
+    torn = grown(TriangleMesh(vertices.astype(np.float64), SHEET.triangles), own.astype(np.float64), [])
+    first = torn.triangles[0].tolist()
+    torn.triangles[0] = [len(vertices) + corner if corner < 2 else corner for corner in first]
+    after = grown(torn, torn.vertices[:1] + [0.5, -0.8, 0.1], [[1, 0, -1]])
+    files = write_ply(tmp_path / "in.ply", torn, number), write_ply(tmp_path / "out.ply", after, number)
+    faults = find_faults_in_files(*files)
+    assert (faults.is_kept, faults.n_crossings, faults.n_folds, faults.n_nonmanifold) == (True, 0, 0, 0)
+    assert faults.n_boundary == 4 * 7 + 1
+
+
 @pytest.mark.parametrize("offset", [0.0, 1e6])
 @pytest.mark.parametrize("scale", [1e-6, 1.0, 1e6])
 def test_a_triangle_through_the_sheet_crosses_it_at_any_scale(scale: float, offset: float) -> None:
