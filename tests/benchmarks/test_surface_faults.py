@@ -74,7 +74,7 @@ def test_vertices_that_differ_by_rounding_are_one(number: str, tmp_path: Path) -
     torn = grown(TriangleMesh(vertices.astype(np.float64), SHEET.triangles), own.astype(np.float64), [])
     first = torn.triangles[0].tolist()
     torn.triangles[0] = [len(vertices) + corner if corner < 2 else corner for corner in first]
-    after = grown(torn, torn.vertices[:1] + [0.5, -0.8, 0.1], [[1, 0, -1]])
+    after = grown(torn, [torn.vertices[0] + np.array([0.5, -0.8, 0.1])], [[1, 0, -1]])
     files = write_ply(tmp_path / "in.ply", torn, number), write_ply(tmp_path / "out.ply", after, number)
     faults = find_faults_in_files(*files)
     assert (faults.is_kept, faults.n_crossings, faults.n_folds, faults.n_nonmanifold) == (True, 0, 0, 0)
