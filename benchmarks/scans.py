@@ -11,11 +11,12 @@ import json
 import os
 import subprocess
 import sys
+import time
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 from rich.console import Console
 
@@ -29,6 +30,7 @@ PATTERN = "*photogrammetry*"
 _SUFFIXES = (".ply", ".stl", ".obj", ".off")
 _OPEN = ("skipped", "refused")
 _COLUMNS = ("scan", "model", "loops", "filled", "by geometry", "folds", "crossings", "CPU s", "peak MB")
+_POLL_S = 0.02
 # Tables are wide; into a file they go as they are.
 _WIDTH = 160
 
@@ -101,14 +103,12 @@ def measure(run: Run) -> dict[str, Any]:
     run.repaired.parent.mkdir(parents=True, exist_ok=True)
     command = [sys.executable, "-m", "quadpatch", "fill", str(run.scan), "-o", str(run.repaired)]
     command += ["--report", str(run.report), "--model", run.model, "--quiet"]
-    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as process:
-        said = process.stderr.read() if process.stderr else ""
-        _, status, usage = os.wait4(process.pid, 0)
-        process.returncode = os.waitstatus_to_exitcode(status)
-    facts: dict[str, Any] = {"scan": run.scan.stem, "model": run.model, "error": ""}
-    facts |= {"cpu_s": usage.ru_utime + usage.ru_stime, "peak_mb": usage.ru_maxrss / 1024}
-    if process.returncode:
-        return {**facts, "error": said.strip() or f"exit code {process.returncode}"}
+    said = run.report.with_suffix(".err")
+    with said.open("w") as errors:
+        exit_code, cpu_s, peak_mb = _run(command, errors)
+    facts: dict[str, Any] = {"scan": run.scan.stem, "model": run.model, "error": "", "cpu_s": cpu_s, "peak_mb": peak_mb}
+    if exit_code:
+        return {**facts, "error": said.read_text().strip() or f"exit code {exit_code}"}
     report = json.loads(run.report.read_text())
     faults = find_faults_in_files(run.scan, run.repaired)
     facts |= {"counts": report["counts"], "holes": report["holes"], "warnings": report["warnings"]}
@@ -123,6 +123,20 @@ def measure(run: Run) -> dict[str, Any]:
     named = ("folds", "crossings")
     facts["named"] = {name: int(sum(hole["measures"].get(name, 0) for hole in report["holes"])) for name in named}
     return facts
+
+
+def _run(command: Sequence[str], errors: IO[str]) -> tuple[int, float, float]:
+    """Run a process to its end; its exit code, CPU seconds, and peak of resident memory in MB."""
+    process, peak_kb, pid = subprocess.Popen(command, stderr=errors), 0, 0
+    # The peak that the kernel hands over at the end counts this process too, which it was forked from.
+    status_file = Path("/proc", str(process.pid), "status")
+    while not pid:
+        peaks = [line.split()[1] for line in status_file.read_text().splitlines() if line.startswith("VmHWM")]
+        peak_kb = max([peak_kb, *map(int, peaks)])
+        time.sleep(_POLL_S)
+        pid, status, usage = os.wait4(process.pid, os.WNOHANG)
+    process.returncode = os.waitstatus_to_exitcode(status)
+    return process.returncode, usage.ru_utime + usage.ru_stime, peak_kb / 1024
 
 
 def write_loops(run: Run, holes: Sequence[dict[str, Any]]) -> Path:
