@@ -85,7 +85,7 @@ def repair_file(
     with stages.stage("read"):
         scan, welded = _read(source, options.weld_tolerance)
     by_recipe = inpaint_as_paper if options.recipe == "paper" else inpaint
-    repair = by_recipe(welded.mesh, inpainter, options, stages, learn=model == SELF)
+    repair = by_recipe(welded.mesh, inpainter, options, stages, learn=model == SELF, obstacles=welded.ignored_triangles)
     with stages.stage("write"):
         write_scan(output, scan, _fill(scan, welded, repair))
     warnings = [*repair.warnings, *describe_redundancy(welded.counts), *_unit_warnings(scan, output)]

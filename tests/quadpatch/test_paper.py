@@ -109,13 +109,6 @@ def test_neither_confidence_nor_expected_error_is_made_up(repaired: Repair) -> N
         assert (result.confidence, result.expected_error) == (None, None)
     measures = {"coverage", "spread", "departure", "rim_misfit", "folds", "crossings"}
     assert repaired.results[1].measures.keys() == measures
-        "coverage",
-        "spread",
-        "departure",
-        "rim_misfit",
-        "folds",
-        "crossings",
-    }
     assert repaired.results[1].n_new_vertices > 0
     assert repaired.results[1].n_new_triangles > 0
 
