@@ -15,8 +15,10 @@ from client.exits import ExitCode, exit_code_of, exit_codes_text
 from client.options import (
     DEFAULT_URL,
     AllButLargestOption,
+    CapOption,
     HoleChoice,
     HoleOption,
+    IncludeBordersOption,
     JsonOption,
     KeyOption,
     MaxDiameterOption,
@@ -24,6 +26,7 @@ from client.options import (
     MethodChoice,
     MethodName,
     QuietOption,
+    RuleOption,
     UrlOption,
     WeldToleranceOption,
     make_spec,
@@ -73,6 +76,9 @@ def repair(  # noqa: PLR0913 - one parameter per option of the command line
     max_perimeter: MaxPerimeterOption = None,
     all_but_largest: AllButLargestOption = False,
     hole: HoleOption = None,
+    include_borders: IncludeBordersOption = False,
+    cap: CapOption = None,
+    rule: RuleOption = None,
     weld_tolerance: WeldToleranceOption = None,
     patch_length: Annotated[
         float | None,
@@ -122,7 +128,7 @@ def repair(  # noqa: PLR0913 - one parameter per option of the command line
         task = Task(
             source=mesh,
             output=output,
-            holes=HoleChoice(max_diameter, max_perimeter, all_but_largest, hole),
+            holes=HoleChoice(max_diameter, max_perimeter, all_but_largest, hole, include_borders, cap, rule),
             method=MethodChoice(method, model, patch_length, resolution, overlap, recipe, fit_steps, fit_seconds),
             rest={
                 "seed": seed,
@@ -146,6 +152,9 @@ def holes(  # noqa: PLR0913 - one parameter per option of the command line
     max_diameter: MaxDiameterOption = None,
     max_perimeter: MaxPerimeterOption = None,
     all_but_largest: AllButLargestOption = False,
+    include_borders: IncludeBordersOption = False,
+    cap: CapOption = None,
+    rule: RuleOption = None,
     url: UrlOption = DEFAULT_URL,
     api_key: KeyOption = None,
     as_json: JsonOption = False,
@@ -153,7 +162,7 @@ def holes(  # noqa: PLR0913 - one parameter per option of the command line
 ) -> None:
     """List the holes of a mesh file, and which of them would be filled."""
     screen = Screen(quiet)
-    choice = HoleChoice(max_diameter, max_perimeter, all_but_largest)
+    choice = HoleChoice(max_diameter, max_perimeter, all_but_largest, None, include_borders, cap, rule)
     with _connected(screen, url, api_key) as client:
         with screen.transfer("uploading") as progress:
             uploaded = client.upload(mesh, progress)

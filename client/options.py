@@ -7,6 +7,7 @@ import typer
 from pydantic import ValidationError
 
 from client.errors import UsageError
+from client.rule_text import read_rule
 from jobkit.schema import SELF, JobSpec, Recipe
 
 DEFAULT_URL = "http://127.0.0.1:8000"
@@ -48,6 +49,24 @@ WeldToleranceOption = Annotated[
         rich_help_panel="Which holes",
     ),
 ]
+IncludeBordersOption = Annotated[
+    bool,
+    typer.Option("--include-borders", help="Treat outer borders of pieces like holes.", rich_help_panel="Which holes"),
+]
+CapOption = Annotated[
+    Literal["flat"] | None,
+    typer.Option(help="Close open ends, as of tubes, by a plane patch.", rich_help_panel="Which holes"),
+]
+RuleOption = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--rule",
+        metavar="[CONDITION,...:]ACTION",
+        help="What to do with some holes: max_diameter=5:smooth, kind=open_end:flat, id=3,id=4:skip. Repeat for more; "
+        "the first that fits counts.",
+        rich_help_panel="Which holes",
+    ),
+]
 
 
 @dataclass(frozen=True)
@@ -58,6 +77,9 @@ class HoleChoice:
     max_perimeter: float | None = None
     all_but_largest: bool = False
     ids: list[int] | None = None
+    include_borders: bool = False
+    cap: Literal["flat"] | None = None
+    rules: list[str] | None = None
 
 
 @dataclass(frozen=True)
@@ -82,7 +104,8 @@ def make_spec(mesh_id: str, holes: HoleChoice, method: MethodChoice, **rest: Any
     UsageError
         If an option is out of its range, or does not go with the method.
     """
-    values = {"mesh_id": mesh_id, "holes": _given(vars(holes)), "method": _method(method), **_given(rest)}
+    chosen = _given({**vars(holes), "rules": [read_rule(text) for text in holes.rules or ()]})
+    values = {"mesh_id": mesh_id, "holes": chosen, "method": _method(method), **_given(rest)}
     try:
         return JobSpec.model_validate(values)
     except ValidationError as error:

@@ -15,18 +15,21 @@ def print_holes(console: Console, facts: MeshFacts, plan: Plan) -> None:
     table = _table(
         f"{facts.vertices:,} vertices, {facts.triangles:,} triangles, {len(plan.holes):,} holes; lengths in {unit}"
     )
-    for name in ("id", "diameter", "perimeter", "edges", "area", "planarity"):
+    for name in ("id", "diameter", "perimeter", "edges", "area"):
         table.add_column(name, justify="right")
+    for name in ("kind", "centre"):
+        table.add_column(name)
     table.add_column("would be filled")
     for hole in plan.holes:
-        verdict = "yes" if hole.selected else f"no: {(hole.reason or 'by rule').replace('_', ' ')}"
+        verdict = f"yes: {hole.action}" if hole.selected else f"no: {(hole.reason or 'by rule').replace('_', ' ')}"
         numbers = (hole.diameter, hole.perimeter)
         table.add_row(
             str(hole.id),
             *(f"{number:.4g}" for number in numbers),
             str(hole.edges),
             f"{hole.area:.4g}",
-            f"{hole.planarity:.3f}",
+            hole.kind,
+            " ".join(f"{coordinate:.4g}" for coordinate in hole.centre or ()),
             verdict,
         )
     console.print(table)

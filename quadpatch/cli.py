@@ -5,6 +5,7 @@ option is at fault (`code: message` on standard error), 2 wrong usage.
 """
 
 import json
+import math
 import sys
 from collections import Counter
 from collections.abc import Iterator
@@ -21,11 +22,13 @@ from rich.text import Text
 from quadpatch import types
 from quadpatch.errors import OptionError, QuadpatchError
 from quadpatch.files import check_outputs, write_whole
-from quadpatch.options import DictionaryOptions, HoleOptions, NetworkOptions, PatchOptions, Recipe, RepairOptions
+from quadpatch.options import Cap, DictionaryOptions, HoleOptions, NetworkOptions, PatchOptions, Recipe, RepairOptions
+from quadpatch.rule_text import read_rule
 
 app = typer.Typer(help="Repair holes in 3D scans.", no_args_is_help=True, add_completion=False)
 _errors = Console(stderr=True)
 FITTING = NetworkOptions()
+MAX_TABLE_WIDTH = 100
 
 Source = Annotated[Path, typer.Argument(metavar="IN", help="Mesh: PLY, STL, OBJ, OFF, GLB/glTF or 3MF.")]
 
@@ -58,6 +61,18 @@ def fill(  # noqa: PLR0913, PLR0917  one argument per flag
     max_perimeter: Annotated[float | None, typer.Option(help="Leave longer rims open (mesh units).")] = None,
     all_but_largest: Annotated[bool, typer.Option(help="Leave the longest loop open.")] = False,
     hole: Annotated[list[int] | None, typer.Option(help="Fill just this hole; repeat for more.")] = None,
+    include_borders: Annotated[
+        bool, typer.Option("--include-borders", help="Treat outer borders of pieces like holes.")
+    ] = False,
+    cap: Annotated[Cap | None, typer.Option(help="Close open ends, as of tubes, by a plane patch.")] = None,
+    rule: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="[CONDITION,...:]ACTION",
+            help="What to do with some holes: max_diameter=5:smooth, kind=open_end:flat, id=3,id=4:skip. "
+            "Repeat for more; the first that fits counts.",
+        ),
+    ] = None,
     patch_length: Annotated[float | None, typer.Option(help="Side of a patch (mesh units).")] = None,
     resolution: Annotated[int | None, typer.Option(help="Bins along one side of a patch.")] = None,
     overlap: Annotated[int | None, typer.Option(help="k: every quad carries 1 + 4 k patches.")] = None,
@@ -76,7 +91,15 @@ def fill(  # noqa: PLR0913, PLR0917  one argument per flag
 
     with _clear_errors(), _progress(quiet) as progress:
         options = RepairOptions(
-            HoleOptions(max_diameter, max_perimeter, all_but_largest, tuple(hole) if hole else None),
+            HoleOptions(
+                max_diameter,
+                max_perimeter,
+                all_but_largest,
+                tuple(hole) if hole else None,
+                include_borders,
+                cap,
+                tuple(read_rule(text) for text in rule or ()),
+            ),
             PatchOptions(patch_length, resolution, overlap),
             seed,
             recipe,
@@ -110,16 +133,24 @@ def holes(
         return
     unit = facts["length_unit"]
     table = Table(title=Text(f"{source.name}: {_holes(len(facts['holes']))}, lengths in {unit}"))
-    for name in ("id", "edges", "perimeter", "diameter", "area", "planarity"):
+    for name in ("id", "edges", "perimeter", "diameter"):
         table.add_column(name, justify="right")
-    table.add_column("by default")
+    for name in ("kind", "centre", "by default"):
+        table.add_column(name, overflow="fold")
     for row in facts["holes"]:
-        numbers = [f"{row[name]:.5g}" for name in ("perimeter", "diameter", "area")]
+        numbers = [f"{row[name]:.5g}" for name in ("perimeter", "diameter")]
         fate = "fill" if row["chosen"] else f"leave open: {row['reason']}"
-        table.add_row(str(row["id"]), str(row["edges"]), *numbers, f"{row['planarity']:.3f}", fate)
-    Console().print(table)
+        table.add_row(str(row["id"]), str(row["edges"]), *numbers, row["kind"], _centre(row), fate)
+    console = Console()
+    console.print(table, width=min(console.width, MAX_TABLE_WIDTH))
     for warning in facts["warnings"]:
         _errors.print(Text(f"Warning: {warning}"))
+
+
+def _centre(row: dict[str, Any]) -> str:
+    """Write the centre of a hole to a thousandth of its diameter."""
+    digits = 3 - math.floor(math.log10(row["diameter"])) if row["diameter"] > 0 else 3
+    return " ".join(f"{round(coordinate, digits) + 0.0:.7g}" for coordinate in row["centre"])
 
 
 def _tolerance(word: str) -> float | Literal["auto"]:

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any, Literal, get_args
 
 from quadpatch.errors import OptionError
@@ -19,36 +20,118 @@ _NESTED = ("holes", "patches", "dictionary", "network")
 # How a model's patches become surface: `default` is this project's own way, `paper` that of the paper, step by step.
 Recipe = Literal["default", "paper"]
 
+# What a boundary loop is (`quadpatch.mesh.hole_kinds`).
+HoleKind = Literal["hole", "slit", "open_end", "border"]
+
+# How a hole is closed: by the model of the repair, by geometry alone, or by a plane patch.
+HoleAction = Literal["model", "smooth", "flat"]
+RuleAction = Literal["skip", "model", "smooth", "flat"]
+Cap = Literal["flat"]
+
+
+@dataclass(frozen=True)
+class HoleRule:
+    """What to do with the holes that meet all of some conditions; one without conditions is about every hole.
+
+    A rule that names neither ids nor a kind passes by the borders and open ends that no other option asks for.
+
+    Attributes
+    ----------
+    action : str
+        `skip` leaves them open; `model`, `smooth` and `flat` say how they are closed.
+    ids : tuple of int, optional
+    kind : str, optional
+        `hole`, `slit`, `open_end` or `border`.
+    min_diameter, max_diameter, max_perimeter : float, optional
+        In mesh units; a hole of just that size meets the condition.
+    """
+
+    action: RuleAction
+    ids: tuple[int, ...] | None = None
+    kind: HoleKind | None = None
+    min_diameter: float | None = None
+    max_diameter: float | None = None
+    max_perimeter: float | None = None
+
+    def __post_init__(self) -> None:
+        _check_choice("holes.rules.action", self.action, get_args(RuleAction))
+        if self.kind is not None:
+            _check_choice("holes.rules.kind", self.kind, get_args(HoleKind))
+        for name in ("min_diameter", "max_diameter", "max_perimeter"):
+            _check_length(f"holes.rules.{name}", getattr(self, name))
+
+    @cached_property
+    def id_set(self) -> frozenset[int] | None:
+        """The ids, for look-ups; None where it names none."""
+        return None if self.ids is None else frozenset(self.ids)
+
+    @property
+    def limits_size(self) -> bool:
+        """Whether it says which sizes it is about, by a maximum or by ids: then no automatic limit holds beside it."""
+        return self.ids is not None or self.max_diameter is not None or self.max_perimeter is not None
+
 
 @dataclass(frozen=True)
 class HoleOptions:
-    """Which holes to fill.
+    """Which holes to fill, and how.
 
-    By default every one but outer borders of pieces, and those wider than a quarter of the bounding box's diagonal.
+    By default every hole and slit is filled, outer borders of pieces and open ends stay open, and so do holes wider
+    than a quarter of the bounding box's diagonal. What is given here adds up: ids together with max_diameter means
+    those of the ids that are no wider.
 
     Attributes
     ----------
     max_diameter, max_perimeter : float, optional
-        In mesh units.
+        In mesh units. Wider or longer ones stay open, whatever else asks for them.
     all_but_largest : bool
         Leave the loop with the longest perimeter open.
     ids : tuple of int, optional
-        Just these.
+        Just these, borders and open ends among them.
+    include_borders : bool
+        Treat outer borders of pieces like holes.
+    cap : str, optional
+        `flat`: close open ends by a plane patch.
+    rules : tuple of HoleRule
+        The first one whose conditions a hole meets says what is done with it.
     """
 
     max_diameter: float | None = None
     max_perimeter: float | None = None
     all_but_largest: bool = False
     ids: tuple[int, ...] | None = None
+    include_borders: bool = False
+    cap: Cap | None = None
+    rules: tuple[HoleRule, ...] = ()
 
     def __post_init__(self) -> None:
         _check_length("holes.max_diameter", self.max_diameter)
         _check_length("holes.max_perimeter", self.max_perimeter)
+        if self.cap is not None:
+            _check_choice("holes.cap", self.cap, get_args(Cap))
+
+    @classmethod
+    def from_dict(cls, values: Mapping[str, Any]) -> "HoleOptions":
+        """Build from plain values; an unknown name raises TypeError."""
+        rules = tuple(HoleRule(**_with_ids(rule)) for rule in values.get("rules") or ())
+        return cls(**{**_with_ids(values), "rules": rules})
+
+    @cached_property
+    def id_set(self) -> frozenset[int] | None:
+        """The ids, for look-ups; None where none were given."""
+        return None if self.ids is None else frozenset(self.ids)
 
     @property
     def is_automatic(self) -> bool:
-        """Whether the user gave no rule at all."""
-        return self == HoleOptions()
+        """Whether sizes are left to the automatic rule: the user chose none, and no loops."""
+        given = (self.max_diameter, self.max_perimeter, self.ids)
+        return not self.all_but_largest and all(value is None for value in given)
+
+
+def _with_ids(values: Mapping[str, Any]) -> dict[str, Any]:
+    """Copy plain values, with their list of ids as a tuple."""
+    copied = dict(values)
+    ids = copied.get("ids")
+    return {**copied, "ids": None if ids is None else tuple(int(i) for i in ids)}
 
 
 @dataclass(frozen=True)
@@ -157,14 +240,12 @@ class RepairOptions:
     def from_dict(cls, values: Mapping[str, Any]) -> "RepairOptions":
         """Build from nested plain values; an unknown name raises OptionError."""
         try:
-            holes = dict(values.get("holes") or {})
-            if holes.get("ids") is not None:
-                holes["ids"] = tuple(int(i) for i in holes["ids"])
+            holes = HoleOptions.from_dict(dict(values.get("holes") or {}))
             patches = dict(values.get("patches") or {})
             dictionary = DictionaryOptions(**(values.get("dictionary") or {}))
             network = NetworkOptions(**(values.get("network") or {}))
             rest = {name: value for name, value in values.items() if name not in _NESTED}
-            return cls(HoleOptions(**holes), PatchOptions(**patches), dictionary=dictionary, network=network, **rest)
+            return cls(holes, PatchOptions(**patches), dictionary=dictionary, network=network, **rest)
         except (TypeError, ValueError) as error:
             raise OptionError(f"options don't fit: {error}") from error
 
@@ -179,6 +260,11 @@ def check_weld_tolerance(value: object) -> None:
 def _check_length(name: str, value: float | None) -> None:
     if value is not None and not (value > 0 and math.isfinite(value)):
         raise OptionError(f"{name} must be finite and greater than 0; it is {value}")
+
+
+def _check_choice(name: str, value: str, choices: tuple[str, ...]) -> None:
+    if value not in choices:
+        raise OptionError(f"{name} must be one of {', '.join(choices)}; it is {value!r}")
 
 
 def _check_range(name: str, value: int | None, limits: tuple[int, int]) -> None:

@@ -17,7 +17,7 @@ from quadpatch.filling.fill import ClosedMesh, close_holes
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.mesh.averages import mean_by
 from quadpatch.mesh.distance import distance_to_mesh
-from quadpatch.mesh.holes import loop_diameter
+from quadpatch.mesh.loop_diameter import loop_diameter
 from quadpatch.punching import Punched, Spacing, punch
 from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Vertices
 

@@ -112,6 +112,7 @@ def inspect_file(source: Path, weld_tolerance: Tolerance = "auto") -> dict[str, 
             {
                 **describe_hole(hole),
                 "chosen": hole.id not in selection.skipped,
+                "action": selection.actions.get(hole.id),
                 "reason": selection.skipped.get(hole.id, (None, None))[1],
             }
             for hole in holes

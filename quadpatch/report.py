@@ -33,7 +33,7 @@ def describe_mesh(scan: Scan, mesh: TriangleMesh) -> dict[str, Any]:
 
 
 def describe_hole(hole: Hole) -> dict[str, Any]:
-    """Measures of a hole, JSON-ready."""
+    """Measures and place of a hole, JSON-ready."""
     return {
         "id": hole.id,
         "edges": hole.n_edges,
@@ -43,6 +43,10 @@ def describe_hole(hole: Hole) -> dict[str, Any]:
         "planarity": hole.planarity,
         "is_manifold": hole.is_manifold,
         "is_border": hole.is_border,
+        "kind": hole.kind,
+        "centre": list(hole.centre),
+        "normal": list(hole.normal),
+        "bounding_box": {"min": list(hole.low), "max": list(hole.high)},
     }
 
 

@@ -7,7 +7,7 @@ from pydantic import Field
 from jobkit.schema.base import JobId, MeshId, Moment, Response, Sha256
 from jobkit.schema.meshes import Hole
 from jobkit.schema.models import ResolvedModel
-from jobkit.schema.spec import JobSpec, Limits, OutputFormat
+from jobkit.schema.spec import HoleAction, JobSpec, Limits, OutputFormat
 from jobkit.schema.states import JobState
 
 STAGES = (
@@ -155,6 +155,9 @@ class PlannedHole(Hole):
 
     selected: bool = Field(description="Whether the job would fill it.")
     reason: str | None = Field(default=None, description="Why it would stay open.", examples=["too_wide"])
+    action: HoleAction | None = Field(
+        default=None, description="How it would be closed; null: it stays open.", examples=["model"]
+    )
 
 
 class Plan(Response):

@@ -1,14 +1,21 @@
 """Meshes and their holes as clients see them. Lengths are in mesh units; `unit` names them where the file does."""
 
-from typing import Annotated
+from typing import Annotated, Any
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from jobkit.schema.base import MeshId, Moment, Response
-from jobkit.schema.spec import Format
+from jobkit.schema.spec import Format, HoleKind
 from jobkit.schema.states import MeshState
 
 Point = Annotated[list[float], Field(min_length=3, max_length=3)]
+
+
+class BoundingBox(Response):
+    """Corners of a box along the axes, in mesh units."""
+
+    min: Point = Field(description="Smallest coordinates.", examples=[[-1.0, -1.0, 0.0]])
+    max: Point = Field(description="Largest coordinates.", examples=[[1.0, 1.0, 2.0]])
 
 
 class Hole(Response):
@@ -24,13 +31,29 @@ class Hole(Response):
     is_border: bool = Field(
         default=False, description="True for what looks like the outer border of a piece of the scan, not a hole in it."
     )
+    kind: HoleKind = Field(
+        default="hole",
+        description="`hole`; `slit`, whose sides lie close together along its length; `open_end`, a planar rim that "
+        "ends the object, such as the end of a tube; `border`, the outer border of a piece.",
+        examples=["hole"],
+    )
+    centre: Point | None = Field(
+        default=None,
+        description="Mean of the rim, in mesh units; null in analyses by versions that did not say.",
+        examples=[[12.5, -3.0, 40.1]],
+    )
+    normal: Point | None = Field(
+        default=None, description="Unit vector that the hole faces; null like `centre`.", examples=[[0.0, 0.6, 0.8]]
+    )
+    bounding_box: BoundingBox | None = Field(default=None, description="Box around the rim; null like `centre`.")
 
-
-class BoundingBox(Response):
-    """Corners of the box around all vertices, in mesh units."""
-
-    min: Point = Field(description="Smallest coordinates.", examples=[[-1.0, -1.0, 0.0]])
-    max: Point = Field(description="Largest coordinates.", examples=[[1.0, 1.0, 2.0]])
+    @model_validator(mode="before")
+    @classmethod
+    def _name_kind(cls, values: Any) -> Any:
+        """Read the kind of a border from analyses by versions that knew holes and borders only."""
+        if isinstance(values, dict) and "kind" not in values and values.get("is_border") is True:
+            return {**values, "kind": "border"}
+        return values
 
 
 class MeshFacts(Response):

@@ -104,8 +104,42 @@ class SmoothMethod(Request):
 Method = Annotated[DictionaryMethod | CnnMethod | SmoothMethod, Field(discriminator="method")]
 
 
+HoleKind = Literal["hole", "slit", "open_end", "border"]
+HoleAction = Literal["model", "smooth", "flat"]
+HoleIds = Annotated[list[HoleId], Field(min_length=1, max_length=100_000)]
+
+
+class HoleRule(Request):
+    """What to do with the holes that meet all of some conditions; one without conditions is about every hole.
+
+    A rule that names neither `ids` nor a `kind` passes by the borders and open ends that no other option asks for.
+    """
+
+    action: Literal["skip", "model", "smooth", "flat"] = Field(
+        description="`skip` leaves them open. `model`: as `method` says. `smooth`: by geometry alone. `flat`: by a "
+        "plane patch.",
+        examples=["flat"],
+    )
+    ids: HoleIds | None = Field(default=None, description="These holes.", examples=[[0, 3]])
+    kind: HoleKind | None = Field(default=None, description="Holes of this kind.", examples=["open_end"])
+    min_diameter: float | None = Field(
+        default=None, gt=0, le=1e12, description="As wide or wider, in mesh units.", examples=[5.0]
+    )
+    max_diameter: float | None = Field(
+        default=None, gt=0, le=1e12, description="As wide or narrower, in mesh units.", examples=[25.0]
+    )
+    max_perimeter: float | None = Field(
+        default=None, gt=0, le=1e12, description="With a rim as long or shorter, in mesh units.", examples=[80.0]
+    )
+
+
 class HoleSelection(Request):
-    """Which holes to fill. By default outer borders and loops wider than a quarter of the scan's diagonal stay open."""
+    """Which holes to fill, and how.
+
+    By default every hole and slit is filled, outer borders of pieces and open ends stay open, and so do holes wider
+    than a quarter of the scan's diagonal. What is given adds up: `ids` with `max_diameter` means those of the ids that
+    are no wider.
+    """
 
     max_diameter: float | None = Field(
         default=None, gt=0, le=1e12, description="Leave wider holes open, in mesh units.", examples=[25.0]
@@ -120,8 +154,22 @@ class HoleSelection(Request):
         default=None,
         min_length=1,
         max_length=100_000,
-        description="Just these holes, by the ids of the mesh's hole list.",
+        description="Just these holes, by the ids of the mesh's hole list; borders and open ends among them.",
         examples=[[0, 3, 4]],
+    )
+    include_borders: bool = Field(
+        default=False, description="Treat outer borders of pieces like holes; else they stay open, whatever their size."
+    )
+    cap: Literal["flat"] | None = Field(
+        default=None,
+        description="`flat`: close open ends (of tubes, of cut-off bases) by a plane patch; null: leave them open.",
+        examples=["flat"],
+    )
+    rules: list[HoleRule] = Field(
+        default_factory=list,
+        max_length=32,
+        description="The first rule whose conditions a hole meets says what is done with it.",
+        examples=[[{"kind": "open_end", "action": "flat"}, {"max_diameter": 5.0, "action": "smooth"}]],
     )
 
 

@@ -1,134 +1,47 @@
-"""Holes: boundary loops with their measures, and the rule that says which of them to fill."""
+"""Which holes to fill: the rules of the user, or the automatic one, applied to the holes of a mesh.
 
-from dataclasses import dataclass
+Measuring stands in `quadpatch.mesh.hole_measures`.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
 
 import numpy as np
-from scipy.spatial import ConvexHull, QhullError
-from scipy.spatial.distance import cdist
 
 from quadpatch.errors import OptionError
-from quadpatch.mesh.boundary import boundary_loops
-from quadpatch.mesh.normals import vertex_normals
-from quadpatch.mesh.pieces import connected_pieces
-from quadpatch.options import HoleOptions
-from quadpatch.types import FloatArray, IntArray, TriangleMesh, Vertices
+from quadpatch.mesh.hole_measures import Hole, find_holes
+from quadpatch.options import HoleAction, HoleOptions, HoleRule
 
-# An open scan has an outer border that nobody wants closed: without a rule from the user, loops wider than this
-# share of the bounding box's diagonal stay open.
+__all__ = ["AUTO_DIAMETER_SHARE", "MAX_NEW_VERTICES", "Hole", "Selection", "find_holes", "select_holes"]
+
+# An open scan has an outer border that is not to be closed: without a limit from the user, loops wider than this share
+# of the bounding box's diagonal stay open.
 AUTO_DIAMETER_SHARE = 0.25
-
-# A scan often has loose pieces, each with an outer border: the longest loop of a piece, if wider than this share of
-# the piece's own diagonal.
-BORDER_SHARE = 0.5
 
 # Vertices grow with the square of the rim; such a fill would take minutes and gigabytes.
 MAX_NEW_VERTICES = 200_000
 
-# A loop with the surface on its left runs clockwise around a hole and counter-clockwise around an outer border, seen
-# along the normals at its rim; beyond this cosine it is a border for sure.
-OUTWARD = 0.5
-
-# Up to here, all pairwise distances of a loop are cheaper than its convex hull.
-_SMALL_LOOP = 400
-
-
-@dataclass(frozen=True)
-class Hole:
-    """One boundary loop.
-
-    Attributes
-    ----------
-    id : int
-        Position in the list of holes, longest perimeter first.
-    loop : (n_edges,) int64
-        Vertices, with the surface on the left of the loop.
-    perimeter, diameter : float
-        Length of the loop and the largest distance between two of its vertices, in mesh units.
-    area : float
-        Area of the loop's projection onto its best plane, in square mesh units.
-    planarity : float
-        Root mean square distance of the loop from its best plane, divided by the diameter: 0 is flat.
-    is_manifold : bool
-        False where the rim touches an edge of three or more faces or faces that disagree about their direction.
-    is_border : bool
-        True for the outer border of a connected piece of the scan, as far as its size tells.
-    """
-
-    id: int
-    loop: IntArray
-    perimeter: float
-    diameter: float
-    area: float
-    planarity: float
-    is_manifold: bool
-    is_border: bool = False
-
-    @property
-    def n_edges(self) -> int:
-        """Edges, and vertices, of the loop."""
-        return len(self.loop)
-
-    @property
-    def n_expected_vertices(self) -> int:
-        """About as many new vertices as a fill will have: equilateral triangles as large as the rim's edges."""
-        edge = self.perimeter / max(self.n_edges, 1)
-        return round(self.area / (np.sqrt(0.75) * edge**2)) if edge > 0 else 0
-
 
 @dataclass(frozen=True)
 class Selection:
-    """What to do with every hole: an empty reason means that it is to be filled.
+    """What to do with every hole.
 
     Attributes
     ----------
     chosen : list of Hole
     skipped : dict of int to (str, str)
         Hole id to a stable code and a sentence for people.
+    actions : dict of int to str
+        Id of each chosen hole to `model`, `smooth` or `flat`.
     """
 
     chosen: list[Hole]
     skipped: dict[int, tuple[str, str]]
-
-
-def find_holes(mesh: TriangleMesh) -> list[Hole]:
-    """Find and measure every boundary loop.
-
-    Returns
-    -------
-    list of Hole
-        Longest perimeter first; equal ones in the order of their first vertex. Ids count up from 0.
-    """
-    boundary = boundary_loops(mesh.triangles)
-    piece, piece_diagonals = _pieces(mesh)
-    normals = vertex_normals(mesh.vertices, mesh.triangles)
-    measured = []
-    for loop, is_manifold in zip(boundary.loops, boundary.is_manifold, strict=True):
-        points = mesh.vertices[loop]
-        perimeter = float(np.linalg.norm(np.roll(points, -1, axis=0) - points, axis=1).sum())
-        measured.append((perimeter, loop, points, is_manifold))
-    measured.sort(key=lambda item: -item[0])
-    holes, seen = [], set()
-    for i, (perimeter, loop, points, is_manifold) in enumerate(measured):
-        diameter, its_piece = loop_diameter(points), int(piece[loop[0]])
-        is_border = its_piece not in seen and diameter > BORDER_SHARE * piece_diagonals[its_piece]
-        is_border |= _outwardness(points, normals[loop].mean(axis=0)) > OUTWARD
-        seen.add(its_piece)
-        holes.append(Hole(i, loop, perimeter, diameter, *_area_and_planarity(points), is_manifold, bool(is_border)))
-    return holes
-
-
-def _pieces(mesh: TriangleMesh) -> tuple[IntArray, FloatArray]:
-    """Find connected pieces: the number of the piece of every vertex (n,), and each piece's diagonal."""
-    piece = connected_pieces(mesh)
-    count = int(piece.max(initial=-1)) + 1
-    low, high = np.full((count, 3), np.inf), np.full((count, 3), -np.inf)
-    np.minimum.at(low, piece, mesh.vertices)
-    np.maximum.at(high, piece, mesh.vertices)
-    return piece, np.linalg.norm(high - low, axis=1)
+    actions: dict[int, HoleAction] = field(default_factory=dict)
 
 
 def select_holes(holes: list[Hole], options: HoleOptions, diagonal: float) -> Selection:
-    """Apply the user's rule, or the automatic one, to every hole.
+    """Apply the user's rules, or the automatic one, to every hole.
 
     Parameters
     ----------
@@ -142,83 +55,95 @@ def select_holes(holes: list[Hole], options: HoleOptions, diagonal: float) -> Se
     OptionError
         If an explicit id names no hole.
     """
-    if options.ids is not None:
-        unknown = sorted(set(options.ids) - {hole.id for hole in holes})
-        if unknown:
-            raise OptionError(f"no hole has the id {unknown[0]}; this mesh has {len(holes)} holes, counted from 0")
-    limit = options.max_diameter
-    if options.is_automatic:
-        limit = AUTO_DIAMETER_SHARE * diagonal
-    chosen, skipped = [], {}
+    _check_ids(holes, options)
+    chosen: list[Hole] = []
+    skipped: dict[int, tuple[str, str]] = {}
+    actions: dict[int, HoleAction] = {}
     for hole in holes:
-        reason = _reason_to_skip(hole, options, limit)
+        found = _first_rule(hole, options)
+        reason = _reason_to_skip(hole, options, found, diagonal)
         if reason is None:
             chosen.append(hole)
+            actions[hole.id] = _action(hole, options, found[1] if found else None)
         else:
             skipped[hole.id] = reason
-    return Selection(chosen, skipped)
+    return Selection(chosen, skipped, actions)
 
 
-def _reason_to_skip(hole: Hole, options: HoleOptions, max_diameter: float | None) -> tuple[str, str] | None:
-    """Apply the rules in order; the first that holds is the reason."""
-    widest, longest = max_diameter or np.inf, options.max_perimeter or np.inf
-    rule = "a quarter of the scan's diagonal" if options.is_automatic else "the given maximum"
+def _check_ids(holes: list[Hole], options: HoleOptions) -> None:
+    named = {i for ids in (options.ids, *(rule.ids for rule in options.rules)) for i in ids or ()}
+    unknown = sorted(named - {hole.id for hole in holes})
+    if unknown:
+        raise OptionError(f"no hole has the id {unknown[0]}; this mesh has {len(holes)} holes, counted from 0")
+
+
+def _first_rule(hole: Hole, options: HoleOptions) -> tuple[int, HoleRule] | None:
+    """Return the first rule whose conditions a hole meets, with its number, counted from 1."""
+    return next(((i, rule) for i, rule in enumerate(options.rules, 1) if _meets(hole, rule, options)), None)
+
+
+def _meets(hole: Hole, rule: HoleRule, options: HoleOptions) -> bool:
+    by_name = rule.ids is not None or rule.kind is not None
+    return (
+        (by_name or _is_asked_for(hole, options))
+        and (rule.id_set is None or hole.id in rule.id_set)
+        and rule.kind in (None, hole.kind)
+        and (rule.min_diameter is None or hole.diameter >= rule.min_diameter)
+        and (rule.max_diameter is None or hole.diameter <= rule.max_diameter)
+        and (rule.max_perimeter is None or hole.perimeter <= rule.max_perimeter)
+    )
+
+
+def _is_asked_for(hole: Hole, options: HoleOptions) -> bool:
+    """Whether loops of this kind are closed: holes and slits always, others where an option asks for them."""
+    if hole.kind == "border":
+        return options.include_borders or options.ids is not None
+    if hole.kind == "open_end":
+        return options.cap is not None or options.ids is not None
+    return True
+
+
+def _action(hole: Hole, options: HoleOptions, rule: HoleRule | None) -> HoleAction:
+    if rule is not None and rule.action != "skip":
+        return rule.action
+    return "flat" if hole.kind == "open_end" and options.cap == "flat" else "model"
+
+
+def _reason_to_skip(
+    hole: Hole, options: HoleOptions, found: tuple[int, HoleRule] | None, diagonal: float
+) -> tuple[str, str] | None:
+    """Apply what keeps holes open in order; the first that holds is the reason."""
+    number, rule = found or (0, None)
+    is_left_out = rule is None and not _is_asked_for(hole, options)
     reasons = (
         (not hole.is_manifold, "non_manifold_rim", "its rim touches faces of opposite direction, or three at one edge"),
-        (options.ids is not None and hole.id not in options.ids, "not_chosen", "not among the chosen ids"),
+        (options.id_set is not None and hole.id not in options.id_set, "not_chosen", "not among the chosen ids"),
         (options.all_but_largest and hole.id == 0, "largest", "the largest loop is taken for the border of the scan"),
-        (options.is_automatic and hole.is_border, "border", "outer border of a piece of the scan"),
+        (rule is not None and rule.action == "skip", "rule", f"rule {number} leaves it open"),
+        (is_left_out and hole.is_border, "border", "outer border of a piece of the scan"),
+        (is_left_out, "open_end", "open end of a piece of the scan, like that of a tube"),
         (hole.n_expected_vertices > MAX_NEW_VERTICES, "too_many_vertices", _too_many(hole)),
-        (hole.diameter > widest, "too_wide", f"diameter {hole.diameter:.6g} is over {widest:.6g}, {rule}"),
-        (hole.perimeter > longest, "too_long", f"perimeter {hole.perimeter:.6g} is over {longest:.6g}, {rule}"),
+        *_limits(hole, options, rule, diagonal),
     )
     return next(((code, text) for applies, code, text in reasons if applies), None)
 
 
+def _limits(
+    hole: Hole, options: HoleOptions, rule: HoleRule | None, diagonal: float
+) -> Iterator[tuple[bool, str, str]]:
+    """Compare a hole's sizes with the limits of the user, or its diameter with the automatic one."""
+    widest, longest = options.max_diameter or np.inf, options.max_perimeter or np.inf
+    said_by = "the given maximum"
+    if _has_automatic_limit(hole, options, rule):
+        widest, said_by = AUTO_DIAMETER_SHARE * diagonal, "a quarter of the scan's diagonal"
+    yield hole.diameter > widest, "too_wide", f"diameter {hole.diameter:.6g} is over {widest:.6g}, {said_by}"
+    yield hole.perimeter > longest, "too_long", f"perimeter {hole.perimeter:.6g} is over {longest:.6g}, {said_by}"
+
+
+def _has_automatic_limit(hole: Hole, options: HoleOptions, rule: HoleRule | None) -> bool:
+    """Whether the user left its size open. Slits may be as long as the object, and open ends are asked for by kind."""
+    return options.is_automatic and hole.kind in ("hole", "border") and (rule is None or not rule.limits_size)
+
+
 def _too_many(hole: Hole) -> str:
     return f"a fill as dense as its rim takes about {hole.n_expected_vertices} new vertices, over {MAX_NEW_VERTICES}"
-
-
-def loop_diameter(points: Vertices) -> float:
-    """Measure the largest distance between two of the points (n, 3)."""
-    if len(points) > _SMALL_LOOP:
-        points = _extremes(points)
-    # In pieces: a loop on a ball has every vertex on its hull, and all pairs of a long one would fill the memory.
-    pieces = range(0, len(points), _SMALL_LOOP)
-    return max(float(cdist(points[i : i + _SMALL_LOOP], points).max()) for i in pieces)
-
-
-def _extremes(points: Vertices) -> Vertices:
-    """Pick the corners of the convex hull, in as many dimensions as the points span."""
-    centred = points - points.mean(axis=0)
-    _, _, axes = np.linalg.svd(centred, full_matrices=False)
-    for n_dimensions in (3, 2):
-        try:
-            return points[ConvexHull(centred @ axes[:n_dimensions].T).vertices]
-        except QhullError:
-            # The points are flat, or lie on a line.
-            continue
-    along = centred @ axes[0]
-    return points[[int(along.argmin()), int(along.argmax())]]
-
-
-def _outwardness(points: Vertices, normal: FloatArray) -> float:
-    """Mean cosine between the vector area of a loop and the normals at its rim: 1 is an outer border, -1 a hole."""
-    vector_area = _vector_area(points - points.mean(axis=0))
-    # Not divided by the length of the mean normal: at the end of a tube the normals cancel out, and that says nothing.
-    size = float(np.linalg.norm(vector_area))
-    return float(vector_area @ normal) / size if size > 0 else 0.0
-
-
-def _vector_area(centred: Vertices) -> FloatArray:
-    """Half the sum of cross products along a loop: the same for every surface that the loop spans."""
-    return np.asarray(np.cross(centred, np.roll(centred, -1, axis=0)).sum(axis=0) / 2)
-
-
-def _area_and_planarity(points: Vertices) -> tuple[float, float]:
-    centred = points - points.mean(axis=0)
-    # The length of the vector area is the largest area that the loop projects to.
-    area = float(np.linalg.norm(_vector_area(centred)))
-    distance = np.linalg.svd(centred, compute_uv=False)[-1] / np.sqrt(len(points))
-    diameter = float(np.linalg.norm(centred, axis=1).max()) * 2
-    return area, float(distance / diameter) if diameter > 0 else 0.0

@@ -4,7 +4,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from quadpatch.mesh.boundary import boundary_edge_mask, boundary_loops, directed_edges
-from quadpatch.mesh.holes import loop_diameter
+from quadpatch.mesh.loop_diameter import loop_diameter
 from quadpatch.mesh.measures import mean_edge_length
 from quadpatch.punching import Punched, Spacing, punch
 from quadpatch.types import IntArray, TriangleMesh

@@ -1,152 +1,16 @@
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from quadpatch.errors import OptionError
 from quadpatch.mesh.holes import AUTO_DIAMETER_SHARE, Hole, find_holes, select_holes
 from quadpatch.mesh.measures import diagonal
-from quadpatch.options import HoleOptions
-from quadpatch.types import FloatArray, TriangleMesh
-from tests.quadpatch.shapes import cylinder, joined, open_grid, punched, random_rotation, sphere
+from quadpatch.options import HoleKind, HoleOptions, HoleRule
+from quadpatch.types import TriangleMesh
+from tests.quadpatch.shapes import joined, open_grid, punched
 
 
-def ring(loop: FloatArray, outward: float = 0.2) -> TriangleMesh:
-    """A band of triangles around a clockwise loop (n, 3) in space, so that the loop is the rim of a hole."""
-    n = len(loop)
-    here, after = np.arange(n), np.roll(np.arange(n), -1)
-    triangles = np.concatenate([np.stack([here, after, n + here], 1), np.stack([after, n + after, n + here], 1)])
-    return TriangleMesh(np.concatenate([loop, loop * (1 + outward)]), triangles)
-
-
-def circle(n: int, radius: float = 1.0) -> FloatArray:
-    angle = -2 * np.pi * np.arange(n) / n
-    return radius * np.stack([np.cos(angle), np.sin(angle), np.zeros(n)], axis=1)
-
-
-def inner_hole(mesh: TriangleMesh) -> Hole:
-    return min(find_holes(mesh), key=lambda hole: hole.perimeter)
-
-
-def hole(number: int, perimeter: float, diameter: float, *, is_manifold: bool = True, is_border: bool = False) -> Hole:
-    return Hole(number, np.arange(3), perimeter, diameter, 1.0, 0.0, is_manifold, is_border)
-
-
-@pytest.mark.parametrize("n", [6, 64, 400, 401, 1000, 5000])
-def test_a_circle_has_the_measures_of_its_polygon(n: int) -> None:
-    found = inner_hole(ring(circle(n, 2.5)))
-    assert found.n_edges == n
-    assert found.perimeter == pytest.approx(2.5 * n * 2 * np.sin(np.pi / n), rel=1e-12)
-    assert found.area == pytest.approx(2.5**2 * n / 2 * np.sin(2 * np.pi / n), rel=1e-12)
-    assert found.diameter == pytest.approx(5.0 if n % 2 == 0 else 5.0 * np.cos(np.pi / n / 2), rel=1e-9)
-    assert found.planarity < 1e-15
-    assert found.is_manifold
-    assert not found.is_border
-
-
-@given(n=st.integers(3, 900), seed=st.integers(0, 2**32 - 1), flat=st.booleans())
-@settings(max_examples=40, deadline=None)
-def test_the_diameter_is_the_largest_distance_between_two_vertices(n: int, seed: int, flat: bool) -> None:
-    rng = np.random.default_rng(seed)
-    loop = circle(n) * rng.uniform(0.5, 2, (n, 1)) * [1.0, 0.3, 1.0]
-    loop += np.array([0, 0, 0 if flat else 1]) * rng.normal(0, 0.2, (n, 1))
-    loop = loop @ random_rotation(rng)
-    apart = max(float(np.linalg.norm(loop - point, axis=1).max()) for point in loop)
-    assert inner_hole(ring(loop, 1.0)).diameter == pytest.approx(apart, rel=1e-9)
-
-
-def test_a_long_loop_whose_every_vertex_is_extreme_is_measured() -> None:
-    # On a sphere no vertex of a loop lies inside the others' hull.
-    n = 5000
-    angle = -2 * np.pi * np.arange(n) / n
-    height = 0.3 * np.cos(40 * angle)
-    loop = np.stack([np.sqrt(1 - height**2) * np.cos(angle), np.sqrt(1 - height**2) * np.sin(angle), height], axis=1)
-    assert inner_hole(ring(loop)).diameter == pytest.approx(2.0, rel=1e-3)
-
-
-@pytest.mark.parametrize("n_corners", [3, 5])
-def test_a_long_flat_loop_of_even_width_is_measured_exactly(n_corners: int) -> None:
-    # Arcs around the corners of a polygon, as wide in all directions: only exact corners give the exact width.
-    corner = circle(n_corners)
-    radius = max(float(np.linalg.norm(corner - point, axis=1).max()) for point in corner)
-    arcs = []
-    for k in range(n_corners):
-        far = [(k + n_corners // 2) % n_corners, (k + n_corners // 2 + 1) % n_corners]
-        start, end = (corner[i] - corner[k] for i in far)
-        way = np.linspace(0, 1, 200, endpoint=False)[:, None]
-        between = (1 - way) * start + way * end
-        arcs.append(corner[k] + radius * between / np.linalg.norm(between, axis=1, keepdims=True))
-    loop = np.concatenate(arcs)
-    apart = max(float(np.linalg.norm(loop - point, axis=1).max()) for point in loop)
-    assert inner_hole(ring(loop)).diameter == pytest.approx(apart, rel=1e-12)
-
-
-def test_a_long_loop_on_a_line_is_as_wide_as_the_line_is_long() -> None:
-    n = 500
-    line = np.column_stack([np.abs(np.arange(n) - n / 2), np.zeros((n, 2))]) @ random_rotation(np.random.default_rng(0))
-    found = inner_hole(ring(line + np.array([0, 0, 1]), 0.0))
-    assert found.diameter == pytest.approx(n / 2)
-    assert found.area == pytest.approx(0, abs=1e-9)
-
-
-def test_planarity_is_the_distance_from_the_best_plane_in_diameters() -> None:
-    n = 64
-    saddle = circle(n) + np.stack([np.zeros(n), np.zeros(n), 0.2 * np.cos(4 * np.pi * np.arange(n) / n)], axis=1)
-    found = inner_hole(ring(saddle))
-    assert found.planarity == pytest.approx(0.2 / np.sqrt(2) / 2, rel=0.03)
-    assert found.area == pytest.approx(n / 2 * np.sin(2 * np.pi / n), rel=1e-12)
-
-
-@given(seed=st.integers(0, 2**32 - 1))
-@settings(max_examples=20, deadline=None)
-def test_measures_move_with_the_mesh(seed: int) -> None:
-    rng = np.random.default_rng(seed)
-    mesh = punched(sphere(3), (0, 0, 1), (0, -0.9, 0.4), radius=0.4)
-    moved = TriangleMesh(mesh.vertices @ random_rotation(rng).T + rng.normal(0, 10, 3), mesh.triangles)
-    for before, after in zip(find_holes(mesh), find_holes(moved), strict=True):
-        assert (before.loop == after.loop).all()
-        assert before.is_border == after.is_border
-        for name in ("perimeter", "diameter", "area", "planarity"):
-            assert getattr(after, name) == pytest.approx(getattr(before, name), rel=1e-9, abs=1e-12)
-
-
-@given(seed=st.integers(0, 2**32 - 1))
-@settings(max_examples=20, deadline=None)
-def test_an_open_end_of_a_tube_is_no_border_however_it_is_turned(seed: int) -> None:
-    # Normals at its rim all but cancel out: what is left of them must decide nothing.
-    rng = np.random.default_rng(seed)
-    tube = cylinder(24, 12)
-    tube.vertices[:, :2] *= 1 + 0.05 * tube.vertices[:, 2:] ** 2
-    turned = TriangleMesh(tube.vertices @ random_rotation(rng).T + rng.normal(0, 10, 3), tube.triangles)
-    assert [found.is_border for found in find_holes(turned)] == [False, False]
-
-
-def test_ids_count_up_from_the_longest_perimeter() -> None:
-    mesh = punched(open_grid(30), (-8, -8, 0), (8, -8, 0), (8, 8, 0), radius=1.2)
-    mesh = punched(mesh, (-8, 8, 0), radius=3.2)
-    found = find_holes(mesh)
-    assert [one.id for one in found] == list(range(5))
-    perimeters = [one.perimeter for one in found]
-    assert perimeters == sorted(perimeters, reverse=True)
-    # Equal ones stand in the order of their first vertex.
-    assert int(found[2].loop[0]) < int(found[3].loop[0]) < int(found[4].loop[0])
-
-
-def test_the_borders_of_a_sheet_and_of_a_loose_piece_are_no_holes() -> None:
-    sheet = punched(open_grid(40), (0, 0, 0), radius=3.2)
-    piece = open_grid(5)
-    mesh = joined(sheet, TriangleMesh(piece.vertices + np.array([0, 0, 5]), piece.triangles))
-    border_edges = sorted(one.n_edges for one in find_holes(mesh) if one.is_border)
-    assert border_edges == [16, 156]
-    selection = select_holes(find_holes(mesh), HoleOptions(), diagonal(mesh))
-    (chosen,) = selection.chosen
-    assert not chosen.is_border
-    assert {code for code, _ in selection.skipped.values()} == {"border"}
-
-
-def test_closed_meshes_have_no_holes() -> None:
-    assert find_holes(sphere(1)) == []
-    assert select_holes([], HoleOptions(), 1.0).chosen == []
+def hole(number: int, perimeter: float, diameter: float, *, is_manifold: bool = True, kind: HoleKind = "hole") -> Hole:
+    return Hole(number, np.arange(3), perimeter, diameter, 1.0, 0.0, is_manifold, kind)
 
 
 HOLES = [hole(0, 40.0, 12.0), hole(1, 9.0, 3.0), hole(2, 8.0, 3.5), hole(3, 2.0, 0.5)]
@@ -201,11 +65,98 @@ def test_rules_add_up() -> None:
     assert codes == {0: "largest", 1: "too_long", 2: "too_wide", 3: "not_chosen"}
 
 
-def test_borders_are_left_open_by_the_automatic_rule_only() -> None:
-    holes = [hole(0, 9.0, 3.0, is_border=True)]
-    assert select_holes(holes, HoleOptions(), 100.0).skipped[0][0] == "border"
-    assert select_holes(holes, HoleOptions(ids=(0,)), 100.0).chosen == holes
-    assert select_holes(holes, HoleOptions(max_diameter=5.0), 100.0).chosen == holes
+ANY_SIZE = HoleOptions(max_diameter=100.0, max_perimeter=1000.0)
+KINDS: tuple[HoleKind, ...] = ("hole", "slit", "open_end", "border")
+ONE_OF_EACH = [hole(i, 9.0, 3.0, kind=kind) for i, kind in enumerate(KINDS)]
+
+
+@pytest.mark.parametrize(
+    ("options", "closed"),
+    [
+        (HoleOptions(), {"hole", "slit"}),
+        (HoleOptions(max_diameter=5.0), {"hole", "slit"}),
+        (HoleOptions(max_perimeter=50.0), {"hole", "slit"}),
+        (HoleOptions(all_but_largest=True), {"slit"}),
+        (ANY_SIZE, {"hole", "slit"}),
+        (HoleOptions(include_borders=True), {"hole", "slit", "border"}),
+        (HoleOptions(max_diameter=5.0, include_borders=True), {"hole", "slit", "border"}),
+        (HoleOptions(cap="flat"), {"hole", "slit", "open_end"}),
+        (HoleOptions(ids=(2, 3)), {"open_end", "border"}),
+        (HoleOptions(ids=(2, 3), max_diameter=2.0), set()),
+        (HoleOptions(rules=(HoleRule("smooth"),)), {"hole", "slit"}),
+        (HoleOptions(rules=(HoleRule("flat", max_diameter=50.0),)), {"hole", "slit"}),
+        (HoleOptions(rules=(HoleRule("flat", kind="open_end"),)), {"hole", "slit", "open_end"}),
+        (HoleOptions(rules=(HoleRule("flat", kind="border"),)), {"hole", "slit", "border"}),
+        (HoleOptions(rules=(HoleRule("model", ids=(3,)),)), {"hole", "slit", "border"}),
+        (HoleOptions(cap="flat", rules=(HoleRule("skip", kind="open_end", ids=(2,)),)), {"hole", "slit"}),
+        (HoleOptions(rules=(HoleRule("skip"),)), set()),
+    ],
+)
+def test_borders_and_open_ends_stay_open_unless_asked_for(options: HoleOptions, closed: set[str]) -> None:
+    selection = select_holes(ONE_OF_EACH, options, 100.0)
+    assert {one.kind for one in selection.chosen} == closed
+    assert set(selection.actions) == {one.id for one in selection.chosen}
+
+
+def test_what_stays_open_by_its_kind_has_a_code_of_its_own() -> None:
+    skipped = select_holes(ONE_OF_EACH, ANY_SIZE, 100.0).skipped
+    assert {number: code for number, (code, _) in skipped.items()} == {2: "open_end", 3: "border"}
+
+
+@pytest.mark.parametrize("options", [HoleOptions(), HoleOptions(include_borders=True), HoleOptions(cap="flat")])
+def test_the_automatic_limit_is_for_holes_and_borders(options: HoleOptions) -> None:
+    # Slits may be as long as the object; open ends that are capped are as wide as it.
+    holes = [hole(i, 90.0, 30.0, kind=kind) for i, kind in enumerate(KINDS)]
+    skipped = {number: code for number, (code, _) in select_holes(holes, options, 100.0).skipped.items()}
+    assert skipped[0] == "too_wide"
+    assert skipped[3] == ("too_wide" if options.include_borders else "border")
+    assert 1 not in skipped
+    assert (2 in skipped) == (options.cap is None)
+
+
+def test_the_first_rule_that_a_hole_meets_says_how_it_is_closed() -> None:
+    rules = (
+        HoleRule("skip", ids=(1,)),
+        HoleRule("flat", max_diameter=1.0),
+        HoleRule("smooth", min_diameter=3.5, max_perimeter=10.0),
+        HoleRule("smooth", min_diameter=12.0),
+    )
+    selection = select_holes(HOLES, HoleOptions(rules=rules), 100.0)
+    assert selection.actions == {0: "smooth", 2: "smooth", 3: "flat"}
+    assert selection.skipped == {1: ("rule", "rule 1 leaves it open")}
+
+
+def test_without_a_rule_a_hole_is_closed_by_the_model_and_an_open_end_as_capped() -> None:
+    assert select_holes(ONE_OF_EACH, HoleOptions(cap="flat", include_borders=True), 100.0).actions == {
+        0: "model",
+        1: "model",
+        2: "flat",
+        3: "model",
+    }
+    assert select_holes(ONE_OF_EACH, HoleOptions(ids=(2,)), 100.0).actions == {2: "model"}
+
+
+@pytest.mark.parametrize(
+    ("rule", "is_filled"),
+    [
+        (HoleRule("smooth"), False),
+        (HoleRule("smooth", min_diameter=1.0), False),
+        (HoleRule("smooth", kind="hole"), False),
+        (HoleRule("smooth", max_diameter=20.0), True),
+        (HoleRule("smooth", max_perimeter=50.0), True),
+        (HoleRule("smooth", ids=(0,)), True),
+    ],
+)
+def test_a_rule_that_says_up_to_which_size_lifts_the_automatic_limit(rule: HoleRule, is_filled: bool) -> None:
+    selection = select_holes(HOLES, HoleOptions(rules=(rule,)), 10.0 / AUTO_DIAMETER_SHARE)
+    assert (0 in selection.actions) == is_filled
+
+
+def test_limits_and_ids_hold_beside_rules() -> None:
+    rules = (HoleRule("smooth", max_diameter=100.0),)
+    selection = select_holes(HOLES, HoleOptions(max_diameter=3.25, ids=(1, 2), rules=rules), 100.0)
+    assert selection.actions == {1: "smooth"}
+    assert {code for code, _ in selection.skipped.values()} == {"not_chosen", "too_wide"}
 
 
 @pytest.mark.parametrize("options", [HoleOptions(), HoleOptions(ids=(0,)), HoleOptions(max_diameter=100.0)])
@@ -221,6 +172,22 @@ def test_an_unknown_id_is_named(ids: tuple[int, ...], named: int) -> None:
         select_holes(HOLES, HoleOptions(ids=ids), 1.0)
 
 
+def test_the_borders_of_a_sheet_and_of_a_loose_piece_are_no_holes() -> None:
+    sheet = punched(open_grid(40), (0, 0, 0), radius=3.2)
+    piece = open_grid(5)
+    mesh = joined(sheet, TriangleMesh(piece.vertices + np.array([0, 0, 5]), piece.triangles))
+    border_edges = sorted(one.n_edges for one in find_holes(mesh) if one.is_border)
+    assert border_edges == [16, 156]
+    selection = select_holes(find_holes(mesh), HoleOptions(), diagonal(mesh))
+    (chosen,) = selection.chosen
+    assert not chosen.is_border
+    assert {code for code, _ in selection.skipped.values()} == {"border"}
+
+
+def test_a_mesh_without_holes_gives_an_empty_selection() -> None:
+    assert select_holes([], HoleOptions(), 1.0).chosen == []
+
+
 def test_a_hole_that_would_take_millions_of_vertices_stays_open() -> None:
     loop = np.arange(5000)
     fine = Hole(0, loop, perimeter=5000.0, diameter=1600.0, area=2e6, planarity=0.0, is_manifold=True)
@@ -231,3 +198,8 @@ def test_a_hole_that_would_take_millions_of_vertices_stays_open() -> None:
         "too_many_vertices",
         "a fill as dense as its rim takes about 2309401 new vertices, over 200000",
     )
+
+
+def test_an_unknown_id_of_a_rule_is_named() -> None:
+    with pytest.raises(OptionError, match="no hole has the id 9"):
+        select_holes(HOLES, HoleOptions(rules=(HoleRule("flat", ids=(1, 9)),)), 1.0)

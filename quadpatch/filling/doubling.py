@@ -1,0 +1,55 @@
+"""Fills that lie on the back of the surface whose border they close: a sheet becomes a bag without room in it."""
+
+import numpy as np
+
+from quadpatch.filling.filled_mesh import FilledMesh
+from quadpatch.mesh.averages import mean_by
+from quadpatch.mesh.distance import nearest_triangles
+from quadpatch.mesh.normals import triangle_normals
+from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh
+
+# A fill doubles the surface where it is closer to it than this share of the rim's size, and faces the other way.
+CLOSE = 0.05
+# So much of a fill's triangles have to.
+MOST = 0.5
+
+
+def doubles_surface(filled: FilledMesh, loops: IntArray) -> BoolArray:
+    """Tell the fills that double measured surface.
+
+    Parameters
+    ----------
+    filled : FilledMesh
+    loops : (k,) int64
+        Positions of the loops that are looked at.
+
+    Returns
+    -------
+    (n_loops,) bool
+        False for all others.
+    """
+    n_loops, mesh = len(filled.gap), filled.mesh
+    hole = filled.triangle_hole[np.isin(filled.triangle_hole, loops)]
+    if not len(hole):
+        return np.zeros(n_loops, bool)
+    measured = TriangleMesh(mesh.vertices, mesh.triangles[: filled.n_measured_triangles])
+    new = mesh.triangles[filled.n_measured_triangles :][np.isin(filled.triangle_hole, loops)]
+    distance, nearest = nearest_triangles(mesh.vertices[new].mean(axis=1), measured)
+    agreement = np.einsum(
+        "ij,ij->i", triangle_normals(mesh.vertices, new), triangle_normals(mesh.vertices, measured.triangles[nearest])
+    )
+    is_back = (distance < CLOSE * _rim_sizes(filled)[hole]) & (agreement < -0.5)
+    share = mean_by(hole, is_back.astype(np.float64), n_loops)
+    return np.asarray(share > MOST)
+
+
+def _rim_sizes(filled: FilledMesh) -> FloatArray:
+    """Diagonal (n_loops,) of the bounding box of every rim, in mesh units."""
+    corners = filled.mesh.triangles[filled.n_measured_triangles :].ravel()
+    hole = np.repeat(filled.triangle_hole, 3)
+    on_rim = corners < filled.n_measured_vertices
+    points, hole = filled.mesh.vertices[corners[on_rim]], hole[on_rim]
+    low, high = np.full((len(filled.gap), 3), np.inf), np.full((len(filled.gap), 3), -np.inf)
+    np.minimum.at(low, hole, points)
+    np.maximum.at(high, hole, points)
+    return np.asarray(np.linalg.norm(np.where(np.isfinite(low), high - low, 0.0), axis=1))

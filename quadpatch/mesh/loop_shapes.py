@@ -1,0 +1,83 @@
+"""Measures of boundary loops as arrays, all loops at once."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from quadpatch.mesh.loop_diameter import loop_diameter
+from quadpatch.mesh.normals import cross, vertex_normals
+from quadpatch.mesh.rims import Rims
+from quadpatch.types import FloatArray, IntArray, TriangleMesh, Vertices
+
+
+@dataclass(frozen=True)
+class LoopShapes:
+    """Measures of all loops, by their position.
+
+    Attributes
+    ----------
+    centres : (n, 3) float64
+        Mean of the vertices.
+    plane_normals : (n, 3) float64
+        Unit normal of the best plane, of either sign.
+    planarity, diameters, perimeters : (n,) float64
+    vector_areas : (n, 3) float64
+    rim_normals : (n, 3) float64
+        Mean of the unit normals at the vertices, shorter where these disagree.
+    """
+
+    centres: FloatArray
+    plane_normals: FloatArray
+    planarity: FloatArray
+    diameters: FloatArray
+    perimeters: FloatArray
+    vector_areas: FloatArray
+    rim_normals: FloatArray
+
+    @property
+    def roundness(self) -> FloatArray:
+        """Isoperimetric quotient (n,): area by that of a circle of the same perimeter."""
+        areas = np.linalg.norm(self.vector_areas, axis=1)
+        return np.asarray(4 * np.pi * areas / np.maximum(self.perimeters, 1e-150) ** 2)
+
+
+def perimeter(points: Vertices) -> float:
+    """Measure the closed loop through points (n, 3)."""
+    return float(np.linalg.norm(np.roll(points, -1, axis=0) - points, axis=1).sum())
+
+
+def measure_loops(mesh: TriangleMesh, rims: Rims, loops: list[IntArray], perimeters: FloatArray) -> LoopShapes:
+    """Measure all loops at once; only their diameters are measured one by one.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+    rims : Rims
+        Of the loops.
+    loops : list of (n_loop,) int64
+    perimeters : (n_loops,) float64
+    """
+    counts = np.diff(rims.starts)[:, None]
+    centres = rims.sums(rims.points) / counts
+    centred = rims.points - centres[rims.loop]
+    # Half the sum of cross products along a loop is the same for every surface that the loop spans; its length is the
+    # largest area that the loop projects to.
+    vector_areas = rims.sums(cross(centred, rims.edges)) / 2
+    plane_normals = _plane_normals(rims, centred)
+    distances = np.einsum("ij,ij->i", centred, plane_normals[rims.loop])
+    away = np.sqrt(rims.sums(distances**2) / counts[:, 0])
+    reach = 2 * np.maximum.reduceat(np.linalg.norm(centred, axis=1), rims.starts[:-1])
+    planarity = np.where(reach > 0, away / np.maximum(reach, 1e-300), 0.0)
+    diameters = np.array([loop_diameter(rims.points[rims.slice_of(i)]) for i in range(rims.n_loops)])
+    normals = vertex_normals(mesh.vertices, mesh.triangles)[np.concatenate(loops)]
+    rim_normals = rims.sums(normals) / counts
+    return LoopShapes(centres, plane_normals, planarity, diameters, perimeters, vector_areas, rim_normals)
+
+
+def _plane_normals(rims: Rims, centred: FloatArray) -> FloatArray:
+    """Find the normals (n_loops, 3) of the best planes: there the points of a loop scatter least."""
+    # Scaled first: squares of a mesh that is very small or large would leave float64.
+    size = np.maximum.reduceat(np.abs(centred).max(axis=1), rims.starts[:-1])
+    scaled = centred / np.maximum(size, 1e-300)[rims.loop][:, None]
+    scatter = rims.sums(scaled[:, :, None] * scaled[:, None, :])
+    return np.linalg.eigh(scatter)[1][:, :, 0]

@@ -1,0 +1,85 @@
+"""The service may not import the method, so its copy of the selection rule is held to the original here."""
+
+import json
+from dataclasses import asdict
+from typing import Any, get_args
+
+import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import jobkit.schema as wire
+from quadpatch.mesh import holes as method
+from quadpatch.options import Cap, HoleAction, HoleKind, HoleOptions, HoleRule, RuleAction
+from service.hole_selection import choose_holes
+
+LENGTHS = st.floats(0.1, 100.0)
+MAYBE_LENGTHS = st.none() | LENGTHS
+KINDS = st.sampled_from(get_args(HoleKind))
+HOLES = st.lists(
+    st.fixed_dictionaries(
+        {
+            "perimeter": LENGTHS,
+            "diameter": LENGTHS,
+            "area": st.floats(0.01, 1e8),
+            "is_manifold": st.sampled_from([True, True, True, False]),
+            "kind": KINDS,
+        }
+    ),
+    min_size=1,
+    max_size=8,
+)
+IDS = st.none() | st.lists(st.integers(0, 7), min_size=1, max_size=4).map(tuple)
+RULES = st.lists(
+    st.builds(
+        HoleRule,
+        st.sampled_from(get_args(RuleAction)),
+        IDS,
+        st.none() | KINDS,
+        MAYBE_LENGTHS,
+        MAYBE_LENGTHS,
+        MAYBE_LENGTHS,
+    ),
+    max_size=3,
+).map(tuple)
+OPTIONS = st.builds(
+    HoleOptions,
+    MAYBE_LENGTHS,
+    MAYBE_LENGTHS,
+    st.booleans(),
+    IDS,
+    st.booleans(),
+    st.sampled_from([None, *get_args(Cap)]),
+    RULES,
+)
+
+
+def on_the_wire(options: HoleOptions) -> wire.HoleSelection:
+    return wire.HoleSelection.model_validate_json(json.dumps(asdict(options)))
+
+
+def with_all_ids(measures: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Pad to eight holes, so that every id in use names one."""
+    return [measures[i % len(measures)] for i in range(8)]
+
+
+@settings(max_examples=400, deadline=None)
+@given(measures=HOLES, diagonal=LENGTHS, options=OPTIONS)
+def test_a_plan_selects_what_the_method_selects(
+    measures: list[dict[str, Any]], diagonal: float, options: HoleOptions
+) -> None:
+    measures = with_all_ids(measures)
+    loop = np.zeros(3, dtype=np.int64)
+    theirs = [method.Hole(id=i, loop=loop, planarity=0.0, **row) for i, row in enumerate(measures)]
+    ours = [wire.Hole(id=i, planarity=0.0, edges=3, **row) for i, row in enumerate(measures)]
+    selection = method.select_holes(theirs, options, diagonal)
+    expected = [(selection.skipped.get(hole.id, (None, ""))[0], selection.actions.get(hole.id)) for hole in theirs]
+    choices = choose_holes(ours, on_the_wire(options), diagonal)
+    assert [(choice.reason, choice.action) for choice in choices] == expected
+
+
+def test_words_of_the_contract_are_those_of_the_method() -> None:
+    assert get_args(wire.HoleKind) == get_args(HoleKind)
+    assert get_args(wire.HoleAction) == get_args(HoleAction)
+    assert set(wire.HoleRule.model_fields) == set(vars(HoleRule("skip")))
+    assert set(wire.HoleSelection.model_fields) == set(vars(HoleOptions()))
