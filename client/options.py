@@ -32,7 +32,7 @@ AllButLargestOption = Annotated[
     bool,
     typer.Option(
         "--all-but-largest",
-        help="Leave the longest rim open: the border of an open scan.",
+        help="Leave the widest loop open: the border of an open scan.",
         rich_help_panel="Which holes",
     ),
 ]

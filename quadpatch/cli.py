@@ -59,7 +59,7 @@ def fill(  # noqa: PLR0913, PLR0917  one argument per flag
     picture: Annotated[Path | None, typer.Option(help="Write a before/after picture as PNG.")] = None,
     max_diameter: Annotated[float | None, typer.Option(help="Leave wider holes open (mesh units).")] = None,
     max_perimeter: Annotated[float | None, typer.Option(help="Leave longer rims open (mesh units).")] = None,
-    all_but_largest: Annotated[bool, typer.Option(help="Leave the longest loop open.")] = False,
+    all_but_largest: Annotated[bool, typer.Option(help="Leave the widest loop open.")] = False,
     hole: Annotated[list[int] | None, typer.Option(help="Fill just this hole; repeat for more.")] = None,
     include_borders: Annotated[
         bool, typer.Option("--include-borders", help="Treat outer borders of pieces like holes.")

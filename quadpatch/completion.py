@@ -48,6 +48,8 @@ class Completion:
     n_patches : int
     undone : (n_holes,) bool or None
         Holes whose displacement was taken back, since it made their fill fold or run through other surface.
+    left_out : (n_holes,) bool or None
+        Holes that a rule keeps the model out of.
     """
 
     filled: FilledMesh
@@ -58,6 +60,7 @@ class Completion:
     scale: PatchScale
     n_patches: int
     undone: BoolArray | None = None
+    left_out: BoolArray | None = None
 
 
 @dataclass(frozen=True)

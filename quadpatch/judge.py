@@ -49,7 +49,7 @@ class HoleResult:
         What the verdict rests on; `folds` and `crossings` count the faults that the check left.
     fill : str
         Which geometric fill carries it: `energies` (what suits the surface), or a plainer one, `thin_plate`, `membrane`
-        or `flat`, where others fold or run through other surface. Empty where nothing was filled.
+        or `unfaired`, where others fold or run through other surface. Empty where nothing was filled.
     """
 
     hole: Hole
@@ -180,7 +180,9 @@ def _verdict(i: int, n_new_vertices: int, completion: "Completion | None") -> tu
         return "filled", "", ""
     coverage = completion.evidence.coverage[i] if completion.evidence else 0.0
     undone = completion.undone is not None and bool(completion.undone[i])
+    left_out = completion.left_out is not None and bool(completion.left_out[i])
     reasons = (
+        (left_out, "geometry", "a rule asks for geometry alone"),
         (undone, "model_faulty", "displaced by the model, the fill folds or runs through other surface: it was undone"),
         (not n_new_vertices, "no_new_vertex", "so small that its rim alone spans it: there is nothing to displace"),
         (completion.expectation is None, "no_practice", "too little undamaged surface to try the model on"),

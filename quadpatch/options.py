@@ -84,7 +84,7 @@ class HoleOptions:
     max_diameter, max_perimeter : float, optional
         In mesh units. Wider or longer ones stay open, whatever else asks for them.
     all_but_largest : bool
-        Leave the loop with the longest perimeter open.
+        Leave the widest loop open.
     ids : tuple of int, optional
         Just these, borders and open ends among them.
     include_borders : bool

@@ -12,7 +12,7 @@ from quadpatch.completion import Completion, Problem, complete
 from quadpatch.errors import NoQuadsError
 from quadpatch.expectation import UNTRIED, Expectation
 from quadpatch.fill_rule import FillRule, learn_fill_rule
-from quadpatch.filling.checked_fill import CheckedFill, fill_checked
+from quadpatch.filling.checked_fill import CheckedFill, LoopsToFill, fill_checked
 from quadpatch.filling.fairing import THIN_PLATE, Energy
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.filling.islands import JoinedRims, join_islands
@@ -20,11 +20,11 @@ from quadpatch.inpainters.inpainter import Inpainter
 from quadpatch.judge import HoleResult, judge
 from quadpatch.mesh.holes import Hole, Selection, find_holes, select_holes
 from quadpatch.mesh.measures import diagonal, mean_edge_length
-from quadpatch.options import RepairOptions
+from quadpatch.options import HoleAction, RepairOptions
 from quadpatch.practice import Practice, expect, practise
 from quadpatch.stages import Stages
-from quadpatch.types import TriangleMesh, Triangles
-from quadpatch.verification import verified_results, without_faults
+from quadpatch.types import BoolArray, TriangleMesh, Triangles
+from quadpatch.verification import limited_to, verified_results, without_faults
 
 # From rough to smooth: a noisy or sharp-edged surface is continued best by the first, a smooth one by the last.
 ENERGIES = (
@@ -107,9 +107,10 @@ def inpaint(
         selection = select_holes(holes, options.holes, diagonal(mesh))
         rims = join_islands(mesh, holes, selection.chosen)
     with stages.stage("fill"):
-        problem, expectation, checked = _fill(mesh, rims, obstacles, rng)
+        problem, expectation, checked = _fill(mesh, rims, _loops_to_fill(rims, selection), obstacles, rng)
     completion, warnings = None, []
-    if (inpainter is not None or learn) and len(problem.filled.vertex_hole):
+    by_model = _with_action(rims, selection, "model")
+    if (inpainter is not None or learn) and by_model[problem.filled.vertex_hole].any():
         try:
             completion = complete(problem, inpainter, options, rng, stages)
             if completion is None:
@@ -117,6 +118,8 @@ def inpaint(
         except NoQuadsError as error:
             warnings.append(f"{error}; the holes were filled by geometry alone")
     with stages.stage("judge"):
+        if completion:
+            completion = limited_to(completion, checked.filled, by_model)
         verified = without_faults(completion, checked, obstacles)
         completion = verified.completion
         if completion and completion.expectation is not None:
@@ -127,24 +130,35 @@ def inpaint(
     return Repair(filled, rims.chosen, results, problem.rule, completion, warnings)
 
 
+def _loops_to_fill(rims: JoinedRims, selection: Selection) -> LoopsToFill:
+    border = np.array([hole.is_border for hole in rims.chosen], bool)
+    return LoopsToFill(rims.loops, _with_action(rims, selection, "flat"), border)
+
+
+def _with_action(rims: JoinedRims, selection: Selection, action: HoleAction) -> BoolArray:
+    """Tell the rims (n_loops,) whose hole gets some action."""
+    return np.array([selection.actions.get(hole.id, "model") == action for hole in rims.chosen], bool)
+
+
 def _filled_ones(selection: Selection, rims: JoinedRims) -> Selection:
     """Count islands among the holes without a fill of their own."""
     joined = dict.fromkeys(rims.host_of, ("joined", ""))
-    return Selection(rims.chosen, {**selection.skipped, **joined})
+    return Selection(rims.chosen, {**selection.skipped, **joined}, selection.actions)
 
 
 def _fill(
-    mesh: TriangleMesh, rims: JoinedRims, obstacles: Triangles | None, rng: np.random.Generator
+    mesh: TriangleMesh, rims: JoinedRims, wanted: LoopsToFill, obstacles: Triangles | None, rng: np.random.Generator
 ) -> tuple[Problem, Expectation, CheckedFill]:
     """Fill the holes as suits this surface, and check it; also the error to expect of that."""
     edge = mean_edge_length(mesh)
     diameters = [hole.diameter for hole in rims.chosen]
-    practice = practise(mesh, float(np.median(diameters)), edge, rng) if diameters else None
+    curved = [diameters[i] for i in np.flatnonzero(~wanted.flat)]
+    practice = practise(mesh, float(np.median(curved)), edge, rng) if curved else None
     rule, filled_again = suitable_rule(practice)
     expectation = UNTRIED
     if practice is not None and filled_again is not None:
         expectation = expect(practice, filled_again)
-    checked = fill_checked(mesh, rims.loops, rule.fill, obstacles)
+    checked = fill_checked(mesh, wanted, rule.fill, obstacles)
     return Problem(checked.filled, rule, diameters, edge, practice, filled_again), expectation, checked
 
 

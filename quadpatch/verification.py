@@ -64,6 +64,18 @@ def _taken_back(displaced: FilledMesh, before: FilledMesh, holes: BoolArray) -> 
     return displaced.with_vertices(np.where(holes[displaced.vertex_hole][:, None], old, new))
 
 
+def limited_to(completion: Completion, before: FilledMesh, holes: BoolArray) -> Completion:
+    """Take the displacement back in all but some holes (n_holes,)."""
+    if holes.all():
+        return completion
+    return replace(
+        completion,
+        filled=_taken_back(completion.filled, before, ~holes),
+        trust=completion.trust & holes,
+        left_out=~holes,
+    )
+
+
 def verified_results(
     results: list[HoleResult], rims: JoinedRims, checked: CheckedFill, faults: Faults, size: float
 ) -> list[HoleResult]:
@@ -109,6 +121,9 @@ def _counts(faults: Faults, i: int) -> dict[str, float]:
 
 
 def _verified(result: HoleResult, checked: CheckedFill, faults: Faults, i: int, size: float) -> HoleResult:
+    if checked.fill[i] == "flat":
+        why = "closed by a plane patch, as asked for"
+        result = replace(result, code="flat", reason=why, confidence=None, expected_error=None)
     result = replace(result, fill=checked.fill[i], measures={**result.measures, **_counts(faults, i)})
     departure = float(checked.departure[i])
     if result.expected_error is None or departure <= result.expected_error:

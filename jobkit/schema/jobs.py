@@ -165,7 +165,7 @@ class Plan(Response):
 
     mesh_id: MeshId
     model: ResolvedModel = Field(description="The model version it would be pinned to.")
-    holes: list[PlannedHole] = Field(description="All holes of the mesh, longest rim first.")
+    holes: list[PlannedHole] = Field(description="All holes of the mesh, widest first.")
     is_exact: bool = Field(
         default=True,
         description="False with a `weld_tolerance` other than `auto`: the job finds the holes anew, and these are not "

@@ -21,7 +21,7 @@ class BoundingBox(Response):
 class Hole(Response):
     """One boundary loop."""
 
-    id: int = Field(ge=0, description="Counts from 0, longest rim first.", examples=[3])
+    id: int = Field(ge=0, description="Counts from 0, widest first.", examples=[3])
     perimeter: float = Field(ge=0, description="Length of the rim, in mesh units.", examples=[31.4])
     diameter: float = Field(ge=0, description="Largest distance within the rim, in mesh units.", examples=[10.0])
     area: float = Field(ge=0, description="Area on the rim's best plane, in square mesh units.", examples=[78.5])
@@ -68,7 +68,7 @@ class MeshFacts(Response):
     bounding_box: BoundingBox = Field(description="Box around all vertices.")
     diagonal: float = Field(ge=0, description="Diagonal of the bounding box, in mesh units.", examples=[3.46])
     mean_edge_length: float = Field(ge=0, description="Mean length of an edge, in mesh units.", examples=[0.02])
-    holes: list[Hole] = Field(description="Boundary loops, longest rim first.")
+    holes: list[Hole] = Field(description="Boundary loops, widest first.")
     warnings: list[str] = Field(
         default_factory=list, description="What the file holds more than once, or the wrong way round, for people."
     )

@@ -147,9 +147,7 @@ class HoleSelection(Request):
     max_perimeter: float | None = Field(
         default=None, gt=0, le=1e12, description="Leave holes with a longer rim open, in mesh units.", examples=[80.0]
     )
-    all_but_largest: bool = Field(
-        default=False, description="Leave the loop with the longest rim open: the border of an open scan."
-    )
+    all_but_largest: bool = Field(default=False, description="Leave the widest loop open: the border of an open scan.")
     ids: list[HoleId] | None = Field(
         default=None,
         min_length=1,

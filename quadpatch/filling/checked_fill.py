@@ -5,18 +5,20 @@ follow; where none of them holds, the loop stays open, and it is said why.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from quadpatch.filling.doubling import doubles_surface
 from quadpatch.filling.fairing import MEMBRANE, THIN_PLATE, Energy
 from quadpatch.filling.faults import Faults, find_faults
 from quadpatch.filling.fill import close_flat, close_holes, fair_holes
 from quadpatch.filling.filled_mesh import FilledMesh
+from quadpatch.filling.flat_cap import flat_caps
 from quadpatch.filling.rim_relief import relieve_rims
 from quadpatch.mesh.averages import mean_by
 from quadpatch.mesh.distance import distance_to_mesh
-from quadpatch.types import FloatArray, IntArray, TriangleMesh, Triangles
+from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Triangles
 
 # How loops of a mesh may be filled: (mesh, loops) -> filled mesh.
 Fill = Callable[[TriangleMesh, list[IntArray]], FilledMesh]
@@ -26,11 +28,13 @@ def _faired_by(energy: Energy) -> Fill:
     return lambda mesh, loops: fair_holes(close_holes(mesh, loops), energy)
 
 
+_DOUBLED = ("doubles_surface", "a fill would lie on the back of the very surface whose border it closes")
+
 # From the smoothest to the plainest.
 PLAINER_FILLS: dict[str, Fill] = {
     "thin_plate": _faired_by(THIN_PLATE),
     "membrane": _faired_by(MEMBRANE),
-    "flat": close_flat,
+    "unfaired": close_flat,
 }
 
 
@@ -44,7 +48,7 @@ class CheckedFill:
     faults : Faults
         What is left: folds that the measured surface asks for, and those of slivers.
     fill : list of str
-        How each loop was filled: `energies` or one of `PLAINER_FILLS`.
+        How each loop was filled: `energies`, `flat` (a plane patch), or one of `PLAINER_FILLS`.
     departure : (n_loops,) float64
         Mean distance of the fill from the one that was tried first, in mesh units; 0 where that one holds.
     refused : dict of int to (str, str)
@@ -58,40 +62,77 @@ class CheckedFill:
     refused: dict[int, tuple[str, str]]
 
 
+@dataclass(frozen=True)
+class LoopsToFill:
+    """Loops to be filled.
+
+    Attributes
+    ----------
+    loops : list of (n_loop,) int64
+        As `boundary_loops` gives them.
+    flat : (n_loops,) bool
+        Those that get a plane patch and nothing else.
+    border : (n_loops,) bool
+        Outer borders of pieces: their fills may double the piece.
+    """
+
+    loops: list[IntArray]
+    flat: BoolArray
+    border: BoolArray
+
+
 def fill_checked(
-    mesh: TriangleMesh, loops: list[IntArray], fill: Fill, obstacles: Triangles | None = None
+    mesh: TriangleMesh, wanted: LoopsToFill, fill: Fill, obstacles: Triangles | None = None
 ) -> CheckedFill:
     """Fill loops, look for faults, and fill those that have any in plainer ways.
 
     Parameters
     ----------
     mesh : TriangleMesh
-    loops : list of (n_loop,) int64
-        As `boundary_loops` gives them.
+    wanted : LoopsToFill
     fill : callable
-        What is tried first.
+        What is tried first, save where a plane patch is asked for.
     obstacles : (k, 3) int64, optional
         Triangles of the file that the mesh leaves out.
     """
-    first = filled = fill(mesh, loops)
+    loops, flat = wanted.loops, wanted.flat
+    first = _first_fill(mesh, loops, fill, flat)
+    doubled = np.flatnonzero(doubles_surface(first, np.flatnonzero(wanted.border)))
+    filled = first.without(doubled) if len(doubled) else first
     faults = find_faults(filled, obstacles=obstacles)
-    names = ["energies"] * len(loops)
+    names = np.where(flat, "flat", "energies").tolist()
     for name, plainer in PLAINER_FILLS.items():
-        doubtful = np.flatnonzero(faults.is_doubtful)
+        doubtful = np.flatnonzero(faults.is_doubtful & ~flat)
         if not len(doubtful):
             break
         other = plainer(mesh, [loops[i] for i in doubtful]).as_part_of(doubtful, filled)
-        tried = find_faults(filled.with_fills(other, doubtful), obstacles=obstacles)
+        tried = find_faults(filled.with_fills(other, doubtful), doubtful, obstacles)
         better = doubtful[tried.severity[doubtful] < faults.severity[doubtful]]
-        filled = filled.with_fills(other, better)
-        faults = find_faults(filled, obstacles=obstacles)
+        if len(better):
+            filled = filled.with_fills(other, better)
+            faults = find_faults(filled, obstacles=obstacles)
         for i in better.tolist():
             names[i] = name
-    filled, refused = _without_wrong(filled, obstacles)
-    filled = relieve_rims(filled)
-    replaced = np.array([i for i, name in enumerate(names) if name != "energies" and i not in refused], np.int64)
-    departure = _departure(filled, first, replaced)
-    return CheckedFill(filled, find_faults(filled, obstacles=obstacles), names, departure, refused)
+    kept, refused = _without_wrong(filled, faults, obstacles)
+    relieved = relieve_rims(kept)
+    if relieved is not filled:
+        faults = find_faults(relieved, obstacles=obstacles)
+    refused |= dict.fromkeys(doubled.tolist(), _DOUBLED)
+    replaced = np.array([i for i, name in enumerate(names) if name in PLAINER_FILLS and i not in refused], np.int64)
+    return CheckedFill(relieved, faults, names, _departure(relieved, first, replaced), refused)
+
+
+def _first_fill(mesh: TriangleMesh, loops: list[IntArray], fill: Fill, flat: BoolArray) -> FilledMesh:
+    curved, plane = np.flatnonzero(~flat), np.flatnonzero(flat)
+    if not len(plane):
+        return fill(mesh, loops)
+    faired = fill(mesh, [loops[i] for i in curved])
+    # A plane patch has no error to be guessed: it is where it was asked for.
+    gap, rim_turn = np.zeros(len(loops)), np.zeros(len(loops))
+    gap[curved], rim_turn[curved] = faired.gap, faired.rim_turn
+    whole = replace(faired.as_part_of(curved, faired), gap=gap, rim_turn=rim_turn)
+    caps = flat_caps(mesh, [[loops[i]] for i in plane])
+    return whole.with_fills(caps.as_part_of(plane, whole), plane)
 
 
 def _departure(filled: FilledMesh, first: FilledMesh, loops: IntArray) -> FloatArray:
@@ -105,20 +146,20 @@ def _departure(filled: FilledMesh, first: FilledMesh, loops: IntArray) -> FloatA
     return mean_by(filled.vertex_hole[looked_at], distance, len(filled.gap))
 
 
-def _without_wrong(filled: FilledMesh, obstacles: Triangles | None) -> tuple[FilledMesh, dict[int, tuple[str, str]]]:
+def _without_wrong(
+    filled: FilledMesh, faults: Faults, obstacles: Triangles | None
+) -> tuple[FilledMesh, dict[int, tuple[str, str]]]:
     """Open the loops again whose fills are wrong: the worst half first, since others may cross nothing but those."""
     refused: dict[int, tuple[str, str]] = {}
-    looked_at = np.arange(len(filled.gap))
-    while True:
-        faults = find_faults(filled, looked_at, obstacles)
-        wrong = np.flatnonzero(faults.is_wrong)
-        if not len(wrong):
-            return filled, refused
+    wrong = np.flatnonzero(faults.is_wrong)
+    while len(wrong):
         worst = wrong[np.argsort(-faults.severity[wrong], kind="stable")][: -(-len(wrong) // 2)]
         filled = filled.without(worst)
         for i in worst.tolist():
             refused[i] = _reason(int(faults.crossings[i]), int(faults.n_folds[i]))
-        looked_at = wrong
+        faults = find_faults(filled, np.setdiff1d(wrong, worst), obstacles)
+        wrong = np.flatnonzero(faults.is_wrong)
+    return filled, refused
 
 
 def _reason(n_crossings: int, n_folds: int) -> tuple[str, str]:

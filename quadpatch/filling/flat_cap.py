@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import manifold3d
 import numpy as np
 
-from quadpatch.filling.fill import FilledMesh
+from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.filling.refinement import Refined, flip_to_delaunay, refine
 from quadpatch.filling.triangulation import EdgeSet
 from quadpatch.mesh.boundary import directed_edges

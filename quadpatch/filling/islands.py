@@ -12,7 +12,7 @@ from scipy.spatial import cKDTree
 
 from quadpatch.mesh.holes import Hole
 from quadpatch.mesh.normals import vertex_normals
-from quadpatch.mesh.pieces import connected_pieces
+from quadpatch.mesh.pieces import find_pieces
 from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Vertices
 
 # Least cosine between the normals at both rims.
@@ -62,7 +62,7 @@ def join_islands(mesh: TriangleMesh, holes: list[Hole], chosen: list[Hole]) -> J
     ]
     if not any(candidates):
         return JoinedRims([hole.loop for hole in chosen], chosen, {})
-    piece = connected_pieces(mesh)
+    piece = find_pieces(mesh, []).of_vertex
     normals = vertex_normals(mesh.vertices, mesh.triangles)
     host_of: dict[int, int] = {}
     rims: dict[int, IntArray] = {}

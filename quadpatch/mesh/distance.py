@@ -1,9 +1,9 @@
-"""Distances from points to a triangle mesh; the one place that imports libigl."""
+"""Distances from points to a triangle mesh, by libigl."""
 
 import igl
 import numpy as np
 
-from quadpatch.types import FloatArray, TriangleMesh, Vertices
+from quadpatch.types import FloatArray, IntArray, TriangleMesh, Vertices
 
 
 def distance_to_mesh(points: Vertices, mesh: TriangleMesh) -> FloatArray:
@@ -11,10 +11,23 @@ def distance_to_mesh(points: Vertices, mesh: TriangleMesh) -> FloatArray:
 
     Infinite where the mesh has no triangle.
     """
+    return nearest_triangles(points, mesh)[0]
+
+
+def nearest_triangles(points: Vertices, mesh: TriangleMesh) -> tuple[FloatArray, IntArray]:
+    """Find the nearest triangle of each point (n, 3).
+
+    Returns
+    -------
+    distance : (n,) float64
+        In mesh units; infinite where the mesh has no triangle.
+    triangle : (n,) int64
+        -1 where the mesh has no triangle.
+    """
     if not len(mesh.triangles) or not len(points):
-        return np.full(len(points), np.inf)
+        return np.full(len(points), np.inf), np.full(len(points), -1)
     used, local = np.unique(mesh.triangles, return_inverse=True)
-    squared, _, _ = igl.point_mesh_squared_distance(
+    squared, triangle, _ = igl.point_mesh_squared_distance(
         np.ascontiguousarray(points), mesh.vertices[used], local.reshape(-1, 3)
     )
-    return np.asarray(np.sqrt(squared))
+    return np.asarray(np.sqrt(squared)), np.asarray(triangle, np.int64)

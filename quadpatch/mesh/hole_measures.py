@@ -28,7 +28,7 @@ class Hole:
     Attributes
     ----------
     id : int
-        Position in the list of holes, longest perimeter first.
+        Position in the list of holes, widest first.
     loop : (n_edges,) int64
         Vertices, with the surface on the left of the loop.
     perimeter, diameter : float
@@ -87,7 +87,7 @@ def find_holes(mesh: TriangleMesh) -> list[Hole]:
     Returns
     -------
     list of Hole
-        Longest perimeter first; equal ones in the order of their first vertex. Ids count up from 0.
+        Widest first; equal ones by their perimeter, then in the order of their first vertex. Ids count up from 0.
     """
     boundary = boundary_loops(mesh.triangles)
     if not boundary.loops:
@@ -104,10 +104,12 @@ def find_holes(mesh: TriangleMesh) -> list[Hole]:
     low = _vectors(np.minimum.reduceat(rims.points, rims.starts[:-1], axis=0))
     high = _vectors(np.maximum.reduceat(rims.points, rims.starts[:-1], axis=0))
     areas = np.linalg.norm(shapes.vector_areas, axis=1)
+    # The border of a sheet is wider than any hole in it; the rim of a winding hole may well be longer.
+    widest_first = np.argsort(-shapes.diameters, kind="stable").tolist()
     return [
         Hole(
-            i,
-            loop,
+            number,
+            loops[i],
             float(shapes.perimeters[i]),
             float(shapes.diameters[i]),
             float(areas[i]),
@@ -119,7 +121,7 @@ def find_holes(mesh: TriangleMesh) -> list[Hole]:
             low[i],
             high[i],
         )
-        for i, loop in enumerate(loops)
+        for number, i in enumerate(widest_first)
     ]
 
 
