@@ -8,6 +8,8 @@
     │   ├── FormatError         unsupported_format    a format or feature that is not read or written
     │   ├── EmptyMeshError      empty_mesh            no vertex or no face
     │   ├── NotFiniteError      not_finite            infinite or NaN coordinates
+    │   ├── CoordinateRangeError  coordinate_out_of_range  coordinates of a size that no scan has
+    │   ├── PrecisionError      precision_lost        a format whose numbers are too short for the mesh
     │   ├── IndexRangeError     index_out_of_range    a face names a vertex that is not there
     │   └── TooLargeError       mesh_too_large        over a limit of the reader
     ├── OptionError             invalid_option        an option outside its range, an unknown hole id
@@ -17,11 +19,22 @@
         └── NoQuadsError        no_quads              the outline is too small or too thin for one quad
 """
 
+from quadpatch.printable import printable
+
 
 class QuadpatchError(Exception):
-    """Base of all errors of the method; `code` is stable and meant for programs."""
+    """Base of all errors of the method; `code` is stable and meant for programs.
+
+    Parameters
+    ----------
+    message : str
+        For people, in one line; words of the file may stand in it as they are.
+    """
 
     code = "quadpatch_error"
+
+    def __init__(self, message: str = "") -> None:
+        super().__init__(printable(message))
 
 
 class MeshError(QuadpatchError):
@@ -52,6 +65,18 @@ class NotFiniteError(MeshError):
     """Infinite or NaN coordinates."""
 
     code = "not_finite"
+
+
+class CoordinateRangeError(MeshError):
+    """Coordinates of a size that no scan has, as of a file that is read in the wrong way."""
+
+    code = "coordinate_out_of_range"
+
+
+class PrecisionError(MeshError):
+    """The numbers of a format are too short for the mesh: triangles would collapse."""
+
+    code = "precision_lost"
 
 
 class IndexRangeError(MeshError):
