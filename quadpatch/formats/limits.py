@@ -10,11 +10,22 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from quadpatch.errors import EmptyMeshError, IndexRangeError, NotFiniteError, TooLargeError
-from quadpatch.types import FloatArray, IntArray, Triangles, Vertices
+from quadpatch.errors import (
+    CoordinateRangeError,
+    EmptyMeshError,
+    IndexRangeError,
+    NotFiniteError,
+    TooLargeError,
+)
+from quadpatch.types import BoolArray, FloatArray, IntArray, Triangles, Vertices
 
-# Products of four lengths (squared areas) of coordinates below this stay finite in float64.
-LARGEST_COORDINATE = 1e60
+# No scan is larger, in any unit: in nanometres the Earth is 1.3e16 wide. Bytes that are no coordinates, read as
+# such, soon give a larger number.
+LARGEST_COORDINATE = 1e18
+# The smallest number that float32 holds with all its digits. Small integers, read as float32, lie below it.
+SMALLEST_COORDINATE = float(np.finfo(np.float32).tiny)
+# A few coordinates below it are the rounding of a zero; more than this share of those that are not zero are none.
+_MOST_TOO_SMALL = 0.5
 
 
 @dataclass(frozen=True)
@@ -68,18 +79,31 @@ def check_vertices(vertices: Vertices) -> None:
 
     Raises
     ------
-    EmptyMeshError, NotFiniteError
+    EmptyMeshError, NotFiniteError, CoordinateRangeError
     """
     if len(vertices) == 0:
         raise EmptyMeshError("the file has no vertex")
+    size = np.abs(vertices)
     # One pass: a NaN fails the comparison as an infinity does.
-    usable = (np.abs(vertices) <= LARGEST_COORDINATE).all(axis=1)
-    if not usable.all():
-        bad = int(np.argmin(usable))
-        raise NotFiniteError(
-            f"vertex {bad} of {len(vertices):,} has the coordinates {vertices[bad].tolist()}; "
-            f"{int((~usable).sum()):,} vertices are infinite, NaN or beyond {LARGEST_COORDINATE:g}"
+    bad = np.asarray(~(size <= LARGEST_COORDINATE).all(axis=1))
+    if bad.any():
+        _refuse_large(vertices, bad)
+    n_too_small = int(((size > 0) & (size < SMALLEST_COORDINATE)).sum())
+    if n_too_small > _MOST_TOO_SMALL * np.count_nonzero(size):
+        raise CoordinateRangeError(
+            f"{n_too_small:,} of {size.size:,} coordinates are smaller than {SMALLEST_COORDINATE:.3g} and not zero: "
+            "the file does not hold what its format says"
         )
+
+
+def _refuse_large(vertices: Vertices, bad: BoolArray) -> None:
+    """Raise the error of the first bad vertex; NaN and infinity come before what is merely too large."""
+    is_infinite = ~np.isfinite(vertices).all(axis=1)
+    first = int(np.argmax(is_infinite if is_infinite.any() else bad))
+    where = f"vertex {first} of {len(vertices):,} has the coordinates {vertices[first].tolist()}"
+    if is_infinite.any():
+        raise NotFiniteError(f"{where}; {int(is_infinite.sum()):,} vertices are infinite or NaN")
+    raise CoordinateRangeError(f"{where}; {int(bad.sum()):,} vertices are beyond {LARGEST_COORDINATE:g}, the limit")
 
 
 def check_indices(corners: IntArray, n_vertices: int) -> None:

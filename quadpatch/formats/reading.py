@@ -38,8 +38,8 @@ def read_scan(path: Path, limits: ReadLimits | None = None) -> Scan:
     Raises
     ------
     MeshError
-        ReadError, FormatError, EmptyMeshError, NotFiniteError, IndexRangeError or TooLargeError; nothing else,
-        whatever the file holds.
+        ReadError, FormatError, EmptyMeshError, NotFiniteError, CoordinateRangeError, IndexRangeError or
+        TooLargeError; nothing else, whatever the file holds.
     """
     limits = limits or ReadLimits()
     try:

@@ -56,7 +56,11 @@ def test_negative_indices_count_from_where_they_stand() -> None:
     assert scan.triangles.tolist() == [[0, 1, 2], [3, 4, 5]]
 
 
-@given(st.lists(st.lists(st.floats(-1e30, 1e30), min_size=3, max_size=3), min_size=3, max_size=9))
+# What the reader takes for a coordinate.
+USUAL = st.floats(-1e18, 1e18).filter(lambda number: number == 0 or abs(number) > 1e-37)
+
+
+@given(st.lists(st.lists(USUAL, min_size=3, max_size=3), min_size=3, max_size=9))
 def test_coordinates_of_text_are_exact(points: list[list[float]]) -> None:
     text = "".join("v {!r} {!r} {!r}\n".format(*point) for point in points)
     assert read(text + "f 1 2 3\n").vertices.tolist() == points

@@ -6,7 +6,15 @@ from typing import Any
 import numpy as np
 import pytest
 
-from quadpatch.errors import EmptyMeshError, FormatError, IndexRangeError, NotFiniteError, ReadError, TooLargeError
+from quadpatch.errors import (
+    CoordinateRangeError,
+    EmptyMeshError,
+    FormatError,
+    IndexRangeError,
+    NotFiniteError,
+    ReadError,
+    TooLargeError,
+)
 from quadpatch.formats.gltf.reader import read_gltf
 from quadpatch.formats.limits import ReadLimits
 from quadpatch.formats.scan import Scan
@@ -117,7 +125,7 @@ def damaged(change: str) -> tuple[dict[str, Any], bytes]:
         ("d['nodes'][0]['mesh'] = True", ReadError),
         ("d['nodes'][0]['scale'] = [1, 2]", ReadError),
         ("d['nodes'][0]['scale'] = ['1', 2, 3]", ReadError),
-        ("d['nodes'][0]['scale'] = [1e200, 1e200, 1e200]", NotFiniteError),
+        ("d['nodes'][0]['scale'] = [1e200, 1e200, 1e200]", CoordinateRangeError),
         ("d['scenes'] = [{}]", EmptyMeshError),
         ("p['mode'] = 0", EmptyMeshError),
         ("p['attributes'] = {}", ReadError),

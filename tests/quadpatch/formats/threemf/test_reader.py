@@ -6,7 +6,15 @@ import zipfile
 import numpy as np
 import pytest
 
-from quadpatch.errors import EmptyMeshError, FormatError, IndexRangeError, NotFiniteError, ReadError, TooLargeError
+from quadpatch.errors import (
+    CoordinateRangeError,
+    EmptyMeshError,
+    FormatError,
+    IndexRangeError,
+    NotFiniteError,
+    ReadError,
+    TooLargeError,
+)
 from quadpatch.formats.limits import ReadLimits
 from quadpatch.formats.scan import Scan
 from quadpatch.formats.threemf.reader import read_threemf
@@ -66,7 +74,7 @@ def test_colours_of_groups_and_base_materials_are_read() -> None:
         (model(OBJECT.replace('v3="1"', 'v3="1 2"'), ITEM), ReadError),
         (model(OBJECT.replace('x="1.0"', 'x="inf"'), ITEM), NotFiniteError),
         (model(OBJECT, '<item objectid="1" transform="1 2 3"/>'), ReadError),
-        (model(OBJECT, '<item objectid="1" transform="1e200 0 0 0 1 0 0 0 1 0 0 0"/>'), NotFiniteError),
+        (model(OBJECT, '<item objectid="1" transform="1e200 0 0 0 1 0 0 0 1 0 0 0"/>'), CoordinateRangeError),
         (model(OBJECT, ITEM)[:-20], ReadError),
         (HEAD.replace("<model", '<!DOCTYPE a [<!ENTITY b "c">]><model') + "</model>", ReadError),
     ],

@@ -1,0 +1,49 @@
+"""Coordinates that no scan has."""
+
+import numpy as np
+import pytest
+
+from quadpatch.errors import CoordinateRangeError, NotFiniteError
+from quadpatch.formats.limits import check_vertices
+from quadpatch.types import FloatArray
+from tests.quadpatch.shapes import sphere
+
+BALL = sphere(2).vertices
+
+
+@pytest.mark.parametrize("number", [3e38, -3e38, 1.1e18, 1e300])
+def test_one_coordinate_beyond_reason_is_enough(number: float) -> None:
+    vertices = BALL.copy()
+    vertices[17, 1] = number
+    with pytest.raises(CoordinateRangeError, match="vertex 17 of 162"):
+        check_vertices(vertices)
+
+
+def test_what_is_not_finite_comes_first() -> None:
+    vertices = BALL.copy()
+    vertices[3, 0], vertices[9, 2] = 3e38, np.nan
+    with pytest.raises(NotFiniteError, match="vertex 9 of 162"):
+        check_vertices(vertices)
+
+
+@pytest.mark.parametrize(
+    "vertices",
+    [
+        1e-39 * BALL,
+        np.arange(1, 31, dtype=np.uint32).view(np.float32).reshape(-1, 3).astype(np.float64),
+        1e-300 * BALL,
+    ],
+    ids=["float32 subnormal", "integers", "float64"],
+)
+def test_coordinates_that_are_mostly_below_float32_are_refused(vertices: FloatArray) -> None:
+    with pytest.raises(CoordinateRangeError, match=r"smaller than 1\.18e-38"):
+        check_vertices(vertices)
+
+
+@pytest.mark.parametrize(
+    "vertices",
+    [BALL, 1e17 * BALL, 1e-30 * BALL, np.zeros((3, 3)), np.column_stack([BALL[:, :2], np.full(len(BALL), 1e-40)])],
+    ids=["usual", "huge", "tiny", "zero", "a plane that is zero but for rounding"],
+)
+def test_what_a_scan_may_have_passes(vertices: FloatArray) -> None:
+    check_vertices(vertices)
