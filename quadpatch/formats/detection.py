@@ -3,7 +3,7 @@
 import re
 
 from quadpatch.errors import FormatError, ReadError
-from quadpatch.formats.stl import is_binary_stl
+from quadpatch.formats.stl_layout import is_binary_stl, is_binary_stl_with_more
 from quadpatch.formats.text import decode_text
 
 KNOWN = ("ply", "stl", "obj", "off", "glb", "gltf", "3mf")
@@ -40,6 +40,8 @@ def detect_format(data: bytes, suffix: str) -> str:
     found = _by_magic(data) or _by_text(decode_text(data[:_LOOK_AT])[0] if data[:1] != b"\0" else b"")
     if found is None and suffix in KNOWN:
         found = suffix
+    if found is None and is_binary_stl_with_more(data):
+        found = "stl"
     if found is None:
         raise FormatError(f"this is none of the formats that are read: {', '.join(KNOWN)}")
     if found in _UNREAD:

@@ -5,6 +5,9 @@ them. Binary facets that were invented have the attribute byte count 1 (measured
 the conventions of VisCAM and SolidView, which mark colours by bit 15. Ascii facets have no place for a mark: the
 invented ones are those behind the measured ones, inside the last solid, because many readers stop at the first
 `endsolid`.
+
+The word `solid` at the beginning says nothing: binary files have it as often as ascii ones.
+`quadpatch.formats.stl_layout` tells them apart.
 """
 
 import re
@@ -16,14 +19,19 @@ from quadpatch.errors import EmptyMeshError, ReadError
 from quadpatch.formats.attributes import joined_vertices, triangle_normals
 from quadpatch.formats.limits import ReadLimits, check_vertices, to_float64
 from quadpatch.formats.scan import Appearance, Fill, Scan
+from quadpatch.formats.stl_layout import FACET, HEADER_SIZE, check_layout, is_ascii_stl
 from quadpatch.formats.text import line_end_of, parse_numbers, to_words
 from quadpatch.types import BoolArray, FloatArray
 
-_HEADER_SIZE = 84
-_FACET = np.dtype([("normal", "<f4", (3,)), ("vertices", "<f4", (3, 3)), ("attribute", "<u2")])
 _VERTEX_LINE = re.compile(rb"(?<![^\s])vertex[ \t]+([^\s]+[ \t]+[^\s]+[ \t]+[^\s]+)", re.IGNORECASE)
 _WORDS = re.compile(rb"(?<![^\s])(endfacet|facet|endloop)(?![^\s])", re.IGNORECASE)
-_END_SOLID = re.compile(rb"^[ \t]*endsolid(?![^\s])", re.IGNORECASE | re.MULTILINE)
+_END_SOLID = re.compile(rb"(?<![^\s])endsolid(?![^\s])", re.IGNORECASE)
+# A name runs to the end of its line, or to the first facet where all of the text stands in one line.
+_NAME = re.compile(
+    rb"((?:\A(?:\xef\xbb\xbf)?|(?<=[\r\n])|(?<=endfacet[ \t]))[^\S\r\n]*(?:end)?solid)([^\r\n]*?)"
+    rb"(?=[\r\n]|\Z|(?<=\s)facet\s+normal(?:\s+[^\s]+){3}\s+outer\s+loop\s+vertex\s)",
+    re.IGNORECASE,
+)
 
 
 @dataclass(frozen=True)
@@ -35,11 +43,11 @@ class BinaryStl:
 
     def append(self, scan: Scan, fill: Fill) -> bytes:
         """Raise the count and append facets; all other bytes stay."""
-        stop = _HEADER_SIZE + _FACET.itemsize * self.n_facets
+        stop = HEADER_SIZE + FACET.itemsize * self.n_facets
         count = np.array(self.n_facets + len(fill.triangles), dtype="<u4").tobytes()
         corners = joined_vertices(scan, fill)[fill.triangles]
         new = encode_facets(corners, triangle_normals(scan, fill), np.ones(len(fill.triangles), dtype=bool))
-        return self.data[: _HEADER_SIZE - 4] + count + self.data[_HEADER_SIZE:stop] + new + self.data[stop:]
+        return self.data[: HEADER_SIZE - 4] + count + self.data[HEADER_SIZE:stop] + new + self.data[stop:]
 
     def appearance(self, scan: Scan) -> Appearance:
         """Nothing: the colour conventions of STL differ from program to program."""
@@ -55,7 +63,7 @@ class AsciiStl:
     def append(self, scan: Scan, fill: Fill) -> bytes:
         """Insert facets in front of the last `endsolid`."""
         line_end = line_end_of(self.data)
-        ends = list(_END_SOLID.finditer(self.data))
+        ends = list(_END_SOLID.finditer(_without_names(self.data)))
         at = ends[-1].start() if ends else len(self.data)
         head = self.data[:at]
         if not head.endswith((b"\n", b"\r")):
@@ -65,18 +73,6 @@ class AsciiStl:
     def appearance(self, scan: Scan) -> Appearance:
         """Nothing: ascii STL knows no colours."""
         return Appearance()
-
-
-def is_binary_stl(data: bytes) -> bool:
-    """Whether the count in an STL header fits the size of the file exactly.
-
-    The word `solid` at the beginning says nothing: binary files have it as often as ascii ones.
-    """
-    return len(data) >= _HEADER_SIZE and len(data) == _HEADER_SIZE + _FACET.itemsize * _count(data)
-
-
-def _count(data: bytes) -> int:
-    return int.from_bytes(data[_HEADER_SIZE - 4 : _HEADER_SIZE], "little")
 
 
 def read_stl(data: bytes, limits: ReadLimits) -> Scan:
@@ -91,22 +87,15 @@ def read_stl(data: bytes, limits: ReadLimits) -> Scan:
     Raises
     ------
     MeshError
-        ReadError, EmptyMeshError, NotFiniteError or TooLargeError.
+        ReadError, EmptyMeshError, NotFiniteError, CoordinateRangeError or TooLargeError.
     """
-    if not is_binary_stl(data) and data.lstrip()[:5].lower() == b"solid":
-        return _read_ascii(data, limits)
-    return _read_binary(data, limits)
+    return _read_ascii(data, limits) if is_ascii_stl(data) else _read_binary(data, limits)
 
 
 def _read_binary(data: bytes, limits: ReadLimits) -> Scan:
-    if len(data) < _HEADER_SIZE:
-        raise ReadError(f"an STL file has a header of {_HEADER_SIZE} bytes; this file has {len(data)}")
-    n_facets = _count(data)
-    room = (len(data) - _HEADER_SIZE) // _FACET.itemsize
-    if n_facets > room:
-        raise ReadError(f"the STL header declares {n_facets:,} facets; the file has room for {room:,}")
+    n_facets = check_layout(data)
     _check_counts(n_facets, limits)
-    facets = np.frombuffer(data, _FACET, n_facets, _HEADER_SIZE)
+    facets = np.frombuffer(data, FACET, n_facets, HEADER_SIZE)
     vertices = to_float64(facets["vertices"].reshape(-1, 3))
     return _scan(vertices, BinaryStl(data, n_facets))
 
@@ -124,8 +113,9 @@ def _scan(vertices: FloatArray, source: BinaryStl | AsciiStl) -> Scan:
 
 
 def _read_ascii(data: bytes, limits: ReadLimits) -> Scan:
-    lines = _VERTEX_LINE.findall(data)
-    words = [word.lower() for word in _WORDS.findall(data)]
+    text = _without_names(data)
+    lines = _VERTEX_LINE.findall(text)
+    words = [word.lower() for word in _WORDS.findall(text)]
     n_facets = words.count(b"endfacet")
     if len(lines) != 3 * n_facets or words.count(b"facet") != n_facets or words.count(b"endloop") != n_facets:
         raise ReadError(
@@ -137,6 +127,11 @@ def _read_ascii(data: bytes, limits: ReadLimits) -> Scan:
     if len(numbers) != 9 * n_facets:
         raise ReadError(f"the STL text has {len(numbers):,} coordinates for {3 * n_facets:,} vertices")
     return _scan(numbers.reshape(-1, 3), AsciiStl(data))
+
+
+def _without_names(data: bytes) -> bytes:
+    """Put blanks in the place of the names of solids, which may hold any word; all else stays where it is."""
+    return _NAME.sub(lambda match: match[1] + b" " * len(match[2]), data)
 
 
 def _ascii_facets(scan: Scan, fill: Fill, line_end: str) -> str:
@@ -158,12 +153,12 @@ def encode_facets(corners: FloatArray, normals: FloatArray, invented: BoolArray)
     invented : (m,) bool
         True sets the attribute byte count to 1.
     """
-    facets = np.zeros(len(corners), _FACET)
+    facets = np.zeros(len(corners), FACET)
     facets["normal"], facets["vertices"], facets["attribute"] = normals, corners, invented
     return facets.tobytes()
 
 
 def encode_stl(corners: FloatArray, normals: FloatArray, invented: BoolArray) -> bytes:
     """Encode a whole binary STL file; parameters as of `encode_facets`."""
-    header = b"Quadpatch: attribute 1 marks invented facets".ljust(_HEADER_SIZE - 4)
+    header = b"Quadpatch: attribute 1 marks invented facets".ljust(HEADER_SIZE - 4)
     return header + np.array(len(corners), dtype="<u4").tobytes() + encode_facets(corners, normals, invented)
