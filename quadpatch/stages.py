@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 
+from quadpatch.optional import failure_of
 from quadpatch.types import Progress, no_progress
 
 
@@ -25,3 +26,14 @@ class Stages:
         finally:
             self.seconds[name] = self.seconds.get(name, 0.0) + time.perf_counter() - start
         self.progress(name, 1.0)
+
+
+def harmless(progress: Progress) -> Progress:
+    """Wrap a listener so that what it raises ends no repair; it is not called again after that."""
+    listeners = [progress]
+
+    def report(stage: str, fraction: float) -> None:
+        if listeners and failure_of(lambda: listeners[0](stage, fraction)) is not None:
+            listeners.clear()
+
+    return report

@@ -38,17 +38,30 @@ def extend_harmonically(edges: IntArray, known: BoolArray, values: FloatArray) -
     solved = ~known & reached[component]
     if not solved.any():
         return result
-    degree = diags_array(adjacency.sum(axis=1)).tocsr()
-    laplacian = csr_array((degree - adjacency)[solved])
-    factors = splu(laplacian[:, solved].tocsc(), permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
-    spread = factors.solve(np.ascontiguousarray(-(laplacian[:, known] @ values[known])))
-    # Rounding may step over the range of a component by a few units in the last place.
     low = np.full((n_components, values.shape[1]), np.inf)
     high = -low
     np.minimum.at(low, component[known], values[known])
     np.maximum.at(high, component[known], values[known])
-    result[solved] = np.clip(spread, low[component[solved]], high[component[solved]])
+    low, high = low[component[solved]], high[component[solved]]
+    spread = _solution(adjacency, known, solved, values)
+    # Numbers near the largest float64 overflow in the sums, and take the middle of their range.
+    spread = np.where(np.isfinite(spread), spread, 0.5 * low + 0.5 * high)
+    # Rounding may step over the range of a component by a few units in the last place.
+    result[solved] = np.clip(spread, low, high)
     return result
+
+
+def _solution(adjacency: csr_array, known: BoolArray, solved: BoolArray, values: FloatArray) -> FloatArray:
+    """Values (n_solved, d) that are the mean of their neighbours'; NaN where that can't be computed."""
+    degree = diags_array(adjacency.sum(axis=1)).tocsr()
+    laplacian = csr_array((degree - adjacency)[solved])
+    try:
+        factors = splu(laplacian[:, solved].tocsc(), permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
+    except RuntimeError:
+        # SuperLU's word for a matrix that is singular to its accuracy.
+        return np.full((int(solved.sum()), values.shape[1]), np.nan)
+    with np.errstate(over="ignore", invalid="ignore"):
+        return np.asarray(factors.solve(np.ascontiguousarray(-(laplacian[:, known] @ values[known]))))
 
 
 def _adjacency(edges: IntArray, n_nodes: int) -> csr_array:

@@ -1,5 +1,6 @@
 """Writing a repaired scan: in its own format as the file that came in with the fill appended, else converted."""
 
+from dataclasses import replace
 from pathlib import Path
 
 from quadpatch.errors import FormatError
@@ -9,6 +10,7 @@ from quadpatch.formats.gltf.encoder import encode_as_glb, encode_as_gltf
 from quadpatch.formats.scan import Fill, Scan
 from quadpatch.formats.threemf.encoder import encode_as_threemf
 from quadpatch.formats.whole import assemble
+from quadpatch.optional import failure_of
 
 _ENCODERS = {
     "ply": encode_as_ply,
@@ -27,7 +29,7 @@ def check_suffix(path: Path) -> None:
         raise FormatError(f"files with the suffix {path.suffix!r} are not written, only {', '.join(_ENCODERS)}")
 
 
-def write_scan(path: Path, scan: Scan, fill: Fill) -> None:
+def write_scan(path: Path, scan: Scan, fill: Fill) -> list[str]:
     """Write a scan with a fill appended.
 
     Parameters
@@ -38,6 +40,11 @@ def write_scan(path: Path, scan: Scan, fill: Fill) -> None:
     scan : Scan
     fill : Fill
 
+    Returns
+    -------
+    list of str
+        Warnings: one where what the scan carries besides its shape could not be carried on, and was left out.
+
     Raises
     ------
     FormatError
@@ -47,8 +54,24 @@ def write_scan(path: Path, scan: Scan, fill: Fill) -> None:
     """
     check_suffix(path)
     suffix = path.suffix.lower().lstrip(".")
-    if suffix == scan.format and scan.source is not None:
-        data = scan.source.append(scan, fill)
-    else:
-        data = _ENCODERS[suffix](assemble(scan, fill))
+    data, warnings = _encode(suffix, scan, fill)
     write_whole(path, data)
+    return warnings
+
+
+def _encode(suffix: str, scan: Scan, fill: Fill) -> tuple[bytes, list[str]]:
+    """Encode with colours, normals and the like; where these fail, the shape alone."""
+    encoded: list[bytes] = []
+
+    def with_attributes() -> None:
+        if suffix == scan.format and scan.source is not None:
+            encoded.append(scan.source.append(scan, fill))
+        else:
+            encoded.append(_ENCODERS[suffix](assemble(scan, fill)))
+
+    failure = failure_of(with_attributes, passing=(FormatError,))
+    if failure is None:
+        return encoded[0], []
+    bare = replace(scan, source=None)
+    warning = f"colours, normals and the like are left out of the repaired mesh, which holds the shape alone: {failure}"
+    return _ENCODERS[suffix](assemble(bare, fill)), [warning]

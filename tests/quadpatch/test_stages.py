@@ -1,6 +1,6 @@
 import pytest
 
-from quadpatch.stages import Stages
+from quadpatch.stages import Stages, harmless
 
 
 def test_a_stage_tells_when_it_starts_and_ends() -> None:
@@ -33,3 +33,19 @@ def test_a_stage_that_fails_has_its_time_but_no_end() -> None:
         raise ValueError("no")
     assert told == [0.0]
     assert "fill" in stages.seconds
+
+
+def test_a_listener_that_fails_ends_nothing_and_is_not_called_again() -> None:
+    calls: list[str] = []
+
+    def listen(stage: str, fraction: float) -> None:
+        calls.append(stage)
+        raise BrokenPipeError("the terminal is gone")
+
+    stages = Stages(harmless(listen))
+    with stages.stage("read"):
+        pass
+    with stages.stage("fill"):
+        pass
+    assert calls == ["read"]
+    assert list(stages.seconds) == ["read", "fill"]

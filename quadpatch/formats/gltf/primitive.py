@@ -70,9 +70,13 @@ class Store:
         return len(self.document[name]) - 1
 
     def add_array(self, values: NDArray[Any], code: str, is_index: bool = False) -> int:
-        """Append an array (n,) or (n, k) as `f4` or `u4`; returns the number of its accessor."""
+        """Append an array (n,) or (n, k) as `f4` or `u4`; returns the number of its accessor.
+
+        The document states the range of each array, and JSON knows no NaN and no infinity: NaN becomes 0, and what
+        float32 can't hold becomes its largest number.
+        """
         padding = bytes(-self._size % 4)
-        table = values.reshape(len(values), -1).astype("<" + code)
+        table = _finite(values.reshape(len(values), -1)).astype("<" + code)
         data = table.tobytes()
         view = self.add(
             "bufferViews",
@@ -180,3 +184,10 @@ def _marks(
     result_confidence = confidence[local]
     result_confidence[new] = corners.fill.vertex_confidence[vertex[new] - corners.n_measured]
     return hole[local], result_confidence
+
+
+def _finite(values: NDArray[Any]) -> NDArray[Any]:
+    if values.dtype.kind != "f":
+        return values
+    largest = float(np.finfo(np.float32).max)
+    return np.asarray(np.clip(np.nan_to_num(values), -largest, largest))

@@ -46,3 +46,12 @@ def test_components_without_a_known_node_stay_unknown() -> None:
     spread = extend_harmonically(edges, np.array([True, False, False, False]), np.full((4, 1), 7.0))
     assert spread[:2, 0].tolist() == [7, 7]
     assert np.isnan(spread[2:]).all()
+
+
+def test_numbers_at_the_end_of_the_range_stay_within_that_of_their_rim() -> None:
+    largest = np.finfo(np.float64).max
+    known = np.array([True, False, False, True])
+    values = np.array([[largest], [0.0], [0.0], [0.9 * largest]])
+    spread = extend_harmonically(path_edges(4), known, values)[:, 0]
+    assert np.isfinite(spread).all()
+    assert (spread >= 0.9 * largest).all()
