@@ -1,7 +1,7 @@
 """From file to file: what the command line and the worker's engine call."""
 
 import hashlib
-from dataclasses import asdict, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -9,12 +9,14 @@ import numpy as np
 
 from quadpatch.errors import EmptyMeshError, OptionError, TorchMissingError
 from quadpatch.formats.marks import NUMBERED
+from quadpatch.formats.precision import check_precision
 from quadpatch.formats.reading import read_scan
 from quadpatch.formats.scan import Fill, Scan
 from quadpatch.formats.writing import check_suffix, write_scan
 from quadpatch.inpainters.dictionary import DictionaryInpainter
 from quadpatch.inpainters.heights import HeightsInpainter
 from quadpatch.inpainters.inpainter import Inpainter
+from quadpatch.json_values import json_ready
 from quadpatch.mesh.holes import find_holes, select_holes
 from quadpatch.mesh.measures import diagonal
 from quadpatch.mesh.near_vertices import Tolerance
@@ -32,7 +34,7 @@ from quadpatch.report import (
     describe_redundancy,
     with_hole_numbers,
 )
-from quadpatch.stages import Stages
+from quadpatch.stages import Stages, harmless
 from quadpatch.types import Progress, TriangleMesh, no_progress
 
 SMOOTH = "smooth"
@@ -47,6 +49,24 @@ IMPLIED_UNITS = {".glb": "meter", ".gltf": "meter", ".3mf": "millimeter"}
 
 # Areas and their squares vanish in float64 for a mesh smaller than this, in mesh units.
 LEAST_DIAGONAL = 1e-60
+
+
+@dataclass(frozen=True)
+class RepairedFile:
+    """A repair whose mesh has been written.
+
+    Attributes
+    ----------
+    report : dict
+        JSON-ready. Optional steps that follow add their warnings and seconds to it.
+    measured : TriangleMesh
+        What was repaired, repeated vertices joined.
+    repair : Repair
+    """
+
+    report: dict[str, Any]
+    measured: TriangleMesh
+    repair: Repair
 
 
 def repair_file(
@@ -77,20 +97,43 @@ def repair_file(
     ------
     QuadpatchError
         Its `code` says what is wrong with file, model or options.
+    OSError
+        If the output can't be written.
     """
+    return repair_and_keep(source, output, model, options, progress).report
+
+
+def repair_and_keep(
+    source: Path,
+    output: Path,
+    model: str | Path = SELF,
+    options: RepairOptions | None = None,
+    progress: Progress = no_progress,
+) -> RepairedFile:
+    """Repair one file and keep what pictures of it are drawn from; see `repair_file`."""
     options = options or RepairOptions()
     check_suffix(output)
+    progress = harmless(progress)
     stages = Stages(progress)
     inpainter, card = _resolve(model, options, progress)
     with stages.stage("read"):
         scan, welded = _read(source, options.weld_tolerance)
+        precision = check_precision(scan, output)
     by_recipe = inpaint_as_paper if options.recipe == "paper" else inpaint
     repair = by_recipe(welded.mesh, inpainter, options, stages, learn=model == SELF, obstacles=welded.ignored_triangles)
     with stages.stage("write"):
-        write_scan(output, scan, _fill(scan, welded, repair))
-    warnings = [*repair.warnings, *describe_redundancy(welded.counts), *_unit_warnings(scan, output)]
-    report = build_report(scan, welded, replace(repair, warnings=warnings), options, card, stages)
-    return with_hole_numbers(report, scan.next_hole_id if output.suffix.lower() in NUMBERED else None)
+        losses = write_scan(output, scan, _fill(scan, welded, repair))
+    warnings = [
+        *repair.warnings,
+        *describe_redundancy(welded.counts),
+        *precision,
+        *losses,
+        *_unit_warnings(scan, output),
+    ]
+    repair = replace(repair, warnings=warnings)
+    report = build_report(scan, welded, repair, options, card, stages)
+    report = with_hole_numbers(report, scan.next_hole_id if output.suffix.lower() in NUMBERED else None)
+    return RepairedFile(report, welded.mesh, repair)
 
 
 def inspect_file(source: Path, weld_tolerance: Tolerance = "auto") -> dict[str, Any]:
@@ -103,21 +146,24 @@ def inspect_file(source: Path, weld_tolerance: Tolerance = "auto") -> dict[str, 
     mesh = welded.mesh
     holes = find_holes(mesh)
     selection = select_holes(holes, RepairOptions().holes, diagonal(mesh))
-    return {
-        **describe_mesh(scan, mesh),
-        "length_unit": scan.unit or UNKNOWN_UNIT,
-        "welded": asdict(welded.counts),
-        "warnings": describe_redundancy(welded.counts),
-        "holes": [
-            {
-                **describe_hole(hole),
-                "chosen": hole.id not in selection.skipped,
-                "action": selection.actions.get(hole.id),
-                "reason": selection.skipped.get(hole.id, (None, None))[1],
-            }
-            for hole in holes
-        ],
-    }
+    facts: dict[str, Any] = json_ready(
+        {
+            **describe_mesh(scan, mesh),
+            "length_unit": scan.unit or UNKNOWN_UNIT,
+            "welded": asdict(welded.counts),
+            "warnings": describe_redundancy(welded.counts),
+            "holes": [
+                {
+                    **describe_hole(hole),
+                    "chosen": hole.id not in selection.skipped,
+                    "action": selection.actions.get(hole.id),
+                    "reason": selection.skipped.get(hole.id, (None, None))[1],
+                }
+                for hole in holes
+            ],
+        }
+    )
+    return facts
 
 
 def _read(source: Path, weld_tolerance: Tolerance) -> tuple[Scan, Weld]:
@@ -226,15 +272,4 @@ def _fill(scan: Scan, welded: Weld, repair: Repair) -> Fill:
         confidence[filled.vertex_hole],
         scan.next_hole_id + ids[filled.triangle_hole],
         confidence[filled.triangle_hole],
-    )
-
-
-def draw_repair(source: Path, repaired: Path, picture: Path) -> None:
-    """Draw the file before and after its repair, side by side, as PNG."""
-    from quadpatch.picture import render_before_after  # noqa: PLC0415  most repairs draw nothing
-
-    before, after = read_scan(source), read_scan(repaired)
-    invented = np.arange(len(after.triangles)) >= len(before.triangles)
-    render_before_after(
-        weld(before.vertices, before.triangles).mesh, TriangleMesh(after.vertices, after.triangles), invented, picture
     )

@@ -1,9 +1,13 @@
-"""The report of a repair, ready for JSON. Lengths are in the file's unit, which `length_unit` names."""
+"""The report of a repair, ready for JSON. Lengths are in the file's unit, which `length_unit` names.
+
+A number that is not finite is null.
+"""
 
 from dataclasses import asdict
-from typing import Any
+from typing import Any, cast
 
 from quadpatch.formats.scan import Scan
+from quadpatch.json_values import json_ready
 from quadpatch.judge import HoleResult
 from quadpatch.mesh.holes import Hole
 from quadpatch.mesh.measures import mean_edge_length
@@ -88,7 +92,7 @@ def build_report(
 ) -> dict[str, Any]:
     """Put everything that a user may want to know about a repair into one JSON-ready object."""
     completion = repair.completion
-    return {
+    report: dict[str, Any] = {
         "schema": 1,
         "source": describe_mesh(scan, welded.mesh),
         "welded": asdict(welded.counts),
@@ -112,6 +116,7 @@ def build_report(
         "stages": [{"name": name, "seconds": round(seconds, 4)} for name, seconds in stages.seconds.items()],
         "warnings": repair.warnings,
     }
+    return cast(dict[str, Any], json_ready(report))
 
 
 def _hole(result: HoleResult) -> dict[str, Any]:

@@ -49,6 +49,12 @@ class Camera:
         start = self.centre + self.clearance * self.towards
         return start + across[:, None] * self.right + upwards[:, None] * self.up
 
+    def places(self, points: Vertices, size: tuple[int, int]) -> tuple[FloatArray, FloatArray]:
+        """Columns (n,) and rows (n,) of points (n, 3) in a picture of `size`, in pixels."""
+        pixel = self.width / size[0]
+        local = points - self.centre
+        return size[0] / 2 + local @ self.right / pixel, size[1] / 2 - local @ self.up / pixel
+
 
 def view_of(points: Vertices, towards: FloatArray, aspect: float, like: Camera | None = None) -> Camera:
     """Look at all of some points.
@@ -56,7 +62,7 @@ def view_of(points: Vertices, towards: FloatArray, aspect: float, like: Camera |
     Parameters
     ----------
     points : (n, 3) float64
-        At least one.
+        None give a view of the origin.
     towards : (3,) float64
         Unit vector to the viewer.
     aspect : float
@@ -66,7 +72,7 @@ def view_of(points: Vertices, towards: FloatArray, aspect: float, like: Camera |
     """
     right, up = _picture_axes(towards) if like is None else _axes_turned_from(like, towards)
     axes = np.stack([right, up, towards])
-    local = points @ axes.T
+    local = (points if len(points) else np.zeros((1, 3))) @ axes.T
     low, high = local.min(axis=0), local.max(axis=0)
     extent = high - low
     width = float(max(extent[0], extent[1] * aspect)) * (1 + 2 * _MARGIN)

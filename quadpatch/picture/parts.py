@@ -11,7 +11,8 @@ from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Trian
 
 # Triangles of a part that speak for it when a view is chosen.
 _SAMPLE = 800
-# Pieces smaller than this part of the whole surface are stray bits that a picture may cut off.
+# Pieces smaller than this part of the largest one are stray bits that a picture may cut off. The whole surface is no
+# measure: of more than a hundred equal pieces each would be one.
 _STRAY = 0.01
 
 
@@ -36,22 +37,24 @@ class Part:
     @property
     def diagonal(self) -> float:
         """Diagonal of the bounding box, in mesh units."""
-        return float(np.linalg.norm(np.ptp(self.corners, axis=0)))
+        return float(np.linalg.norm(np.ptp(self.corners, axis=0))) if len(self.corners) else 0.0
 
 
 def part_of(mesh: TriangleMesh, triangles: IntArray) -> Part:
-    """Take some triangles (n,) of a mesh, at least one."""
-    sample = mesh.triangles[triangles[:: -(-len(triangles) // _SAMPLE)]]
+    """Take some triangles (n,) of a mesh; none give a part without corners."""
+    sample = mesh.triangles[triangles[:: max(-(-len(triangles) // _SAMPLE), 1)]]
     corners = mesh.vertices[np.unique(mesh.triangles[triangles])]
     return Part(corners, mesh.vertices[sample].mean(axis=1), area_vectors(mesh.vertices, sample))
 
 
 def main_pieces(mesh: TriangleMesh) -> IntArray:
-    """Triangles (n,) of all pieces but stray bits, which would make a picture small."""
+    """Triangles (n,) of all pieces but stray bits, which would make a picture small; none of a mesh without any."""
+    if not len(mesh.triangles):
+        return np.zeros(0, dtype=np.int64)
     label = _pieces(mesh.triangles, len(mesh.vertices))
     area = np.linalg.norm(area_vectors(mesh.vertices, mesh.triangles), axis=1)
     share = np.bincount(label, weights=area)
-    return np.flatnonzero((share >= _STRAY * share.sum())[label])
+    return np.flatnonzero((share >= _STRAY * share.max())[label])
 
 
 def filled_holes(mesh: TriangleMesh, invented: BoolArray, most: int) -> list[IntArray]:

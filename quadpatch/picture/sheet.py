@@ -6,18 +6,13 @@ from pathlib import Path
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
-from quadpatch.errors import EmptyMeshError
-from quadpatch.mesh.normals import area_vectors
 from quadpatch.picture.camera import Camera
+from quadpatch.picture.pair import SURE, UNSURE, Pair, prepare
 from quadpatch.picture.parts import filled_holes, main_pieces, part_of
-from quadpatch.picture.shading import BACK, CLAY, Clay
-from quadpatch.picture.viewpoints import close_ups, is_inside_out, overview
-from quadpatch.raycast import RayScene
+from quadpatch.picture.png import to_pixels, write_png
+from quadpatch.picture.shading import BACK, CLAY
+from quadpatch.picture.viewpoints import close_ups, overview
 from quadpatch.types import BoolArray, FloatArray, TriangleMesh
-
-# What was invented with full confidence, and with none.
-SURE = np.array([0.98, 0.74, 0.42])
-UNSURE = np.array([0.89, 0.38, 0.30])
 
 # In pixels. Three pairs of tiles are as wide as the two panels.
 _MARGIN = 28
@@ -54,8 +49,7 @@ class _Sheet:
 
     def paste(self, picture: FloatArray, left: int) -> None:
         """Paste a picture (rows, columns, 3) of 0..1 at the top of the row."""
-        pixels = np.round(picture * 255).astype(np.uint8)
-        self.image.paste(Image.fromarray(pixels), (left, self.top))
+        self.image.paste(Image.fromarray(to_pixels(picture)), (left, self.top))
 
 
 def render_before_after(
@@ -85,31 +79,19 @@ def render_before_after(
     EmptyMeshError
         If `after` has no triangle of any area.
     """
-    if not area_vectors(after.vertices, after.triangles).any():
-        raise EmptyMeshError("there is no surface to draw")
-    scene, shown = RayScene(after), after
-    if is_inside_out(scene, part_of(after, main_pieces(after))):
-        before, shown = _turned(before), _turned(after)
-    old = Clay(before, RayScene(before), np.tile(CLAY, (len(before.triangles), 1)))
-    new = Clay(shown, scene, _colours(invented, confidence))
-    holes = [part_of(shown, hole) for hole in filled_holes(shown, invented, _N_CANDIDATES)]
-    camera = _overview_camera(scene, shown, invented)
-    cameras = close_ups(scene, holes, camera, _N_CLOSE_UPS)
+    pair = prepare(before, after, invented, confidence)
+    holes = [part_of(pair.after, hole) for hole in filled_holes(pair.after, invented, _N_CANDIDATES)]
+    camera = _overview_camera(pair, invented)
+    cameras = close_ups(pair.scene, holes, camera, _N_CLOSE_UPS)
     sheet = _blank_sheet(has_title=bool(title), has_close_ups=bool(cameras))
     if title:
         sheet.write(title, _MARGIN, 24, _INK)
         sheet.top += _TITLE_HEIGHT
-    _draw_overview(sheet, old, new, camera)
+    _draw_overview(sheet, pair, camera)
     if cameras:
-        _draw_close_ups(sheet, old, new, cameras)
+        _draw_close_ups(sheet, pair, cameras)
     _draw_legend(sheet, has_confidence=confidence is not None)
-    sheet.image.save(path, format="PNG", compress_level=4)
-
-
-def _colours(invented: BoolArray, confidence: FloatArray | None) -> FloatArray:
-    sure = np.ones(len(invented)) if confidence is None else np.clip(confidence, 0.0, 1.0)
-    tint = UNSURE + sure[:, None] * (SURE - UNSURE)
-    return np.where(invented[:, None], tint, CLAY)
+    write_png(path, sheet.image)
 
 
 def _blank_sheet(*, has_title: bool, has_close_ups: bool) -> _Sheet:
@@ -120,35 +102,31 @@ def _blank_sheet(*, has_title: bool, has_close_ups: bool) -> _Sheet:
     return _Sheet(image, ImageDraw.Draw(image), _MARGIN)
 
 
-def _turned(mesh: TriangleMesh) -> TriangleMesh:
-    return TriangleMesh(mesh.vertices, mesh.triangles[:, ::-1])
+def _overview_camera(pair: Pair, invented: BoolArray) -> Camera:
+    whole = part_of(pair.after, main_pieces(pair.after))
+    filled = part_of(pair.after, np.flatnonzero(invented)) if invented.any() else None
+    return overview(pair.scene, whole, filled, _PANEL[0] / _PANEL[1])
 
 
-def _overview_camera(scene: RayScene, mesh: TriangleMesh, invented: BoolArray) -> Camera:
-    whole = part_of(mesh, main_pieces(mesh))
-    filled = part_of(mesh, np.flatnonzero(invented)) if invented.any() else None
-    return overview(scene, whole, filled, _PANEL[0] / _PANEL[1])
-
-
-def _draw_overview(sheet: _Sheet, old: Clay, new: Clay, camera: Camera) -> None:
+def _draw_overview(sheet: _Sheet, pair: Pair, camera: Camera) -> None:
     left, right = _MARGIN, _MARGIN + _PANEL[0] + _GAP
     sheet.write("before", left, 17, _INK)
     sheet.write("after", right, 17, _INK)
     sheet.top += _CAPTION_HEIGHT
-    sheet.paste(old.draw(camera, _PANEL), left)
-    sheet.paste(new.draw(camera, _PANEL), right)
+    sheet.paste(pair.old.draw(camera, _PANEL), left)
+    sheet.paste(pair.new.draw(camera, _PANEL), right)
     sheet.top += _PANEL[1] + _GAP
 
 
-def _draw_close_ups(sheet: _Sheet, old: Clay, new: Clay, cameras: list[Camera]) -> None:
+def _draw_close_ups(sheet: _Sheet, pair: Pair, cameras: list[Camera]) -> None:
     group_width = 2 * _TILE[0] + _PAIR_GAP + _GROUP_GAP
     for k, _ in enumerate(cameras):
         sheet.write(f"close-up {k + 1}: before, after", _MARGIN + k * group_width, 15, _GREY)
     sheet.top += _CAPTION_HEIGHT
     for k, camera in enumerate(cameras):
         left = _MARGIN + k * group_width
-        sheet.paste(old.draw(camera, _TILE), left)
-        sheet.paste(new.draw(camera, _TILE), left + _TILE[0] + _PAIR_GAP)
+        sheet.paste(pair.old.draw(camera, _TILE), left)
+        sheet.paste(pair.new.draw(camera, _TILE), left + _TILE[0] + _PAIR_GAP)
     sheet.top += _TILE[1] + _GAP
 
 

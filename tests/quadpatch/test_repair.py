@@ -10,7 +10,7 @@ import pytest
 from quadpatch.errors import FormatError, MeshError, ModelError, OptionError, QuadpatchError, ReadError
 from quadpatch.formats.reading import read_scan
 from quadpatch.options import HoleOptions, PatchOptions, RepairOptions
-from quadpatch.repair import draw_repair, inspect_file, repair_file
+from quadpatch.repair import inspect_file, repair_file
 from quadpatch.types import TriangleMesh
 from tests.quadpatch.shapes import punched, relief, sphere, write_ply
 
@@ -171,12 +171,6 @@ def test_a_file_without_holes_comes_back_with_every_vertex_and_face_and_nothing_
     assert after.triangles.tobytes() == before.triangles.tobytes()
     assert report["counts"] == {"found": 0, "filled": 0, "filled_smooth": 0, "skipped": 0, "refused": 0}
     assert report["holes"] == []
-
-
-def test_what_a_repair_draws_is_a_picture(scan_file: Path, repaired: tuple[str, Path, dict[str, Any]]) -> None:
-    picture = scan_file.with_suffix(".png")
-    draw_repair(scan_file, repaired[1], picture)
-    assert picture.read_bytes().startswith(b"\x89PNG")
 
 
 @pytest.mark.parametrize(

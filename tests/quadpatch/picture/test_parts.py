@@ -59,3 +59,24 @@ def test_a_bulge_does_not_make_a_hole_larger() -> None:
 def test_nothing_invented_gives_no_holes() -> None:
     mesh = plane(5)
     assert filled_holes(mesh, np.zeros(len(mesh.triangles), dtype=bool), 3) == []
+
+
+@pytest.mark.parametrize("count", [1, 99, 101, 300])
+def test_of_equal_pieces_all_are_main_pieces(count: int) -> None:
+    one = plane(2)
+    vertices = np.concatenate([one.vertices + np.array([3.0 * i, 0, 0]) for i in range(count)])
+    triangles = np.concatenate([one.triangles + 4 * i for i in range(count)])
+    assert len(main_pieces(TriangleMesh(vertices, triangles))) == len(triangles)
+
+
+def test_pieces_without_area_are_all_main_pieces_and_no_triangles_give_none() -> None:
+    flat = TriangleMesh(np.zeros((3, 3)), np.array([[0, 1, 2]]))
+    assert main_pieces(flat).tolist() == [0]
+    empty = TriangleMesh(np.zeros((0, 3)), np.zeros((0, 3), dtype=np.int64))
+    assert len(main_pieces(empty)) == 0
+
+
+def test_a_part_of_nothing_has_no_corner_and_no_width() -> None:
+    part = part_of(plane(3), np.zeros(0, dtype=np.int64))
+    assert part.corners.shape == part.centres.shape == part.area_vectors.shape == (0, 3)
+    assert part.diagonal == 0

@@ -6,8 +6,8 @@ from PIL import Image
 
 from quadpatch.errors import EmptyMeshError
 from quadpatch.picture import render_before_after
+from quadpatch.picture.pair import SURE, UNSURE
 from quadpatch.picture.shading import BACK
-from quadpatch.picture.sheet import SURE, UNSURE
 from quadpatch.types import BoolArray, FloatArray, TriangleMesh
 
 

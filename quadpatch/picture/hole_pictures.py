@@ -1,0 +1,104 @@
+"""Numbered close-ups: one picture for each hole, before and after, seen along the mean normal of its rim."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from PIL import Image, ImageDraw, ImageFont
+
+from quadpatch.picture.camera import UP, Camera, view_of
+from quadpatch.picture.pair import Pair
+from quadpatch.picture.png import to_pixels, write_png
+from quadpatch.types import FloatArray, Vertices
+
+# In pixels.
+_TILE = 420
+_GAP = 8
+_CAPTION_HEIGHT = 30
+_INSET = 12
+_NUMBER_SIZE = 34
+_RIM_WIDTH = 2
+
+# A tile is this many times as wide as its hole.
+_SURROUNDINGS = 2.4
+_INK = (42, 46, 54)
+_PAPER = (255, 255, 255)
+_RIM = (32, 96, 190)
+
+
+@dataclass(frozen=True)
+class NumberedHole:
+    """A hole to be drawn.
+
+    Attributes
+    ----------
+    id : int
+        As in the report.
+    rim : (n, 3) float64
+        Its loop, with the surface on the left.
+    """
+
+    id: int
+    rim: Vertices
+
+
+def draw_hole(pair: Pair, hole: NumberedHole, path: Path) -> None:
+    """Draw a hole before and after the repair, with its rim and its number, as a PNG file.
+
+    Parameters
+    ----------
+    pair : Pair
+    hole : NumberedHole
+    path : Path
+
+    Raises
+    ------
+    OSError
+        If the file can't be written.
+    """
+    camera = _along_the_normal(pair, hole.rim)
+    sheet = Image.new("RGB", (2 * _TILE + _GAP, _CAPTION_HEIGHT + _TILE), _PAPER)
+    pen = ImageDraw.Draw(sheet)
+    for left, clay, caption in ((0, pair.old, "before"), (_TILE + _GAP, pair.new, "after")):
+        pen.text((left + _INSET, 4), f"hole {hole.id}, {caption}", font=ImageFont.load_default(17), fill=_INK)
+        sheet.paste(_tile(clay.draw(camera, (_TILE, _TILE)), camera, hole), (left, _CAPTION_HEIGHT))
+    write_png(path, sheet)
+
+
+def mean_normal(rim: Vertices) -> FloatArray:
+    """Give the unit normal (3,) of the surface around a hole; zero for a rim that spans no area.
+
+    It is the direction against the vector area of the loop, which has the surface on its left and so runs clockwise
+    seen from outside.
+    """
+    centred = rim - rim.mean(axis=0)
+    size = np.abs(centred).max() or 1.0
+    centred = centred / size
+    vector = -np.cross(centred, np.roll(centred, -1, axis=0)).sum(axis=0)
+    length = float(np.linalg.norm(vector))
+    return np.asarray(vector / length if length > 0 else np.zeros(3))
+
+
+def _along_the_normal(pair: Pair, rim: Vertices) -> Camera:
+    normal = mean_normal(rim)
+    if not normal.any():
+        normal = UP
+    towards = -normal if pair.is_turned else normal
+    tight = view_of(rim, towards, 1.0)
+    clearance = _SURROUNDINGS * float(np.linalg.norm(np.ptp(rim, axis=0)))
+    return Camera(tight.centre, tight.right, tight.up, towards, tight.width * _SURROUNDINGS, clearance)
+
+
+def _tile(picture: FloatArray, camera: Camera, hole: NumberedHole) -> Image.Image:
+    """Put the rim and the number into a picture."""
+    tile = Image.fromarray(to_pixels(picture))
+    pen = ImageDraw.Draw(tile)
+    columns, rows = camera.places(hole.rim, (_TILE, _TILE))
+    around = np.append(np.arange(len(columns)), 0)
+    pen.line(list(zip(columns[around].tolist(), rows[around].tolist(), strict=True)), fill=_RIM, width=_RIM_WIDTH)
+    font = ImageFont.load_default(_NUMBER_SIZE)
+    at = (_INSET, _INSET)
+    left, top, right, bottom = pen.textbbox(at, str(hole.id), font=font)
+    pen.rectangle((left - 6, top - 6, right + 6, bottom + 6), fill=_PAPER, outline=_RIM)
+    pen.text(at, str(hole.id), font=font, fill=_RIM)
+    return tile

@@ -1,0 +1,23 @@
+"""PNG files."""
+
+import io
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image
+
+from quadpatch.files import write_whole
+from quadpatch.types import FloatArray
+
+
+def to_pixels(picture: FloatArray) -> NDArray[np.uint8]:
+    """Turn colours (rows, columns, 3) of 0..1 into bytes."""
+    return np.asarray(np.round(picture * 255).astype(np.uint8))
+
+
+def write_png(path: Path, image: Image.Image) -> None:
+    """Write a picture that appears whole or not at all; raise OSError."""
+    encoded = io.BytesIO()
+    image.save(encoded, format="PNG", compress_level=4)
+    write_whole(path, encoded.getvalue())
