@@ -5,13 +5,14 @@ option is at fault (`code: message` on standard error), 2 wrong usage.
 """
 
 import json
+import logging
 import math
 import sys
 from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated, Any, Literal, NoReturn
+from typing import TYPE_CHECKING, Annotated, Any, Literal, NoReturn
 
 import typer
 from rich.console import Console
@@ -21,9 +22,12 @@ from rich.text import Text
 
 from quadpatch import types
 from quadpatch.errors import OptionError, QuadpatchError
-from quadpatch.files import check_outputs, write_whole
+from quadpatch.files import check_folder, check_outputs, write_whole
 from quadpatch.options import Cap, DictionaryOptions, HoleOptions, NetworkOptions, PatchOptions, Recipe, RepairOptions
 from quadpatch.rule_text import read_rule
+
+if TYPE_CHECKING:
+    from quadpatch.repair import RepairedFile
 
 app = typer.Typer(help="Repair holes in 3D scans.", no_args_is_help=True, add_completion=False)
 _errors = Console(stderr=True)
@@ -57,6 +61,11 @@ def fill(  # noqa: PLR0913, PLR0917  one argument per flag
     ] = "default",
     report: Annotated[Path | None, typer.Option(help="Write the report as JSON.")] = None,
     picture: Annotated[Path | None, typer.Option(help="Write a before/after picture as PNG.")] = None,
+    closeups: Annotated[
+        Path | None,
+        typer.Option(metavar="DIR", help="Draw every chosen hole before and after, as hole_<id>.png in this folder."),
+    ] = None,
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="Let OUT take the place of IN.")] = False,
     max_diameter: Annotated[float | None, typer.Option(help="Leave wider holes open (mesh units).")] = None,
     max_perimeter: Annotated[float | None, typer.Option(help="Leave longer rims open (mesh units).")] = None,
     all_but_largest: Annotated[bool, typer.Option(help="Leave the widest loop open.")] = False,
@@ -87,7 +96,7 @@ def fill(  # noqa: PLR0913, PLR0917  one argument per flag
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress, no summary.")] = False,
 ) -> None:
     """Repair a mesh file."""
-    from quadpatch.repair import repair_file  # noqa: PLC0415  the libraries behind it take a second to load
+    from quadpatch.repair import repair_and_keep  # noqa: PLC0415  the libraries behind it take a second to load
 
     with _clear_errors(), _progress(quiet) as progress:
         options = RepairOptions(
@@ -107,14 +116,17 @@ def fill(  # noqa: PLR0913, PLR0917  one argument per flag
             NetworkOptions(fit_steps, fit_seconds),
             _tolerance(weld_tolerance),
         )
-        check_outputs(source, [path for path in (output, report, picture) if path])
-        result = repair_file(source, output, model, options, progress)
-        if report:
-            write_whole(report, (json.dumps(result, indent=2) + "\n").encode())
-        if picture:
-            _draw(source, output, picture)
+        check_outputs(source, output, [path for path in (report, picture) if path], may_overwrite=overwrite)
+        if closeups:
+            check_folder(closeups)
+        repaired = repair_and_keep(source, output, model, options, progress)
+        logging.getLogger("quadpatch").addHandler(logging.NullHandler())  # what people read is in the warnings
+        _write_report(repaired, report)
+        if picture or closeups:
+            _draw(repaired, picture, closeups)
+            _write_report(repaired, report)
     if not quiet:
-        _errors.print(Text(summary(result)))
+        _errors.print(Text(summary(repaired.report)))
 
 
 @app.command()
@@ -186,10 +198,20 @@ def _holes(count: int) -> str:
     return "1 hole" if count == 1 else f"{count} holes"
 
 
-def _draw(source: Path, output: Path, picture: Path) -> None:
-    from quadpatch.repair import draw_repair  # noqa: PLC0415  see fill
+def _draw(repaired: "RepairedFile", picture: Path | None, closeups: Path | None) -> None:
+    """Draw what was asked for; what fails is a warning in the report."""
+    from quadpatch.drawing import add_close_ups, add_picture  # noqa: PLC0415  see fill
 
-    draw_repair(source, output, picture)
+    if picture:
+        add_picture(repaired, picture)
+    if closeups:
+        add_close_ups(repaired, closeups)
+
+
+def _write_report(repaired: "RepairedFile", path: Path | None) -> None:
+    """Write the report, if it was asked for: before drawing, which may take the process down, and again after it."""
+    if path:
+        write_whole(path, (json.dumps(repaired.report, indent=2) + "\n").encode())
 
 
 @contextmanager

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner, Result
 
+from quadpatch import drawing
 from quadpatch.cli import app, summary
 from quadpatch.formats.reading import read_scan
 from tests.quadpatch.shapes import bumpy_plate, punched, sphere, write_ply
@@ -40,6 +41,45 @@ def test_fill_writes_the_mesh_the_report_and_the_picture(scan_file: Path, tmp_pa
     assert "3 by geometry (3 × no learned model took part), 1 left open (1 × outer border" in " ".join(
         result.stderr.split()
     )
+
+
+def test_close_ups_are_named_by_the_holes_that_were_chosen(scan_file: Path, tmp_path: Path) -> None:
+    files = [scan_file, "-o", tmp_path / "out.ply", "--closeups", tmp_path / "closeups"]
+    result = run("fill", *files, "--model", "smooth", "--hole", "1", "--hole", "3")
+    assert result.exit_code == 0, result.output
+    assert {path.name for path in (tmp_path / "closeups").iterdir()} == {"hole_1.png", "hole_3.png"}
+
+
+def test_a_picture_that_fails_is_a_warning_and_mesh_and_report_are_there(
+    scan_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(*_: object) -> None:
+        raise ZeroDivisionError("slice step cannot be zero")
+
+    monkeypatch.setattr(drawing, "render_before_after", fail)
+    output, report = tmp_path / "out.ply", tmp_path / "out.json"
+    files = [scan_file, "-o", output, "--report", report, "--picture", tmp_path / "out.png"]
+    result = run("fill", *files, "--model", "smooth")
+    assert result.exit_code == 0, result.output
+    assert "Warning: there is no picture: an internal error" in " ".join(result.stderr.split())
+    assert "Traceback" not in result.stderr
+    assert json.loads(report.read_text())["warnings"] == ["there is no picture: an internal error (ZeroDivisionError)"]
+    assert len(read_scan(output).triangles) > len(read_scan(scan_file).triangles)
+    assert not (tmp_path / "out.png").exists()
+
+
+def test_the_scan_is_kept_unless_it_may_be_overwritten(scan_file: Path, tmp_path: Path) -> None:
+    source = tmp_path / "scan.ply"
+    raw = scan_file.read_bytes()
+    source.write_bytes(raw)
+    (tmp_path / "link.ply").symlink_to(source)
+    for output in (source, tmp_path / "link.ply"):
+        refused = run("fill", source, "-o", output, "--model", "smooth")
+        assert refused.exit_code == 1
+        assert refused.stderr.startswith("invalid_option: ")
+        assert source.read_bytes() == raw
+    assert run("fill", source, "-o", source, "--model", "smooth", "--overwrite").exit_code == 0
+    assert len(read_scan(source).triangles) > len(read_scan(scan_file).triangles)
 
 
 def test_quiet_says_nothing(scan_file: Path, tmp_path: Path) -> None:
@@ -137,6 +177,10 @@ def test_holes_are_listed_for_people(scan_file: Path) -> None:
         (["fill", "SCAN", "-o", "out.ply", "--model", "smooth", "--picture", "no/such/out.png"], "not_writable"),
         (["fill", "SCAN", "-o", "out.ply", "--model", "smooth", "--report", "out.ply"], "invalid_option"),
         (["fill", "SCAN", "-o", "out.ply", "--model", "smooth", "--report", "SCAN"], "invalid_option"),
+        (["fill", "SCAN", "-o", "SCAN", "--model", "smooth"], "invalid_option"),
+        (["fill", "SCAN", "-o", "out.ply", "--overwrite", "--picture", "SCAN"], "invalid_option"),
+        (["fill", "SCAN", "-o", "out.ply", "--closeups", "no/such/folder"], "not_writable"),
+        (["fill", "SCAN", "-o", "out.ply", "--closeups", "SCAN"], "not_writable"),
     ],
 )
 def test_errors_are_one_line_of_code_and_message(

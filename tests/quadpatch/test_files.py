@@ -39,17 +39,37 @@ def test_a_link_stays_a_link_and_a_device_a_device(tmp_path: Path) -> None:
     assert not Path(os.devnull).is_file()
 
 
-def test_outputs_must_not_overwrite_each_other_or_the_scan(tmp_path: Path) -> None:
+def names_of(scan: Path) -> list[Path]:
+    """Other names of a file: another spelling, a symbolic link, a hard link."""
+    link, hard = scan.with_name("link.ply"), scan.with_name("hard.ply")
+    link.symlink_to(scan)
+    hard.hardlink_to(scan)
+    return [scan, scan.parent / "folder" / ".." / scan.name, link, hard]
+
+
+def test_the_scan_is_overwritten_on_request_alone_whatever_name_it_has(tmp_path: Path) -> None:
+    scan, report = tmp_path / "scan.ply", tmp_path / "report.json"
+    scan.write_bytes(b"raw")
+    (tmp_path / "folder").mkdir()
+    for name in names_of(scan):
+        with pytest.raises(OptionError, match="--overwrite"):
+            check_outputs(scan, name, [report])
+        check_outputs(scan, name, [report], may_overwrite=True)
+        for may_overwrite in (False, True):
+            with pytest.raises(OptionError, match="named twice"):
+                check_outputs(scan, tmp_path / "mesh.ply", [name], may_overwrite=may_overwrite)
+
+
+def test_outputs_must_not_overwrite_each_other(tmp_path: Path) -> None:
     scan, mesh, report = tmp_path / "scan.ply", tmp_path / "mesh.ply", tmp_path / "report.json"
-    check_outputs(scan, [mesh, report])
-    check_outputs(scan, [scan, report])
-    for outputs in ([mesh, mesh], [mesh, tmp_path / "." / "mesh.ply"], [mesh, scan], [scan, scan]):
+    check_outputs(scan, mesh, [report])
+    for outputs in ([mesh], [tmp_path / "." / "mesh.ply"], [report, report]):
         with pytest.raises(OptionError, match="named twice"):
-            check_outputs(scan, outputs)
+            check_outputs(scan, mesh, outputs, may_overwrite=True)
 
 
 def test_outputs_need_a_folder_and_must_be_none(tmp_path: Path) -> None:
     with pytest.raises(FileNotFoundError, match="there is no folder"):
-        check_outputs(tmp_path / "scan.ply", [tmp_path / "none" / "mesh.ply"])
+        check_outputs(tmp_path / "scan.ply", tmp_path / "none" / "mesh.ply", [])
     with pytest.raises(IsADirectoryError):
-        check_outputs(tmp_path / "scan.ply", [tmp_path])
+        check_outputs(tmp_path / "scan.ply", tmp_path, [])
