@@ -5,15 +5,14 @@ moment. It talks to the worker through one pipe, see `worker.engine_reports`. Re
 """
 
 import json
-import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import quadpatch.picture  # noqa: F401 - loaded once, before the fork, instead of by every child
-from quadpatch.errors import QuadpatchError
+from quadpatch.drawing import add_picture
+from quadpatch.files import write_whole
 from quadpatch.options import RepairOptions
-from quadpatch.repair import draw_repair, inspect_file, repair_file
+from quadpatch.repair import inspect_file, repair_and_keep
 from worker.engine_frame import run_framed
 from worker.engine_reports import Reporter
 from worker.request import FACTS_NAME, PREVIEW_NAME, REPORT_NAME, EngineRequest
@@ -27,13 +26,13 @@ def run_request(folder: Path, descriptor: int) -> None:
 def _repair(folder: Path, request: EngineRequest, reporter: Reporter) -> None:
     source, output = folder / request.source, folder / request.output
     options = RepairOptions.from_dict(request.options)
-    report = repair_file(source, output, request.model, options, reporter.progress)
+    repaired = repair_and_keep(source, output, request.model, options, reporter.progress)
+    _write_json(folder / REPORT_NAME, repaired.report)
+    reporter.delivered()
     if request.with_preview:
         reporter.progress("preview", 0.0)
-        started = time.perf_counter()
-        report["warnings"] = [*report["warnings"], *_preview(source, output, folder / PREVIEW_NAME)]
-        report["stages"] = [*report["stages"], {"name": "preview", "seconds": time.perf_counter() - started}]
-    _write_json(folder / REPORT_NAME, report)
+        add_picture(repaired, folder / PREVIEW_NAME)
+        _write_json(folder / REPORT_NAME, repaired.report)
 
 
 def _inspect(folder: Path, request: EngineRequest, reporter: Reporter) -> None:
@@ -44,14 +43,6 @@ def _inspect(folder: Path, request: EngineRequest, reporter: Reporter) -> None:
 _TASKS: dict[str, Callable[[Path, EngineRequest, Reporter], None]] = {"repair": _repair, "inspect": _inspect}
 
 
-def _preview(source: Path, output: Path, path: Path) -> list[str]:
-    """Draw the picture; a repair without one is still a repair, so what goes wrong here is a warning."""
-    try:
-        draw_repair(source, output, path)
-    except QuadpatchError as error:
-        return [f"there is no picture: {error}"]
-    return []
-
-
 def _write_json(path: Path, values: dict[str, Any]) -> None:
-    path.write_text(json.dumps(values, allow_nan=False), encoding="utf-8")
+    """Write a file that is whole at any moment: the engine may be killed while it writes the second report."""
+    write_whole(path, json.dumps(values, allow_nan=False).encode())

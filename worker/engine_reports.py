@@ -1,6 +1,7 @@
 """What an engine child tells its worker, as JSON lines through one pipe.
 
-`{"stage", "fraction"}` while it works, and at last `{"ok": true}` or `{"ok": false, "failure": {...}}`.
+`{"stage", "fraction"}` while it works, `{"delivered": true}` once all that a result needs lies in the folder and only
+optional steps are left, and at last `{"ok": true}` or `{"ok": false, "failure": {...}}`.
 """
 
 import json
@@ -30,6 +31,10 @@ class Reporter:
             return
         self.stage, self._last = stage, now
         self._send({"stage": stage, "fraction": round(float(fraction), 4)})
+
+    def delivered(self) -> None:
+        """Report that the result lies in the folder: whatever ends the engine from here on, it is kept."""
+        self._send({"delivered": True})
 
     def done(self) -> None:
         """Report success."""

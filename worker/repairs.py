@@ -23,15 +23,17 @@ from jobkit.reconcile import submit_job
 from jobkit.schema import Job, JobError, JobResult, JobState
 from jobkit.stages import StageSeconds
 from jobkit.telemetry import StageSpans
+from quadpatch.optional import failure_of
 from worker.context import Context
 from worker.failures import OUTAGE_DELAY_S, Failure, StopReason
 from worker.limits import EngineLimits
 from worker.models import model_argument
 from worker.outcomes import folder_with_mesh, outcome_of
 from worker.pulse import PATIENCE_S, Pulse, Vitals
-from worker.results import drop_result, stage_seconds, store_result
+from worker.request import LOG_NAME, PREVIEW_NAME
+from worker.results import drop_result, note_lost_picture, stage_seconds, store_result
 from worker.spec import repair_request
-from worker.watch import Observer, run_engine
+from worker.watch import Observer, log_last_words, run_engine
 
 # A repair that is nearly done may finish when its worker is asked to stop; the others are handed back.
 _DRAIN_GRACE_S = 2.0
@@ -118,7 +120,11 @@ def _work(context: Context, started: StartedAttempt, pulse: Pulse) -> _Repaired:
     with folder_with_mesh(context, source) as folder:
         with context.telemetry.stages() as spans:
             observer = Observer(_both(pulse, spans), _StopRule(context, pulse), pulse.note_memory)
-            run_engine(context.nursery, request, folder, observer)
+            failure = run_engine(context.nursery, request, folder, observer)
+        if failure is not None:
+            note_lost_picture(folder, failure)
+        elif request.with_preview and not (folder / PREVIEW_NAME).exists():
+            log_last_words(folder / LOG_NAME)
         result = store_result(folder, request, started.attempt, context.store, time.monotonic() - began)
         return _Repaired(result, stage_seconds(folder, job.spec.method.method))
 
@@ -128,7 +134,7 @@ def _both(pulse: Pulse, spans: StageSpans) -> Callable[[str, float], None]:
 
     def reach(stage: str, fraction: float) -> None:
         pulse.reach(stage, fraction)
-        spans.reach(stage)
+        failure_of(lambda: spans.reach(stage))
 
     return reach
 

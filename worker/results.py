@@ -8,6 +8,9 @@ from jobkit.endings import Attempt
 from jobkit.schema import HoleCounts, JobResult, ResultFile
 from jobkit.stages import StageSeconds
 from jobkit.store import ObjectStore, result_key
+from quadpatch.files import write_whole
+from quadpatch.optional import failure_of
+from worker.failures import Failure
 from worker.request import PREVIEW_NAME, REPORT_NAME, EngineRequest
 
 _MEDIA_TYPES = {
@@ -35,13 +38,10 @@ def store_result(
     seconds : float
         Wall-clock time of the repair.
     """
-    report = json.loads((folder / REPORT_NAME).read_text(encoding="utf-8"))
-    files = [
-        _store_file(folder / request.output, "result", attempt, store),
-        _store_file(folder / REPORT_NAME, "report", attempt, store),
-    ]
-    if (folder / PREVIEW_NAME).exists():
-        files.append(_store_file(folder / PREVIEW_NAME, "preview", attempt, store))
+    mesh = _store_file(folder / request.output, "result", attempt, store)
+    pictures = _store_preview(folder, attempt, store)
+    report = _read_report(folder)
+    files = [mesh, _store_file(folder / REPORT_NAME, "report", attempt, store), *pictures]
     counts = HoleCounts.model_validate(report["counts"])
     return JobResult.model_validate(
         {
@@ -58,8 +58,37 @@ def store_result(
 
 def stage_seconds(folder: Path, method: str) -> StageSeconds:
     """Read from an engine's report how long the stages took; `method` as in the spec."""
-    report = json.loads((folder / REPORT_NAME).read_text(encoding="utf-8"))
-    return StageSeconds(method, {str(stage["name"]): float(stage["seconds"]) for stage in report["stages"]})
+    stages = _read_report(folder).get("stages", [])
+    return StageSeconds(method, {str(stage["name"]): float(stage["seconds"]) for stage in stages})
+
+
+def note_lost_picture(folder: Path, failure: Failure) -> None:
+    """Write into the report of an engine that ended while it drew why there is no picture."""
+    (folder / PREVIEW_NAME).unlink(missing_ok=True)
+    _add_warning(folder, f"there is no picture: {failure.message}")
+
+
+def _store_preview(folder: Path, attempt: Attempt, store: ObjectStore) -> list[ResultFile]:
+    """Store the picture where there is one; a repair whose picture can't be stored is still a repair."""
+    stored: list[ResultFile] = []
+    path = folder / PREVIEW_NAME
+    if path.exists():
+        failure = failure_of(lambda: stored.append(_store_file(path, "preview", attempt, store)))
+        if failure is not None:
+            _add_warning(folder, "there is no picture: it could not be stored")
+    return stored
+
+
+def _add_warning(folder: Path, warning: str) -> None:
+    """Add a warning to the report; on a full disk the report stays as it was."""
+    report = _read_report(folder)
+    report["warnings"].append(warning)
+    failure_of(lambda: write_whole(folder / REPORT_NAME, json.dumps(report).encode()))
+
+
+def _read_report(folder: Path) -> dict[str, Any]:
+    report: dict[str, Any] = json.loads((folder / REPORT_NAME).read_text(encoding="utf-8"))
+    return report
 
 
 def drop_result(attempt: Attempt, store: ObjectStore) -> None:

@@ -50,8 +50,13 @@ class Observer:
     on_memory: Callable[[float], None] = lambda _: None
 
 
-def run_engine(nursery: Nursery, request: EngineRequest, folder: Path, observer: Observer) -> None:
+def run_engine(nursery: Nursery, request: EngineRequest, folder: Path, observer: Observer) -> Failure | None:
     """Run a request to its end; results lie in `folder` afterwards.
+
+    Returns
+    -------
+    Failure or None
+        What ended the engine in an optional step, after the result was delivered.
 
     Raises
     ------
@@ -71,12 +76,16 @@ def run_engine(nursery: Nursery, request: EngineRequest, folder: Path, observer:
         watch.listen()
     finally:
         status = watch.end()
-    if watch.failure is not None or not watch.is_done:
-        _log_last_words(folder / LOG_NAME)
-    if watch.failure is not None:
-        raise EngineFailedError(watch.failure)
-    if not watch.is_done:
-        raise EngineFailedError(_diagnose(status, watch, request.limits, folder / LOG_NAME))
+    failure = watch.failure
+    if failure is None and not watch.is_done:
+        failure = _diagnose(status, watch, request.limits, folder / LOG_NAME)
+    if failure is None:
+        return None
+    log_last_words(folder / LOG_NAME)
+    if not watch.is_delivered:
+        raise EngineFailedError(failure)
+    _log.warning("the engine ended in an optional step: %s: %s", failure.code, failure.message)
+    return failure
 
 
 class _Watch:
@@ -90,6 +99,7 @@ class _Watch:
         self.stage: str | None = None
         self.failure: Failure | None = None
         self.is_done = False
+        self.is_delivered = False
         self.peak_mb = 0.0
 
     def listen(self) -> None:
@@ -136,6 +146,8 @@ class _Watch:
         if "stage" in report:
             self.stage = str(report["stage"])
             self._observer.on_progress(self.stage, float(report["fraction"]))
+        elif "delivered" in report:
+            self.is_delivered = True
         elif report["ok"]:
             self.is_done = True
         else:
@@ -174,7 +186,8 @@ def _diagnose(status: int | None, watch: _Watch, limits: EngineLimits, log: Path
     return crashed(name, stage)
 
 
-def _log_last_words(log: Path) -> None:
+def log_last_words(log: Path) -> None:
+    """Take over the end of an engine's log into that of the worker."""
     words = _tail(log).decode(errors="replace").strip()
     if words:
         _log.warning("the engine's last words:\n%s", words)

@@ -1,5 +1,6 @@
 """The end of an attempt when the database, or somebody else, comes in between."""
 
+import json
 from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager
 from pathlib import Path
@@ -61,21 +62,23 @@ class Refusing(Database):
 
 
 @contextmanager
-def working(settings: Settings, database: Database, store: ObjectStore) -> Iterator[Context]:
+def working(
+    settings: Settings, database: Database, store: ObjectStore, engine: str = "worker.engine"
+) -> Iterator[Context]:
     queue = TaskQueue(settings.redis_url.get_secret_value(), settings.queue_name, settings.job_time_limit_s)
-    with closing(queue), closing(database), Nursery(1) as nursery:
+    with closing(queue), closing(database), Nursery(1, engine) as nursery:
         context = Context("w-1", settings, database, store, queue, nursery, 1)
         context.work_folder.mkdir(parents=True)
         with use_context(context):
             yield context
 
 
-def new_job(context: Context) -> Job:
+def new_job(context: Context, *, preview: bool = False) -> Job:
     with context.store.writer("meshes") as writer:
         writer.write(ply_bytes(*punched_relief(20, 1)))
         stored = writer.commit()
     mesh = Meshes(context.database).add(stored, "scan.ply", "ply")[0]
-    spec = JobSpec.model_validate({"mesh_id": mesh.id, "method": {"method": "smooth"}, "output": {"preview": False}})
+    spec = JobSpec.model_validate({"mesh_id": mesh.id, "method": {"method": "smooth"}, "output": {"preview": preview}})
     return Jobs(context.database).create(NewJob(spec, ResolvedModel(requested="smooth", kind="none"), 3))[0]
 
 
@@ -96,6 +99,24 @@ def test_a_result_whose_publication_was_not_confirmed_keeps_its_files(
     assert ended.result is not None
     kept = {listed.key for listed in store.keys("results")}
     assert kept == {result_key(job.id, 1, file.name) for file in ended.result.files}
+
+
+def test_a_job_whose_engine_dies_while_it_draws_has_its_mesh_and_a_warning(
+    settings: Settings, store: ObjectStore, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("PYTHONPATH", str(Path(__file__).parent))
+    database = Database(settings.effective_database_url)
+    with working(settings, database, store, "engine_that_dies_drawing") as context:
+        job = new_job(context, preview=True)
+        run_job(job.id)
+        ended = context.jobs.get(job.id)
+    assert ended.state is JobState.SUCCEEDED_WITH_WARNINGS
+    assert ended.attempt == 1
+    assert ended.result is not None
+    assert ended.result.warnings == ["there is no picture: the engine was ended by SIGSEGV"]
+    assert [file.role for file in ended.result.files] == ["result", "report"]
+    report = json.loads(b"".join(store.read(result_key(job.id, 1, "report.json"))))
+    assert report["warnings"] == ended.result.warnings
 
 
 def test_a_mesh_is_not_rejected_for_a_store_that_is_away(settings: Settings, tmp_path: Path) -> None:

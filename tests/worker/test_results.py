@@ -5,14 +5,31 @@ from typing import Any
 import pytest
 
 from jobkit.attempts import Attempt
-from jobkit.errors import ObjectNotFoundError
-from jobkit.store import ObjectStore, result_key
+from jobkit.errors import ObjectNotFoundError, StoreUnavailableError
+from jobkit.store import ObjectStore, StoredObject, result_key
+from worker.failures import Failure
 from worker.limits import EngineLimits
 from worker.request import EngineRequest
-from worker.results import drop_result, store_result
+from worker.results import drop_result, note_lost_picture, store_result
 
 ATTEMPT = Attempt("job_01jd7z3v5qk8m2x4c6b8n0a9de", 2)
 REQUEST = EngineRequest("repair", "mesh/source.stl", EngineLimits(60.0, 1024), output="repaired.stl")
+
+
+class RefusesPictures:
+    """A store that takes everything but pictures."""
+
+    def __init__(self, store: ObjectStore, error: Exception) -> None:
+        self._store = store
+        self._error = error
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._store, name)
+
+    def put_file(self, key: str, path: Path) -> StoredObject:
+        if key.endswith(".png"):
+            raise self._error
+        return self._store.put_file(key, path)
 
 
 def finished_folder(folder: Path, **report: Any) -> Path:
@@ -60,6 +77,28 @@ def test_refused_holes_are_a_warning(
     tmp_path: Path, store: ObjectStore, report: dict[str, Any], warnings: list[str]
 ) -> None:
     assert store_result(finished_folder(tmp_path, **report), REQUEST, ATTEMPT, store, 1.0).warnings == warnings
+
+
+@pytest.mark.parametrize("error", [StoreUnavailableError("away"), OSError(5, "I/O error")])
+def test_a_picture_that_can_not_be_stored_is_a_warning(tmp_path: Path, store: ObjectStore, error: Exception) -> None:
+    (tmp_path / "preview.png").write_bytes(b"png")
+    result = store_result(finished_folder(tmp_path), REQUEST, ATTEMPT, RefusesPictures(store, error), 1.5)
+    assert [file.role for file in result.files] == ["result", "report"]
+    assert result.warnings == ["there is no picture: it could not be stored"]
+    report = json.loads(b"".join(store.read(result_key(ATTEMPT.job_id, 2, "report.json"))))
+    assert report["warnings"] == result.warnings
+
+
+def test_a_picture_that_was_not_drawn_is_named_in_the_report(tmp_path: Path, store: ObjectStore) -> None:
+    (tmp_path / "preview.png").write_bytes(b"half a picture")
+    folder = finished_folder(tmp_path, warnings=["the scan is coarse"])
+    note_lost_picture(folder, Failure("out_of_memory", "the work needs more memory than the limit of 512 MiB"))
+    result = store_result(folder, REQUEST, ATTEMPT, store, 1.5)
+    assert [file.role for file in result.files] == ["result", "report"]
+    assert result.warnings == [
+        "the scan is coarse",
+        "there is no picture: the work needs more memory than the limit of 512 MiB",
+    ]
 
 
 def test_a_dropped_result_leaves_that_of_another_attempt_alone(tmp_path: Path, store: ObjectStore) -> None:

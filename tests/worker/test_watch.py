@@ -136,6 +136,53 @@ def test_an_engine_that_can_not_even_write_its_log_says_that_the_disk_is_full(
     assert (failure.code, failure.is_outside) == ("no_space", True)
 
 
+@pytest.mark.parametrize(
+    ("deed", "code"),
+    [
+        ("crash", "engine_crashed"),
+        ("leave_silently", "engine_crashed"),
+        ("hog_memory", "out_of_memory"),
+        ("ask_for_too_much_at_once", "out_of_memory"),
+        ("fill_the_disk", "result_too_large"),
+        ("raise_something_unforeseen", "engine_error"),
+        ("raise_an_error_with_a_path", "unreadable_mesh"),
+    ],
+)
+def test_whatever_ends_an_engine_after_it_has_delivered_the_result_is_kept(
+    rogue_nursery: Nursery, tmp_path: Path, deed: str, code: str
+) -> None:
+    limits = EngineLimits(time_s=60.0, memory_mb=300, file_mb=4, n_threads=1)
+    asked = EngineRequest("inspect", "source.ply", limits, options={"deed": deed, "delivers": True})
+    failure = run_engine(rogue_nursery, asked, tmp_path, Observer(lambda stage, fraction: None, never))
+    assert failure is not None
+    assert (failure.code, failure.stage) == (code, "preview")
+    assert (tmp_path / "repaired.ply").read_text() == "a mesh"
+    assert engines() == []
+
+
+def test_an_engine_that_draws_beyond_its_time_has_delivered_all_the_same(
+    rogue_nursery: Nursery, tmp_path: Path
+) -> None:
+    limits = EngineLimits(time_s=1.0, memory_mb=1024, n_threads=1)
+    asked = EngineRequest("inspect", "source.ply", limits, options={"deed": "hang_in_native_code", "delivers": True})
+    failure = run_engine(rogue_nursery, asked, tmp_path, Observer(lambda stage, fraction: None, never))
+    assert failure is not None
+    assert failure.code == "time_limit_exceeded"
+
+
+def test_an_engine_that_has_delivered_still_stops_when_it_is_asked_to(rogue_nursery: Nursery, tmp_path: Path) -> None:
+    is_drawing = threading.Event()
+
+    def note(stage: str, fraction: float) -> None:
+        if stage == "preview":
+            is_drawing.set()
+
+    observer = Observer(note, lambda: StopReason.CANCELED if is_drawing.is_set() else None)
+    asked = EngineRequest("inspect", "source.ply", LIMITS, options={"deed": "hang_in_native_code", "delivers": True})
+    with pytest.raises(EngineStoppedError):
+        run_engine(rogue_nursery, asked, tmp_path, observer)
+
+
 def test_what_an_engine_started_ends_with_it(rogue_nursery: Nursery, tmp_path: Path) -> None:
     folder = tmp_path / "request"
     folder.mkdir()
