@@ -114,6 +114,9 @@ def repair(  # noqa: PLR0913 - one parameter per option of the command line
     preview: Annotated[
         Path | None, typer.Option(help="Where to put the before/after picture, a PNG.", rich_help_panel=_OUTPUT)
     ] = None,
+    overwrite: Annotated[
+        bool, typer.Option("--overwrite", help="Let OUTPUT take the place of MESH.", rich_help_panel=_OUTPUT)
+    ] = False,
     timeout: Annotated[
         float | None, typer.Option(help="Seconds to wait for the job; then it is canceled.", show_default="none")
     ] = None,
@@ -139,6 +142,7 @@ def repair(  # noqa: PLR0913 - one parameter per option of the command line
             report=report,
             preview=preview,
             timeout_s=timeout,
+            may_overwrite=overwrite,
         )
         job = run_repair(client, screen, task)
     if as_json:

@@ -6,13 +6,14 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, cast, get_args
+from typing import Any, Literal, cast, get_args
 
 from client.errors import ClientError, UsageError, WaitTimeoutError
 from client.options import HoleChoice, MethodChoice, make_spec
 from client.screen import Screen
 from client.sdk import Client
 from client.summary import paragraph
+from client.transfers import sent_name
 from jobkit.schema import Job, JobSpec, OutputFormat
 
 
@@ -31,6 +32,8 @@ class Task:
         Where to put the report and the picture.
     timeout_s : float, optional
         How long to wait for the job.
+    may_overwrite : bool
+        Whether the repaired mesh may take the place of the scan.
     """
 
     source: Path
@@ -41,6 +44,7 @@ class Task:
     report: Path | None = None
     preview: Path | None = None
     timeout_s: float | None = None
+    may_overwrite: bool = False
 
 
 def repair(client: Client, screen: Screen, task: Task) -> Job:
@@ -59,25 +63,41 @@ def repair(client: Client, screen: Screen, task: Task) -> Job:
     with screen.transfer("uploading") as progress:
         mesh = client.upload(task.source, progress)
     screen.say(f"{task.source.name}: {_size(mesh.size_bytes)} uploaded")
-    job = _run(client, screen, make_spec(mesh.id, task.holes, task.method, **task.rest), task.timeout_s)
+    spec = make_spec(mesh.id, task.holes, task.method, mesh_name=sent_name(task.source) or None, **task.rest)
+    job = _run(client, screen, spec, task.timeout_s)
     _fetch(client, screen, task, job)
     return job
 
 
 def check_outputs(task: Task) -> None:
     """Raise UsageError where an output has no folder, is one, or would overwrite another one or the scan."""
-    taken: set[Path] = set()
-    for path in (task.output, task.report, task.preview):
+    _check_place(task.output)
+    if is_same_file(task.output, task.source) and not task.may_overwrite:
+        raise UsageError(f"{task.output} is the scan itself: name another file, or say --overwrite")
+    taken = [task.source, task.output]
+    for path in (task.report, task.preview):
         if path is None:
             continue
-        if path.is_dir():
-            raise UsageError(f"{path} is a folder, not a file to write")
-        if not path.parent.is_dir():
-            raise UsageError(f"{path} can't be written: there is no folder {path.parent}")
-        if path.resolve() in taken:
+        _check_place(path)
+        if any(is_same_file(path, other) for other in taken):
             raise UsageError(f"{path} is named twice: mesh, report and preview need files of their own")
-        # The repaired mesh may take the place of the scan; report and preview may not.
-        taken |= {path.resolve(), task.source.resolve()}
+        taken.append(path)
+
+
+def _check_place(path: Path) -> None:
+    if path.is_dir():
+        raise UsageError(f"{path} is a folder, not a file to write")
+    if not path.parent.is_dir():
+        raise UsageError(f"{path} can't be written: there is no folder {path.parent}")
+
+
+def is_same_file(one: Path, other: Path) -> bool:
+    """Tell whether two paths lead to one file: by another spelling, a symbolic link or a hard link."""
+    try:
+        return one.samefile(other)
+    except OSError:
+        # One of them is not there yet.
+        return one.resolve() == other.resolve()
 
 
 def format_of(output: Path) -> OutputFormat:
@@ -112,17 +132,31 @@ def _canceled_on_the_way_out(client: Client, screen: Screen, job: Job) -> Iterat
 
 
 def _fetch(client: Client, screen: Screen, task: Task, job: Job) -> None:
+    """Fetch the mesh first: it is there whatever happens to the files that come with it."""
+    with screen.transfer("downloading") as progress:
+        client.download(job, "result", task.output, progress)
+    written = [task.output]
+    if task.report is not None:
+        client.download(job, "report", task.report)
+        written.append(task.report)
+    if task.preview is not None and _is_fetched(client, screen, job, "preview", task.preview):
+        written.append(task.preview)
     with tempfile.TemporaryDirectory() as folder:
         report = task.report or Path(folder) / "report.json"
-        client.download(job, "report", report)
-        with screen.transfer("downloading") as progress:
-            client.download(job, "result", task.output, progress)
-        if task.preview is not None:
-            client.download(job, "preview", task.preview)
-        screen.tell(paragraph(task.source.name, job, json.loads(report.read_text(encoding="utf-8"))))
-    for path in (task.output, task.report, task.preview):
-        if path is not None:
-            screen.say(f"wrote {path}", style="green")
+        if task.report is not None or _is_fetched(client, screen, job, "report", report):
+            screen.tell(paragraph(task.source.name, job, json.loads(report.read_text(encoding="utf-8"))))
+    for path in written:
+        screen.say(f"wrote {path}", style="green")
+
+
+def _is_fetched(client: Client, screen: Screen, job: Job, role: Literal["report", "preview"], path: Path) -> bool:
+    """Fetch a file that is optional: without it the repair has succeeded all the same."""
+    try:
+        client.download(job, role, path)
+    except (ClientError, OSError) as error:
+        screen.complain(f"there is no {role}: {error}")
+        return False
+    return True
 
 
 def _size(n_bytes: int) -> str:

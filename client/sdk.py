@@ -26,7 +26,7 @@ from client.errors import (
     WaitTimeoutError,
 )
 from client.polling import parse, poll
-from client.transfers import ByteProgress, download, file_chunks, no_progress, sha256_of
+from client.transfers import ByteProgress, download, file_chunks, no_progress, sent_name, sha256_of
 from client.transport import Transport
 from client.watching import watch
 from jobkit.schema import Job, JobPage, JobSpec, JobState, Mesh, MeshState, ModelList, Plan
@@ -53,6 +53,8 @@ class Client:
 
     def __init__(self, base_url: str, api_key: str | None = None, patience_s: float = 60.0) -> None:
         self._transport = Transport(base_url, api_key, patience_s)
+        # Of the meshes that were uploaded here, by id: the service may know the same bytes under another name.
+        self._names: dict[str, str] = {}
 
     def upload(self, path: Path, progress: ByteProgress = no_progress) -> Mesh:
         """Send a mesh file; bytes that the service has already are not sent again.
@@ -63,6 +65,7 @@ class Client:
             If the service received other bytes.
         """
         sha256 = sha256_of(path)
+        self._names[sha256] = sent_name(path)
         known = self._find_mesh(sha256)
         if known is not None and known.state != MeshState.REJECTED:
             size = path.stat().st_size
@@ -71,7 +74,7 @@ class Client:
         response = self._transport.request(
             "POST",
             "/v1/meshes",
-            params={"filename": path.name},
+            params={"filename": sent_name(path)},
             headers={"Content-Type": "application/octet-stream", "Content-Length": str(path.stat().st_size)},
             content=lambda: file_chunks(path, progress),
         )
@@ -103,12 +106,16 @@ class Client:
     def create_job(self, spec: JobSpec, idempotency_key: str | None = None) -> Job:
         """Start a job. Repeated on a broken line, it is still started once.
 
+        A spec without `mesh_name` takes the name of the file that this client uploaded last as that mesh.
+
         Parameters
         ----------
         spec : JobSpec
         idempotency_key : str, optional
             Give your own to be safe across a restart of your program.
         """
+        if spec.mesh_name is None:
+            spec = spec.model_copy(update={"mesh_name": self._names.get(spec.mesh_id) or None})
         response = self._transport.request(
             "POST",
             "/v1/jobs",

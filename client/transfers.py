@@ -2,6 +2,7 @@
 
 import hashlib
 import os
+import re
 import tempfile
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -12,6 +13,8 @@ from client.errors import DamagedTransferError
 from client.transport import Transport
 
 CHUNK_BYTES = 1 << 18
+_CONTROL = re.compile(r"[\x00-\x1f\x7f]")
+_LONGEST_NAME = 255
 # Called with the bytes done so far and the bytes in all.
 ByteProgress = Callable[[int, int], None]
 
@@ -24,6 +27,11 @@ def sha256_of(path: Path) -> str:
     """Return the sha256 of a file, in hex."""
     with path.open("rb") as file:
         return hashlib.file_digest(file, "sha256").hexdigest()
+
+
+def sent_name(path: Path) -> str:
+    """Return the name of a file as it is sent: without control characters, `?` for bytes that are no text."""
+    return _CONTROL.sub("", path.name).encode("utf-8", "replace").decode("utf-8")[-_LONGEST_NAME:]
 
 
 def file_chunks(path: Path, progress: ByteProgress) -> Iterator[bytes]:

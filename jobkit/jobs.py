@@ -185,9 +185,10 @@ class Jobs:
         with self._database.write() as session:
             if idempotency is not None and (earlier := self._earlier_job(session, idempotency)) is not None:
                 return earlier, False
-            if session.get(MeshRow, new.spec.mesh_id) is None:
+            mesh = session.get(MeshRow, new.spec.mesh_id)
+            if mesh is None:
                 raise MeshNotFoundError(f"there is no mesh {new.spec.mesh_id}")
-            row = _new_row(new)
+            row = _new_row(new, mesh.filename)
             session.add(row)
             session.flush()
             append_event(session, row.id, "queued", row.created_at, {"state": row.state})
@@ -215,11 +216,13 @@ class Jobs:
         return self._show(existing_job(session, earlier.job_id))
 
 
-def _new_row(new: NewJob) -> JobRow:
+def _new_row(new: NewJob, latest_name: str | None) -> JobRow:
+    """Make the row of a job; its mesh's name is written down: later the same bytes may come under another."""
     now = utc_now()
     return JobRow(
         id=new_job_id(),
         mesh_id=new.spec.mesh_id,
+        mesh_name=new.spec.mesh_name or latest_name,
         state=JobState.QUEUED.value,
         attempt=0,
         max_attempts=new.max_attempts,

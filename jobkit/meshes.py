@@ -59,7 +59,7 @@ class Meshes:
         self._retention_days = retention_days
 
     def add(self, stored: StoredObject, filename: str | None, mesh_format: Format | None) -> tuple[Mesh, bool]:
-        """Note an upload; the same bytes are the same mesh.
+        """Note an upload; the same bytes are the same mesh, which goes by its latest name.
 
         A mesh that was rejected is analysed again when it comes back under another format, or was gone.
 
@@ -145,9 +145,11 @@ class Meshes:
                 session.add(row)
                 restart(row, filename, mesh_format)
             elif is_missing(row):
-                restart(row, row.filename, row.format)
+                restart(row, filename or row.filename, row.format)
             elif row.state == MeshState.REJECTED and mesh_format not in (None, row.format):
                 restart(row, filename, mesh_format)
+            elif filename is not None:
+                row.filename = filename
             row.updated_at = row.used_at = now
             session.flush()
             return self._show(session, row), is_new

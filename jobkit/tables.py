@@ -54,6 +54,7 @@ Base.metadata.naming_convention = NAMING
 class MeshRow(Base):
     """An uploaded mesh and its analysis.
 
+    `filename` is that of its latest upload.
     `used_at` is when its bytes came last, or when the last job on it ended that retention has removed since.
     """
 
@@ -83,12 +84,14 @@ class JobRow(Base):
 
     `attempt` fences and never falls; `forgiven` says how many attempts ended for reasons that lie outside of the job (a
     drained worker, a store that refused writes) and don't count towards `max_attempts`. A queued job that waits for
-    such a reason to pass is not started before `not_before`. `queued_at` is when it last began to wait.
+    such a reason to pass is not started before `not_before`. `queued_at` is when it last began to wait. `mesh_name` is
+    the name of the file that came for this job: the mesh itself may go by another one later.
     """
 
     __tablename__ = "jobs"
     id: Mapped[str] = mapped_column(String(40), primary_key=True)
     mesh_id: Mapped[str] = mapped_column(String(64), ForeignKey("meshes.id"))
+    mesh_name: Mapped[str | None] = mapped_column(String(255))
     state: Mapped[str] = mapped_column(String(32))
     attempt: Mapped[int] = mapped_column(default=0)
     max_attempts: Mapped[int]

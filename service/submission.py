@@ -12,6 +12,7 @@ from jobkit.schema import Job, JobSpec, Limits, Mesh, MeshFacts, MeshState, Plan
 from jobkit.selection import resolve_method
 from jobkit.settings import Settings
 from jobkit.telemetry import current_traceparent
+from service.formats import clean_filename
 from service.plan import check_hole_ids, make_plan
 from service.services import Services
 
@@ -60,7 +61,7 @@ def submit(services: Services, submission: Submission) -> tuple[Job, bool]:
         return earlier, False
     model = _check(services, submission.spec)
     new = NewJob(
-        submission.spec,
+        submission.spec.model_copy(update={"mesh_name": clean_filename(submission.spec.mesh_name)}),
         model,
         services.settings.max_attempts,
         submission.rerun_of,

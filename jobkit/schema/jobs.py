@@ -106,6 +106,11 @@ class Job(Response):
     started_at: Moment | None = Field(default=None, description="When its latest attempt started, RFC 3339.")
     finished_at: Moment | None = Field(default=None, description="When it ended, RFC 3339.")
     mesh_id: MeshId
+    mesh_name: str | None = Field(
+        default=None,
+        description="Name of the file that it repairs, after which its result is named; null: the sender gave none.",
+        examples=["face000.ply"],
+    )
     model: ResolvedModel = Field(description="The model version it is pinned to.")
     spec: JobSpec = Field(description="What it was asked to do, with defaults written out.")
     error: JobError | None = Field(default=None, description="Set once the state is `failed`.")

@@ -93,7 +93,9 @@ class Mesh(Response):
 
     id: MeshId
     state: MeshState = Field(description="Whether a worker has analysed the file.", examples=["ready"])
-    filename: str | None = Field(default=None, description="As the sender named it.", examples=["face000.ply"])
+    filename: str | None = Field(
+        default=None, description="As the sender of its latest upload named it.", examples=["face000.ply"]
+    )
     format: Format | None = Field(default=None, description="As stated or seen; null: unknown.", examples=["ply"])
     size_bytes: int = Field(ge=0, description="Size of the file, in bytes.", examples=[3_212_000])
     created_at: Moment = Field(description="When it was first uploaded, RFC 3339.")

@@ -20,6 +20,7 @@ FittingSteps = Annotated[int, Field(ge=1, le=100_000), WHOLE]
 MemoryMb = Annotated[int, Field(ge=256, le=1_048_576), WHOLE]
 Seed = Annotated[int, Field(ge=0, le=2**32 - 1), WHOLE]
 Text = Annotated[str, Field(max_length=200, pattern=TEXT_PATTERN)]
+FileName = Annotated[str, Field(min_length=1, max_length=255, pattern=TEXT_PATTERN)]
 _METADATA_KEY = r"^[A-Za-z0-9_.-]{1,64}$"
 MetadataKey = Annotated[str, Field(pattern=_METADATA_KEY)]
 
@@ -230,3 +231,9 @@ class JobSpec(RepairSpec):
     """A whole job: a mesh, and what to do with it."""
 
     mesh_id: MeshId
+    mesh_name: FileName | None = Field(
+        default=None,
+        description="Name of the mesh's file, after which the result is named; null: that of its latest upload. The "
+        "same bytes may come as several files.",
+        examples=["face000.ply"],
+    )

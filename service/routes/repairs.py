@@ -8,6 +8,7 @@ from starlette.concurrency import run_in_threadpool
 from starlette.responses import Response
 
 from jobkit.schema import JobSpec, RepairSpec
+from service.formats import clean_filename
 from service.problems import invalid_request
 from service.routes.common import FILE, IdempotencyKey, problems
 from service.routes.jobs import ACCEPTED, answer_submission
@@ -65,7 +66,10 @@ async def repair(
     upload = await receive_upload(request, services.store, rules)
     spec = _read_spec(upload.fields.get("spec", b"{}"))
     mesh, _ = await run_in_threadpool(register_mesh, services, upload, None, None)
-    whole = JobSpec(mesh_id=mesh.id, **{name: getattr(spec, name) for name in RepairSpec.model_fields})
+    name = clean_filename(upload.filename)
+    whole = JobSpec(
+        mesh_id=mesh.id, mesh_name=name, **{field: getattr(spec, field) for field in RepairSpec.model_fields}
+    )
     return await answer_submission(services, Submission(whole, principal, key), prefer)
 
 

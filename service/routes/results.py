@@ -86,7 +86,7 @@ def _file_response(
         raise ObjectNotFoundError(f"job {job_id} left no {role}")
     mesh = services.meshes.get(job.mesh_id)
     suffix = {"result": f".{job.result.format}" if job.result else "", "report": ".json", "preview": ".png"}[role]
-    name = repaired_name(mesh.filename, mesh.id, suffix)
+    name = repaired_name(job.mesh_name or mesh.filename, mesh.id, suffix)
     key = result_key(job_id, job.attempt, file.name)
     try:
         return content_response(request, services.store, Content(key, file.sha256, file.size_bytes, name, media_type))

@@ -62,6 +62,7 @@ def test_an_upgrade_keeps_the_rows_and_fills_what_is_new_and_so_does_the_way_bac
     with database.read() as session:
         job, mesh = session.get_one(JobRow, "job_a"), session.get_one(MeshRow, "m")
     assert (job.queued_at, job.forgiven, job.pinned, job.not_before) == (NOW, 0, False, None)
+    assert job.mesh_name == "scan.ply"
     assert (mesh.used_at, mesh.pinned) == (NOW, False)
     for revision in ("0001", "head"):
         database.migrate(revision)
@@ -73,8 +74,8 @@ def test_an_upgrade_keeps_the_rows_and_fills_what_is_new_and_so_does_the_way_bac
 
 FULL = ("meshes", "jobs", "attempts", "events", "idempotency_keys")
 ROWS_OF_0001 = (
-    "INSERT INTO meshes (id, key, size_bytes, state, attempt, created_at, updated_at)"
-    " VALUES ('m', 'k', 1, 'ready', 1, :now, :now)",
+    "INSERT INTO meshes (id, key, size_bytes, filename, state, attempt, created_at, updated_at)"
+    " VALUES ('m', 'k', 1, 'scan.ply', 'ready', 1, :now, :now)",
     "INSERT INTO jobs"
     " (id, mesh_id, state, attempt, max_attempts, revision, percent, spec, model, created_at, updated_at)"
     " VALUES ('job_a', 'm', 'queued', 1, 3, 2, 0, '{}', '{}', :now, :now)",

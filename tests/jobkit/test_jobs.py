@@ -1,4 +1,5 @@
 import threading
+from dataclasses import replace
 
 import pytest
 
@@ -6,7 +7,9 @@ from jobkit.attempts import Attempts
 from jobkit.database import Database
 from jobkit.errors import IdempotencyError, JobFinishedError, JobNotFoundError, MeshNotFoundError
 from jobkit.jobs import Idempotency, Jobs, NewJob
+from jobkit.meshes import Meshes
 from jobkit.schema import Job, JobResult, JobSpec, JobState, ResolvedModel
+from jobkit.store import StoredObject
 
 KEY = Idempotency("station-1", "order-17", "a" * 64)
 
@@ -28,6 +31,19 @@ def test_a_job_needs_its_mesh(database: Database) -> None:
     new = NewJob(JobSpec(mesh_id="f" * 64), ResolvedModel(requested="self", kind="self"), 1)
     with pytest.raises(MeshNotFoundError):
         Jobs(database).create(new)
+
+
+def test_a_job_keeps_the_name_that_its_mesh_had(database: Database, new_job: NewJob) -> None:
+    meshes, jobs = Meshes(database), Jobs(database)
+    mesh = meshes.get(new_job.spec.mesh_id)
+    stored = StoredObject("meshes/ab/abc", mesh.size_bytes, mesh.id)
+    ids = []
+    for name in ("first.ply", "second.ply"):
+        meshes.add(stored, name, "ply")
+        ids.append(jobs.create(new_job)[0].id)
+    named = replace(new_job, spec=new_job.spec.model_copy(update={"mesh_name": "third.ply"}))
+    ids.append(jobs.create(named)[0].id)
+    assert [jobs.get(job_id).mesh_name for job_id in ids] == ["first.ply", "second.ply", "third.ply"]
 
 
 def test_a_repeated_key_gives_the_first_job(database: Database, new_job: NewJob) -> None:

@@ -32,7 +32,11 @@ def stored(mesh: Mesh) -> StoredObject:
 def test_the_same_bytes_are_the_same_mesh(meshes: Meshes, mesh: Mesh) -> None:
     again, is_new = meshes.add(stored(mesh), "another-name.ply", "ply")
     assert not is_new
-    assert again == mesh
+    assert again == mesh.model_copy(update={"filename": "another-name.ply"})
+
+
+def test_an_upload_without_a_name_leaves_the_mesh_its_own(meshes: Meshes, mesh: Mesh) -> None:
+    assert meshes.add(stored(mesh), None, None)[0] == mesh
 
 
 def test_a_rejected_mesh_gets_a_new_chance_under_another_format(meshes: Meshes, mesh: Mesh) -> None:

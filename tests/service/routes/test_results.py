@@ -1,3 +1,4 @@
+import json
 from collections.abc import Callable
 
 import pytest
@@ -30,6 +31,30 @@ def test_each_file_comes_with_its_type_and_a_sensible_name(
     assert (part.status_code, part.content) == (206, data[2:4])
     same = client.get(f"/v1/jobs/{job_id}/{path}", headers={"If-None-Match": answer.headers["etag"]})
     assert same.status_code == 304
+
+
+def test_a_result_is_named_after_the_file_of_its_job_whatever_its_bytes_are_called_elsewhere(
+    client: TestClient, finish: Callable[[str], Job]
+) -> None:
+    """Two uploads of the same bytes under two names, by the two ways to make a job."""
+    data, spec = b"ply\n", {"method": {"method": "smooth"}}
+    jobs = []
+    for name in ("left.ply", "right.ply"):
+        mesh = client.post("/v1/meshes", params={"filename": name}, content=data).json()
+        jobs.append(client.post("/v1/jobs", json={"mesh_id": mesh["id"], **spec}).json())
+    for name in ("upper.ply", "lower.ply"):
+        files = {"mesh": (name, data), "spec": (None, json.dumps(spec), "application/json")}
+        jobs.append(client.post("/v1/repairs", files=files).json())
+    named = {"mesh_id": jobs[0]["mesh_id"], "mesh_name": "folder/inner.ply", **spec}
+    jobs.append(client.post("/v1/jobs", json=named).json())
+    jobs.append(client.post(f"/v1/jobs/{jobs[-1]['id']}/rerun").json())
+    names = ["left", "right", "upper", "lower", "inner", "inner"]
+    for job, name in zip(jobs, names, strict=True):
+        finish(job["id"])
+        assert client.get(f"/v1/jobs/{job['id']}").json()["mesh_name"] == f"{name}.ply"
+        for path, suffix in (("result", "ply"), ("report", "json"), ("preview.png", "png")):
+            header = client.get(f"/v1/jobs/{job['id']}/{path}").headers["content-disposition"]
+            assert header == f'attachment; filename="{name}-repaired.{suffix}"'
 
 
 @pytest.mark.parametrize("path", ["result", "report", "preview.png"])
