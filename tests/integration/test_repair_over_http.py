@@ -12,6 +12,7 @@ from jobkit.schema import JobSpec, JobState, MeshState
 from quadpatch.formats.reading import read_scan
 from quadpatch.model_file import shipped_model
 from quadpatch.repair import inspect_file
+from tests.integration.conftest import ply_bytes, punched_relief, stl_bytes
 
 SMOOTH = {"method": "smooth"}
 SELF = {"method": "dictionary", "model": "self"}
@@ -55,6 +56,37 @@ def test_a_job_leaves_a_report_and_a_picture_that_fit_its_facts(
     assert job.result.new_triangles == sum(hole["new_triangles"] for hole in report["holes"])
     assert [stage["name"] for stage in report["stages"]][-2:] == ["write", "preview"]
     assert (tmp_path / "preview.png").read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.parametrize(("name", "asked"), [("binary.stl", None), ("float.ply", "stl")])
+def test_facets_that_share_no_vertex_have_their_picture(
+    client: Client, tmp_path: Path, name: str, asked: str | None
+) -> None:
+    """By the default spec: about 5,000 facets, each under a hundredth of the area."""
+    vertices, triangles = punched_relief(52)
+    source = tmp_path / name
+    write = stl_bytes if name.endswith(".stl") else ply_bytes
+    source.write_bytes(write(vertices, triangles))
+    assert len(triangles) > 5000
+    mesh = client.upload(source)
+    output = {} if asked is None else {"output": {"format": asked}}
+    job = client.wait(client.create_job(JobSpec.model_validate({"mesh_id": mesh.id, **output})).id, timeout_s=240)
+    client.download(job, "result", tmp_path / "out.stl")
+    client.download(job, "preview", tmp_path / "out.png")
+    assert job.state == JobState.SUCCEEDED
+    assert len(read_scan(tmp_path / "out.stl").triangles) > len(triangles)
+    assert (tmp_path / "out.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_a_job_is_named_after_the_file_that_came_for_it(client: Client, relief_file: Callable[[str], Path]) -> None:
+    """The second upload is not sent, since its bytes are there already."""
+    first = relief_file("float.ply")
+    jobs = []
+    for name in ("front.ply", "back.ply"):
+        mesh = client.upload(first.rename(first.with_name(name)))
+        first = first.with_name(name)
+        jobs.append(client.create_job(spec(mesh.id, method=SMOOTH)))
+    assert [client.wait(job.id, timeout_s=120).mesh_name for job in jobs] == ["front.ply", "back.ply"]
 
 
 def test_a_job_without_a_word_about_its_model_is_pinned_to_the_one_that_ships(
