@@ -17,7 +17,7 @@ INPUTS, CASES = SHARED / "inputs", SHARED / "cases"
 UNCLEAR = ("engine_error", "engine_crashed", "")
 # Side files of other meshes, the list of all of them, and what checks a repair.
 NO_MESHES = {".bin", ".mtl", ".png", ".json", ".py"}
-LARGE_BYTES = 60_000
+LARGE_BYTES = 20_000
 SMOOTH = {"method": {"method": "smooth"}, "output": {"preview": False}}
 
 HEADER = "ply\nformat ascii 1.0\nelement vertex {v}\nproperty float x\nproperty float y\nproperty float z\n"
