@@ -13,9 +13,9 @@ from quadpatch.mesh.boundary import boundary_loops
 from quadpatch.mesh.weld import weld
 from quadpatch.picture import render_before_after
 from quadpatch.picture.camera import Camera, view_of
+from quadpatch.picture.pair import SURE
 from quadpatch.picture.parts import Part, part_of
 from quadpatch.picture.shading import CLAY, Clay
-from quadpatch.picture.sheet import SURE
 from quadpatch.picture.viewpoints import close_ups
 from quadpatch.raycast import RayScene
 from quadpatch.types import IntArray, TriangleMesh, Vertices
