@@ -34,6 +34,9 @@ _SAME_PLACE = 4
 _SAME_PLANE = 1e-9
 _INSIDE = 1e-3
 
+# A line in which two triangles meet is a point below this share of the diagonal.
+_SAME_POINT = 1e-7
+
 # A new triangle of less area than this share of the squared diagonal is a sliver.
 _SLIVER_SHARE = 1e-12
 
@@ -101,7 +104,7 @@ def find_faults(before: TriangleMesh, after: TriangleMesh) -> SurfaceFaults:
         int((is_repeated & is_new).sum()),
         _count_folds(single, single_new, edge),
         int((_is_sliver(welded) & is_new).sum()),
-        np.flatnonzero(_crosses(welded) & is_new | _lies_on_another(welded, is_new)),
+        np.flatnonzero(_runs_through_another(welded, is_new) | _lies_on_another(welded, is_new)),
     )
 
 
@@ -157,8 +160,7 @@ def _area_vectors(mesh: TriangleMesh) -> FloatArray:
 
 
 def _is_sliver(mesh: TriangleMesh) -> BoolArray:
-    size = np.linalg.norm(np.ptp(mesh.vertices, axis=0))
-    return np.asarray(np.linalg.norm(_area_vectors(mesh), axis=1) / 2 < _SLIVER_SHARE * size**2)
+    return np.asarray(np.linalg.norm(_area_vectors(mesh), axis=1) / 2 < _SLIVER_SHARE * _size(mesh) ** 2)
 
 
 def _count_folds(mesh: TriangleMesh, is_new: BoolArray, edge: IntArray) -> int:
@@ -188,6 +190,56 @@ def _pairs(edge: IntArray) -> Iterator[tuple[IntArray, IntArray]]:
         if not is_same.any():
             return
         yield order[:-step][is_same], order[step:][is_same]
+
+
+def _runs_through_another(mesh: TriangleMesh, is_new: BoolArray) -> BoolArray:
+    """Whether each triangle (m,) is new and has more than one point in common with one that is no neighbour.
+
+    Where a corner lies on an edge that does not end there, MeshLab sees a crossing or none, as rounding has it; so what
+    it finds is looked at again.
+    """
+    found = np.zeros(len(mesh.triangles), dtype=bool)
+    corners = mesh.vertices[mesh.triangles]
+    low, high = corners.min(axis=1), corners.max(axis=1)
+    has_area = ~_is_sliver(mesh)
+    # Loop over what MeshLab found, which is little.
+    for i in np.flatnonzero(_crosses(mesh) & is_new & has_area).tolist():
+        n_common = np.isin(mesh.triangles, mesh.triangles[i]).sum(axis=1)
+        near = ((low <= high[i]) & (high >= low[i])).all(axis=1) & has_area & (n_common < 2)
+        found[i] = any(_common_length(mesh, i, j) > _SAME_POINT * _size(mesh) for j in np.flatnonzero(near).tolist())
+    return found
+
+
+def _common_length(mesh: TriangleMesh, one: int, other: int) -> float:
+    """Measure the line in which two triangles meet."""
+    shared = np.intersect1d(mesh.triangles[one], mesh.triangles[other])
+    points = [mesh.vertices[vertex] for vertex in shared]
+    for edges, plane in ((one, other), (other, one)):
+        a, b, c = mesh.vertices[mesh.triangles[plane]]
+        normal = np.cross(b - a, c - a)
+        corners = mesh.vertices[mesh.triangles[edges]]
+        height = (corners - a) @ normal / np.linalg.norm(normal)
+        for k in range(3):
+            here, there = float(height[k - 1]), float(height[k])
+            if here * there < 0 and min(abs(here), abs(there)) > _SAME_PLANE * _size(mesh):
+                point = corners[k - 1] + (corners[k] - corners[k - 1]) * (here / (here - there))
+                if _barycentric(point[None], a, b, c).min() > -_SAME_PLANE:
+                    points.append(point)
+    return max((float(np.linalg.norm(p - q)) for p in points for q in points), default=0.0)
+
+
+def _barycentric(points: FloatArray, a: FloatArray, b: FloatArray, c: FloatArray) -> FloatArray:
+    """Barycentric coordinates (k, 3) of points (k, 3) in their triangles, or in one triangle."""
+    normal = np.cross(b - a, c - a)
+    square = np.maximum((normal * normal).sum(axis=-1), np.finfo(np.float64).tiny)
+    by_b = (np.cross(points - a, c - a) * normal).sum(axis=-1) / square
+    by_c = (np.cross(b - a, points - a) * normal).sum(axis=-1) / square
+    return np.stack([1 - by_b - by_c, by_b, by_c], axis=-1)
+
+
+def _size(mesh: TriangleMesh) -> float:
+    """Diagonal of the bounding box, in mesh units."""
+    return float(np.linalg.norm(np.ptp(mesh.vertices, axis=0)))
 
 
 def _crosses(mesh: TriangleMesh) -> BoolArray:
@@ -232,13 +284,10 @@ def _has_on_it(mesh: TriangleMesh, upper: IntArray, lower: IntArray) -> BoolArra
     centre = mesh.vertices[mesh.triangles[lower]].mean(axis=1)
     normal = np.cross(b - a, c - a)
     square = np.maximum(np.einsum("ij,ij->i", normal, normal), np.finfo(np.float64).tiny)
-    by_b = np.einsum("ij,ij->i", np.cross(centre - a, c - a), normal) / square
-    by_c = np.einsum("ij,ij->i", np.cross(b - a, centre - a), normal) / square
     height = np.abs(np.einsum("ij,ij->i", centre - a, normal)) / np.sqrt(square)
-    size = float(np.linalg.norm(np.ptp(mesh.vertices, axis=0)))
     n_common = (mesh.triangles[upper][:, :, None] == mesh.triangles[lower][:, None]).sum(axis=(1, 2))
-    is_inside = np.minimum(np.minimum(by_b, by_c), 1 - by_b - by_c) > _INSIDE
-    return np.asarray(is_inside & (height < _SAME_PLANE * size) & (n_common < 2))
+    is_inside = _barycentric(centre, a, b, c).min(axis=1) > _INSIDE
+    return np.asarray(is_inside & (height < _SAME_PLANE * _size(mesh)) & (n_common != 2))
 
 
 def _centred(vertices: Vertices) -> Vertices:

@@ -100,10 +100,27 @@ def test_a_triangle_that_lies_on_the_sheet_crosses_it(height: float, size: float
         assert find_faults(SHEET, grown(SHEET, corners, order)).n_crossings == (height < 1e-6)
 
 
+def test_a_corner_that_only_touches_an_edge_crosses_nothing() -> None:
+    """A triangle without area at the rim brings a corner that lies on the edge of another measured triangle."""
+    along = np.linspace(0.05, 0.95, 37)
+    for share in along.tolist():
+        corner = (1 - share) * SHEET.vertices[0] + share * SHEET.vertices[1]
+        measured = grown(SHEET, [corner], [[1, 0, -1]])
+        new = corner + np.array([[-0.3, -0.8, 0.3], [0.3, -0.8, -0.4]])
+        n = len(SHEET.vertices)
+        assert find_faults(measured, grown(measured, new, [[n, -1, -2]])).n_crossings == 0
+
+
+def test_sheets_that_cross_exactly_at_their_edges_are_seen() -> None:
+    """Both have their edges at the same places along x, so edges meet edges."""
+    upright = TriangleMesh(SHEET.vertices[:, [0, 2, 1]] + [0, 0.3, 0.2], SHEET.triangles)
+    assert find_faults(SHEET, joined(SHEET, upright)).n_crossings == 14
+
+
 def test_doubled_triangles_and_edges_of_three_are_counted_once_each() -> None:
     a, b, c = SHEET.triangles[10].tolist()
     doubled = find_faults(SHEET, grown(SHEET, [], [[c, b, a]]))
-    assert (doubled.n_doubled, doubled.n_nonmanifold) == (1, 0)
+    assert (doubled.n_doubled, doubled.n_crossings, doubled.n_nonmanifold) == (1, 1, 0)
     fin = find_faults(SHEET, grown(SHEET, [SHEET.vertices[a] + [0, 0, 1]], [[a, b, -1]]))
     assert (fin.n_doubled, fin.n_nonmanifold) == (0, 1)
 
