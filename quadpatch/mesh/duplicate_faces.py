@@ -59,7 +59,8 @@ def first_with_same_corners(corners: Triangles) -> IntArray:
         Positions in `corners`; a triangle with equal corners is like no other.
     """
     result = np.arange(len(corners))
-    hashes = _mixed(corners[:, 0]) + _mixed(corners[:, 1]) + _mixed(corners[:, 2])
+    mixed = _mixed(np.arange(int(corners.max(initial=-1)) + 1))
+    hashes = mixed[corners[:, 0]] + mixed[corners[:, 1]] + mixed[corners[:, 2]]
     ranked = np.sort(hashes)
     shared = ranked[1:][ranked[1:] == ranked[:-1]]
     if not len(shared):

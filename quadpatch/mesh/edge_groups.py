@@ -58,18 +58,43 @@ def group_edges(triangles: Triangles, n_vertices: int) -> EdgeGroups:
     return EdgeGroups(edges, order, starts, edge, np.diff(np.append(starts, len(keys))))
 
 
-def boundary_vertices(triangles: Triangles, n_vertices: int) -> BoolArray:
-    """Vertices of edges that exactly one triangle has, (n_vertices,) bool."""
-    keys = edge_keys(directed_edges(triangles), max(n_vertices, 1))
+@dataclass(frozen=True)
+class EdgeSurvey:
+    """What one sort of all edges tells of a mesh.
+
+    Attributes
+    ----------
+    on_boundary : (n_vertices,) bool
+        Vertices of edges that exactly one triangle has.
+    is_crowded : bool
+        Whether an edge has more than two faces.
+    is_divided : bool
+        Whether two faces pass an edge in the same direction.
+    """
+
+    on_boundary: BoolArray
+    is_crowded: bool
+    is_divided: bool
+
+
+def survey_edges(triangles: Triangles, n_vertices: int) -> EdgeSurvey:
+    """Look at all edges of triangles (m, 3); many times faster than `group_edges`, and enough for most meshes."""
+    start, end = triangles.ravel(), triangles[:, [1, 2, 0]].ravel()
+    edges = np.minimum(start, end) * np.int64(max(n_vertices, 1)) + np.maximum(start, end)
+    # The direction goes along as the last bit.
+    keys = 2 * edges + (start > end)
     keys.sort()
-    alone = np.ones(len(keys), dtype=bool)
+    is_divided = bool((keys[1:] == keys[:-1]).any())
+    keys >>= 1
     differs = keys[1:] != keys[:-1]
+    is_crowded = bool((~differs[1:] & ~differs[:-1]).any())
+    alone = np.ones(len(keys), dtype=bool)
     alone[1:] &= differs
     alone[:-1] &= differs
-    result = np.zeros(n_vertices, dtype=bool)
-    result[keys[alone] // n_vertices] = True
-    result[keys[alone] % n_vertices] = True
-    return result
+    on_boundary = np.zeros(n_vertices, dtype=bool)
+    on_boundary[keys[alone] // n_vertices] = True
+    on_boundary[keys[alone] % n_vertices] = True
+    return EdgeSurvey(on_boundary, is_crowded, is_divided)
 
 
 def components(links: IntArray, n: int) -> IntArray:

@@ -12,7 +12,7 @@ from scipy.spatial import cKDTree
 
 from quadpatch.errors import OptionError
 from quadpatch.mesh.boundary import directed_edges
-from quadpatch.mesh.edge_groups import boundary_vertices, components
+from quadpatch.mesh.edge_groups import components
 from quadpatch.mesh.measures import mean_edge_length
 from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Triangles, Vertices
 
@@ -35,13 +35,15 @@ _MAX_MEMBERS = 64
 _SAFE_DIGITS, _WRITTEN_DIGITS = 7, (8, 9)
 
 
-def join_near(mesh: TriangleMesh, tolerance: Tolerance) -> tuple[IntArray, float]:
+def join_near(mesh: TriangleMesh, on_boundary: BoolArray, tolerance: Tolerance) -> tuple[IntArray, float]:
     """Find boundary vertices to be joined.
 
     Parameters
     ----------
     mesh : TriangleMesh
         Equal positions on its boundary are joined already.
+    on_boundary : (n,) bool
+        Its boundary vertices.
     tolerance : float or "auto"
         Largest distance, in mesh units. `auto` is `ULPS` units in the last place of the largest coordinate on the
         boundary, in the precision that the file has kept, but at most `EDGE_SHARE` of the shortest edge at either
@@ -60,11 +62,11 @@ def join_near(mesh: TriangleMesh, tolerance: Tolerance) -> tuple[IntArray, float
         If the tolerance is longer than the mean edge, or too many vertices are in reach of each other. An automatic one
         joins none of these.
     """
-    vertices, triangles = mesh.vertices, mesh.triangles
+    vertices = mesh.vertices
     first = np.arange(len(vertices), dtype=np.int64)
     if tolerance != "auto" and not tolerance:
         return first, 0.0
-    candidates = np.flatnonzero(boundary_vertices(triangles, len(vertices)))
+    candidates = np.flatnonzero(on_boundary)
     points = vertices[candidates]
     limit = stored_precision(points) if tolerance == "auto" else tolerance
     reach = np.full(len(candidates), limit)

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from quadpatch.mesh.duplicate_faces import repeated_triangles
-from quadpatch.mesh.edge_groups import boundary_vertices
+from quadpatch.mesh.edge_groups import EdgeSurvey, survey_edges
 from quadpatch.mesh.fins import fin_triangles
 from quadpatch.mesh.near_vertices import Tolerance, join_near
 from quadpatch.mesh.orientation import turned_triangles
@@ -95,22 +95,32 @@ def weld(scan_vertices: Vertices, scan_triangles: Triangles, tolerance: Toleranc
     proper = _without_degenerate(scan_triangles)
     place = first_of_equal(scan_vertices)
     repeated = repeated_triangles(proper, place)
-    to_file, from_file = _numbered(_join_equal(proper, repeated, place))
+    kept = proper[~repeated] if repeated.any() else proper
+    survey = survey_edges(kept, len(place))
+    to_file, from_file = _numbered(_join_equal(kept, proper[repeated], place, survey))
     n_equal = len(scan_vertices) - len(to_file)
-    triangles = _without_degenerate(from_file[proper[~repeated]])
-    near, tolerance = join_near(TriangleMesh(scan_vertices[to_file], triangles), tolerance)
+    triangles = kept
+    if n_equal:
+        triangles = _without_degenerate(from_file[kept])
+        survey = survey_edges(triangles, len(to_file))
+    near, tolerance = join_near(TriangleMesh(scan_vertices[to_file], triangles), survey.on_boundary, tolerance)
     again = np.zeros(len(triangles), dtype=bool)
     n_near = int((near != np.arange(len(near))).sum())
     if n_near:
         to_file, from_file = _numbered(to_file[near][from_file])
-        triangles = _without_degenerate(from_file[proper[~repeated]])
+        triangles = _without_degenerate(from_file[kept])
+        survey = survey_edges(triangles, len(to_file))
         again = repeated_triangles(triangles, np.arange(len(to_file)))
     copies = np.concatenate([from_file[proper[repeated]], triangles[again]])
-    triangles = triangles[~again]
-    is_fin = fin_triangles(scan_vertices[to_file], triangles)
-    fins, triangles = triangles[is_fin], triangles[~is_fin]
-    is_turned = turned_triangles(triangles, len(to_file))
-    triangles = np.where(is_turned[:, np.newaxis], triangles[:, ::-1], triangles)
+    triangles = triangles[~again] if again.any() else triangles
+    fins = triangles[:0]
+    if survey.is_crowded:
+        is_fin = fin_triangles(scan_vertices[to_file], triangles)
+        fins, triangles = triangles[is_fin], triangles[~is_fin]
+    is_turned = np.zeros(len(triangles), dtype=bool)
+    if survey.is_divided:
+        is_turned = turned_triangles(triangles, len(to_file))
+        triangles = np.where(is_turned[:, np.newaxis], triangles[:, ::-1], triangles)
     return Weld(
         TriangleMesh(scan_vertices[to_file], triangles),
         to_file,
@@ -127,22 +137,21 @@ def _without_degenerate(triangles: Triangles) -> Triangles:
     return triangles if proper.all() else triangles[proper]
 
 
-def _join_equal(triangles: Triangles, repeated: BoolArray, place: IntArray) -> IntArray:
+def _join_equal(kept: Triangles, copies: Triangles, place: IntArray, survey: EdgeSurvey) -> IntArray:
     """Find the first boundary vertex at the position of each boundary vertex, (n_file,) int64; others are their own.
 
     A vertex that repeated triangles alone use is joined to one of the triangles that they repeat.
     """
-    kept = triangles[~repeated]
     first = np.arange(len(place), dtype=np.int64)
-    candidates = np.flatnonzero(boundary_vertices(kept, len(place)))
+    candidates = np.flatnonzero(survey.on_boundary)
     at_place = np.zeros(len(place), np.int64)
     # Of several values for one index the last one stays.
     at_place[place[candidates[::-1]]] = candidates[::-1]
     first[candidates] = at_place[place[candidates]]
-    if repeated.any():
+    if len(copies):
         is_used = np.zeros(len(place), dtype=bool)
         is_used[kept] = True
-        spare = np.unique(triangles[repeated])
+        spare = np.unique(copies)
         spare = spare[~is_used[spare]]
         at_place[place[kept.ravel()]] = kept.ravel()
         first[spare] = first[at_place[place[spare]]]
