@@ -69,14 +69,18 @@ def join_near(mesh: TriangleMesh, on_boundary: BoolArray, tolerance: Tolerance) 
     candidates = np.flatnonzero(on_boundary)
     points = vertices[candidates]
     limit = stored_precision(points) if tolerance == "auto" else tolerance
-    reach = np.full(len(candidates), limit)
-    if tolerance == "auto":
-        reach = np.minimum(reach, EDGE_SHARE * _shortest_edges(mesh, limit)[candidates])
-    elif limit > mean_edge_length(mesh):
+    if tolerance != "auto" and limit > mean_edge_length(mesh):
         raise OptionError(
             f"weld_tolerance must be at most the mean edge length, {mean_edge_length(mesh):.6g}; it is {limit:.6g}"
         )
-    pairs = _near_pairs(points, reach)
+    # Most vertices have no other one in reach; the nearest one tells.
+    candidates = candidates[_nearest_distance(points, limit) <= limit]
+    if not len(candidates):
+        return first, limit
+    reach = np.full(len(candidates), limit)
+    if tolerance == "auto":
+        reach = np.minimum(reach, EDGE_SHARE * _shortest_edges(mesh, candidates, limit))
+    pairs = _near_pairs(vertices[candidates], reach)
     if pairs is not None and len(pairs):
         reach_of = np.zeros(len(vertices))
         reach_of[candidates] = reach
@@ -136,17 +140,28 @@ def _equals(numbers: FloatArray, others: FloatArray) -> BoolArray:
     return np.asarray(np.abs(numbers - others) <= 4 * np.spacing(np.abs(numbers)))
 
 
-def _shortest_edges(mesh: TriangleMesh, noise: float) -> FloatArray:
-    """Shortest edge at each vertex that is longer than the noise, (n,) float64; 0 where there is none."""
+def _nearest_distance(points: Vertices, limit: float) -> FloatArray:
+    """Distance (n,) of each point to the nearest other one, infinite beyond the limit."""
+    if len(points) < 2:
+        return np.full(len(points), np.inf)
+    distance, _ = cKDTree(points).query(points, k=[2], distance_upper_bound=np.nextafter(limit, np.inf))
+    return np.asarray(distance)[:, 0]
+
+
+def _shortest_edges(mesh: TriangleMesh, wanted: IntArray, noise: float) -> FloatArray:
+    """Shortest edge at each wanted vertex that is longer than the noise, (k,) float64; 0 where there is none."""
     shortest = np.full(len(mesh.vertices), np.inf)
+    is_wanted = np.zeros(len(mesh.vertices), dtype=bool)
+    is_wanted[wanted] = True
+    triangles = mesh.triangles[is_wanted[mesh.triangles].any(axis=1)]
     for k in range(3):
-        start, end = mesh.triangles[:, k], mesh.triangles[:, k - 2]
+        start, end = triangles[:, k], triangles[:, k - 2]
         length = np.linalg.norm(mesh.vertices[start] - mesh.vertices[end], axis=1)
         length[length <= noise] = np.inf
         np.minimum.at(shortest, start, length)
         np.minimum.at(shortest, end, length)
     # Where no edge is longer than the noise, noise and surface can't be told apart.
-    return np.where(np.isfinite(shortest), shortest, 0.0)
+    return np.where(np.isfinite(shortest), shortest, 0.0)[wanted]
 
 
 def _near_pairs(points: Vertices, reach: FloatArray) -> IntArray | None:
@@ -154,9 +169,7 @@ def _near_pairs(points: Vertices, reach: FloatArray) -> IntArray | None:
     nothing = np.zeros((0, 2), np.int64)
     if len(points) < 2:
         return nothing
-    # Most points have no other one in reach; the nearest one tells.
-    nearest, _ = cKDTree(points).query(points, k=[2], distance_upper_bound=np.nextafter(reach.max(), np.inf))
-    rows = np.flatnonzero(np.asarray(nearest)[:, 0] <= reach)
+    rows = np.flatnonzero(_nearest_distance(points, float(reach.max())) <= reach)
     if not len(rows):
         return nothing
     tree = cKDTree(points[rows])
