@@ -116,6 +116,7 @@ def test_flags_about_patches_reach_them(scan_file: Path, tmp_path: Path) -> None
     assert content["options"] == {
         "holes": {"max_diameter": None, "max_perimeter": None, "all_but_largest": False, "ids": None},
         "patches": {"length": 0.5, "resolution": 18, "overlap": 1},
+        "weld_tolerance": "auto",
         "seed": 3,
         "recipe": "default",
         "dictionary": {"atoms": None, "nonzero": None},
