@@ -93,8 +93,8 @@ def test_noise_is_joined_by_default_and_left_on_demand(tmp_path: Path) -> None:
     rng = np.random.default_rng(0)
     corners = BALL.vertices[BALL.triangles].reshape(-1, 3).astype(np.float32)
     noisy = np.nextafter(corners, rng.choice(np.array([-9, 9], np.float32), corners.shape))
-    corners = np.where(rng.random(corners.shape) < 0.2, noisy, corners).astype(np.float64)
-    mesh = TriangleMesh(corners, np.arange(len(corners)).reshape(-1, 3))
+    torn = np.where(rng.random(corners.shape) < 0.2, noisy, corners).astype(np.float64)
+    mesh = TriangleMesh(torn, np.arange(len(corners)).reshape(-1, 3))
     source, output = write_stl(tmp_path / "in.stl", mesh), tmp_path / "out.stl"
     report = repair_file(source, output, "smooth")
     assert report["counts"]["filled_smooth"] == report["counts"]["found"] == 1
@@ -152,7 +152,7 @@ def _numbers(report: dict[str, Any]) -> list[int | None]:
 def _without_a_cap(path: Path, output: Path) -> Path:
     """Take the faces of a binary PLY around the lowest point away."""
     scan = read_scan(path)
-    gone = (scan.vertices[scan.triangles][:, :, 2] < -0.98).any(axis=1)
+    gone = np.asarray((scan.vertices[scan.triangles][:, :, 2] < -0.98).any(axis=1))
     data = path.read_bytes()
     size = 13 + 9
     faces = np.frombuffer(data[-size * len(gone) :], np.uint8).reshape(len(gone), size)[~gone]

@@ -51,7 +51,8 @@ def test_the_fin_is_found_whatever_the_order_of_the_faces(seed: int) -> None:
     edges = directed_edges(BALL.triangles)
     mesh = BALL
     for row in rng.permutation(len(edges))[:2].tolist():
-        mesh = with_fin(mesh, *edges[row].tolist(), depth=int(rng.integers(1, 3)))
+        start, end = edges[row].tolist()
+        mesh = with_fin(mesh, start, end, depth=int(rng.integers(1, 3)))
     order = rng.permutation(len(mesh.triangles))
     found = fin_triangles(mesh.vertices, mesh.triangles[order])
     # On a rim edge, a single scrap is the second face and no fin.

@@ -1,9 +1,12 @@
 """Vertices that rounding has torn apart."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from numpy.typing import NDArray
 
 from quadpatch.errors import OptionError
 from quadpatch.mesh import near_vertices
@@ -18,7 +21,7 @@ BALL = punched(sphere(2), (0, 0, 1), (0, 1, 0), radius=0.4)
 
 def torn(mesh: TriangleMesh, units: int, rng: np.random.Generator, number: type = np.float32) -> TriangleMesh:
     """Give every triangle vertices of its own, each coordinate off by up to some units in the last place."""
-    corners = mesh.vertices[mesh.triangles.ravel()].astype(number)
+    corners: NDArray[Any] = mesh.vertices[mesh.triangles.ravel()].astype(number)
     off = rng.integers(-units, units + 1, corners.shape) * np.spacing(np.abs(corners))
     vertices = (corners + off).astype(number).astype(np.float64)
     return TriangleMesh(vertices, np.arange(mesh.triangles.size).reshape(-1, 3))
