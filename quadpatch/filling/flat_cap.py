@@ -16,10 +16,13 @@ from quadpatch.filling.refinement import Refined, flip_to_delaunay, refine
 from quadpatch.filling.triangulation import EdgeSet
 from quadpatch.mesh.boundary import directed_edges
 from quadpatch.mesh.normals import cross
-from quadpatch.mesh.smoothing import neighbour_average
 from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Triangles, Vertices
 
-# Rounds in which new vertices move to the mean of their neighbours; the smallest angle hardly changes after these.
+# Wanted edge length in that of the rim: refinement splits rather too much, and in a plane there is no shape to follow.
+# With 1.3 the smallest angle of round caps of 6 to 220 edges is 25 degrees, with 1 it is 14.
+_COARSENING = 1.3
+
+# Rounds in which new vertices move; the smallest angle hardly changes after these.
 _ROUNDS = 10
 
 # Areas that differ by this share of a rim's own are equal.
@@ -107,7 +110,7 @@ def _cap(vertices: Vertices, loops: Sequence[IntArray], existing: IntArray) -> t
     triangles = _triangulate(flat, [len(loop) for loop in loops])
     if triangles is None:
         return None
-    spacing = np.concatenate([_spacing(vertices[loop]) for loop in loops])
+    spacing = _COARSENING * np.concatenate([_spacing(vertices[loop]) for loop in loops])
     patch = Refined(_as_3d(flat), triangles, np.zeros(len(triangles), np.int64), spacing, len(rim))
     taken = EdgeSet(_local_edges(rim, existing))
     patch = _relaxed(refine(_without_chords(patch, taken, [len(loop) for loop in loops]), taken), taken)
@@ -203,13 +206,26 @@ def _split(patch: Refined, a: int, b: int) -> Refined:
 
 
 def _relaxed(patch: Refined, taken: EdgeSet) -> Refined:
-    """Move new vertices to the mean of their neighbours and flip edges, in turns: better shaped triangles."""
+    """Move new vertices to the centroids of the triangles around them and flip edges, in turns.
+
+    L. Chen, "Mesh smoothing schemes based on optimal Delaunay triangulations", International Meshing Roundtable 2004:
+    in the plane, centroids give better shapes than the mean of the neighbours.
+    """
     if not patch.is_new.any():
         return patch
     for _ in range(_ROUNDS):
-        mean = neighbour_average(patch.triangles, len(patch.vertices)) @ patch.vertices
-        patch = flip_to_delaunay(replace(patch, vertices=_moved(patch, np.asarray(mean))), taken)
+        patch = flip_to_delaunay(replace(patch, vertices=_moved(patch, _centroids(patch))), taken)
     return patch
+
+
+def _centroids(patch: Refined) -> Vertices:
+    """Centroid (n, 3) of the triangles around each vertex."""
+    corners, n = patch.triangles.ravel(), len(patch.vertices)
+    areas = np.abs(_areas(patch.vertices, patch.triangles))
+    moments = np.repeat(areas[:, None] * patch.vertices[patch.triangles].mean(axis=1), 3, axis=0)
+    around = np.bincount(corners, np.repeat(areas, 3), minlength=n)
+    sums = np.stack([np.bincount(corners, moments[:, k], minlength=n) for k in range(3)], axis=1)
+    return np.asarray(sums / np.maximum(around, 1e-300)[:, None])
 
 
 def _moved(patch: Refined, target: Vertices) -> Vertices:
