@@ -21,7 +21,7 @@ from jobkit.settings import settings_table
 from quadpatch import expectation, judge, paper, pipeline, practice
 from quadpatch.filling import fill, triangulation
 from quadpatch.inpainters import dictionary, heights
-from quadpatch.mesh import holes
+from quadpatch.mesh import hole_kinds, slits
 from quadpatch.patches import scale, sighting
 from quadpatch.report import VERDICTS
 from quadpatch.sparse import gaussian
@@ -135,7 +135,13 @@ def test_the_numbers_of_the_method_are_those_of_the_code() -> None:
         f"between {scale.OUTLINE_ITERATIONS_RANGE[0]} and {scale.OUTLINE_ITERATIONS_RANGE[1]}",
         f"{paper.SMOOTHING_ITERATIONS} uniform Laplacian iterations",
         f"normal · z > {sighting.LEAST_FACING}",
-        f"at the rim over {holes.OUTWARD}",
+        f"at the rim over {hole_kinds.OUTWARD}",
+        f"isoperimetric quotient is {hole_kinds.LEAST_ROUNDNESS} or more",
+        f"planarity at most {hole_kinds.END_PLANARITY},",
+        f"sine {hole_kinds.END_STEEPNESS},",
+        f"but for {hole_kinds.END_BEYOND} diameters",
+        f"for {100 * slits.SLIT_SHARE:g} % of its rim the other side is at most {slits.SLIT_WIDTH} diameters away",
+        f"{slits.SLIT_WAY} of the perimeter in the mean",
         f"length {paper.HOLES_PER_LENGTH} d, but at least {paper.LEAST_EDGES_PER_BIN} e · {paper.RESOLUTION} ",
         f"{paper.RESOLUTION} bins; overlap {paper.OVERLAP}.",
         f"has up to {heights.LOCAL_ATOMS} atoms",

@@ -2,7 +2,7 @@ import pytest
 
 from client.errors import UsageError
 from client.options import HoleChoice, MethodChoice, MethodName, make_spec, tolerance
-from jobkit.schema import CnnMethod, DictionaryMethod, Fitting
+from jobkit.schema import CnnMethod, DictionaryMethod, Fitting, HoleRule
 
 MESH_ID = "0" * 64
 
@@ -61,3 +61,22 @@ def test_an_option_out_of_its_range_is_named() -> None:
         make_spec(MESH_ID, HoleChoice(), MethodChoice(resolution=7))
     with pytest.raises(UsageError, match=r"fitting\.steps"):
         make_spec(MESH_ID, HoleChoice(), MethodChoice("cnn", "self", fit_steps=0))
+
+
+def test_which_holes_reaches_the_spec() -> None:
+    rules = ["id=3,id=4:skip", "kind=open_end,min_diameter=1,max_diameter=2.5,max_perimeter=9:flat", " smooth "]
+    holes = make_spec(MESH_ID, HoleChoice(5.0, None, False, [1], True, "flat", rules), MethodChoice()).holes
+    assert (holes.max_diameter, holes.ids, holes.include_borders, holes.cap) == (5.0, [1], True, "flat")
+    assert holes.rules == [
+        HoleRule(action="skip", ids=[3, 4]),
+        HoleRule(action="flat", kind="open_end", min_diameter=1.0, max_diameter=2.5, max_perimeter=9.0),
+        HoleRule(action="smooth"),
+    ]
+
+
+@pytest.mark.parametrize(
+    "rule", ["", "fill", "max_diameter=wide:flat", "colour=red:flat", "kind=window:flat", "id=x:skip"]
+)
+def test_a_rule_that_can_not_be_read_is_a_usage_error(rule: str) -> None:
+    with pytest.raises(UsageError):
+        make_spec(MESH_ID, HoleChoice(rules=[rule]), MethodChoice())

@@ -94,6 +94,11 @@ def test_quiet_says_nothing(scan_file: Path, tmp_path: Path) -> None:
         (["--hole", "3", "--hole", "1"], {1, 3}),
         (["--max-diameter", "0.5"], {2, 3}),
         (["--max-perimeter", "1.0"], {3}),
+        (["--max-diameter", "50"], {1, 2, 3}),
+        (["--max-diameter", "50", "--include-borders"], {0, 1, 2, 3}),
+        (["--rule", "id=2:skip", "--rule", "max_diameter=0.5:smooth"], {1, 3}),
+        (["--rule", "kind=hole,min_diameter=0.3:skip"], {3}),
+        (["--rule", "skip"], set()),
         (["--all-but-largest"], {1, 2, 3}),
         (["--all-but-largest", "--max-diameter", "0.5", "--hole", "2", "--hole", "1"], {2}),
     ],
@@ -114,7 +119,15 @@ def test_flags_about_patches_reach_them(scan_file: Path, tmp_path: Path) -> None
     assert result.exit_code == 0, result.output
     content = json.loads(report.read_text())
     assert content["options"] == {
-        "holes": {"max_diameter": None, "max_perimeter": None, "all_but_largest": False, "ids": None},
+        "holes": {
+            "max_diameter": None,
+            "max_perimeter": None,
+            "all_but_largest": False,
+            "ids": None,
+            "include_borders": False,
+            "cap": None,
+            "rules": [],
+        },
         "patches": {"length": 0.5, "resolution": 18, "overlap": 1},
         "weld_tolerance": "auto",
         "seed": 3,
@@ -144,6 +157,13 @@ def test_holes_are_listed_as_json(scan_file: Path) -> None:
     facts = json.loads(result.stdout)
     assert [hole["id"] for hole in facts["holes"]] == [0, 1, 2, 3]
     assert [hole["chosen"] for hole in facts["holes"]] == [False, True, True, True]
+    assert [hole["action"] for hole in facts["holes"]] == [None, "model", "model", "model"]
+    assert [hole["kind"] for hole in facts["holes"]] == ["border", "hole", "hole", "hole"]
+    assert facts["holes"][1]["centre"][:2] == pytest.approx([-0.5, -0.5], abs=0.05)
+    box = facts["holes"][1]["bounding_box"]
+    assert all(
+        low < at < high for low, at, high in zip(box["min"], facts["holes"][1]["centre"], box["max"], strict=True)
+    )
 
 
 def test_holes_are_listed_for_people(scan_file: Path) -> None:
@@ -151,6 +171,7 @@ def test_holes_are_listed_for_people(scan_file: Path) -> None:
     assert result.exit_code == 0
     assert "sheet.ply: 4 holes, lengths in mesh units" in result.stdout
     assert result.stdout.count("fill") == 3
+    assert max(len(line) for line in result.stdout.splitlines()) <= 100
 
 
 @pytest.mark.parametrize(
@@ -161,6 +182,11 @@ def test_holes_are_listed_for_people(scan_file: Path) -> None:
         (["fill", "SCAN", "-o", "out.docx"], "unsupported_format"),
         (["fill", "SCAN", "-o", "out.ply", "--hole", "12"], "invalid_option"),
         (["fill", "SCAN", "-o", "out.ply", "--max-diameter", "-1"], "invalid_option"),
+        (["fill", "SCAN", "-o", "out.ply", "--rule", "id=12:flat"], "invalid_option"),
+        (["fill", "SCAN", "-o", "out.ply", "--rule", "fill"], "invalid_option"),
+        (["fill", "SCAN", "-o", "out.ply", "--rule", "max_diameter=wide:flat"], "invalid_option"),
+        (["fill", "SCAN", "-o", "out.ply", "--rule", "colour=red:flat"], "invalid_option"),
+        (["fill", "SCAN", "-o", "out.ply", "--rule", "kind=window:flat"], "invalid_option"),
         (["fill", "SCAN", "-o", "out.ply", "--patch-length", "inf"], "invalid_option"),
         (["fill", "SCAN", "-o", "out.ply", "--resolution", "4"], "invalid_option"),
         (["fill", "SCAN", "-o", "out.ply", "--weld-tolerance", "near"], "invalid_option"),

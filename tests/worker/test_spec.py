@@ -8,7 +8,7 @@ from jobkit.meshes import MeshSource
 from jobkit.schema import Fitting, JobSpec
 from jobkit.selection import PAPER_NORMALISATION
 from quadpatch.model_file import RECIPES
-from quadpatch.options import HoleOptions, NetworkOptions, PatchOptions, RepairOptions
+from quadpatch.options import HoleOptions, HoleRule, NetworkOptions, PatchOptions, RepairOptions
 from worker.limits import EngineLimits
 from worker.spec import inspect_request, method_options, output_format, repair_request, source_name
 
@@ -40,11 +40,19 @@ def test_every_option_of_a_job_reaches_the_method() -> None:
             **{"method": "dictionary", "model": "self", "recipe": "paper"},
             "patches": {"length": 2.5, "resolution": 16, "overlap": 3},
         },
-        holes={"max_diameter": 9.0, "max_perimeter": 30.0, "all_but_largest": True, "ids": [4, 1]},
+        holes={
+            **{"max_diameter": 9.0, "max_perimeter": 30.0, "all_but_largest": True, "ids": [4, 1]},
+            **{"include_borders": True, "cap": "flat"},
+            "rules": [
+                {"action": "skip", "ids": [4]},
+                {"action": "flat", "kind": "open_end", "min_diameter": 1.0, "max_diameter": 2.0, "max_perimeter": 3.0},
+            ],
+        },
         seed=7,
     )
+    rules = (HoleRule("skip", (4,)), HoleRule("flat", None, "open_end", 1.0, 2.0, 3.0))
     assert RepairOptions.from_dict(method_options(job, LIMITS.time_s)) == RepairOptions(
-        HoleOptions(9.0, 30.0, True, (4, 1)), PatchOptions(2.5, 16, 3), 7, "paper"
+        HoleOptions(9.0, 30.0, True, (4, 1), True, "flat", rules), PatchOptions(2.5, 16, 3), 7, "paper"
     )
 
 
