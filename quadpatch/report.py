@@ -3,6 +3,7 @@
 A number that is not finite is null.
 """
 
+import json
 from dataclasses import asdict
 from typing import Any, cast
 
@@ -98,7 +99,8 @@ def build_report(
         "welded": asdict(welded.counts),
         "length_unit": scan.unit or UNKNOWN_UNIT,
         "model": model,
-        "options": asdict(options),
+        # Tuples become lists, as they do in the file.
+        "options": json.loads(json.dumps(asdict(options))),
         "counts": {
             "found": len(repair.results),
             **{verdict: sum(r.verdict == verdict for r in repair.results) for verdict in VERDICTS},

@@ -4,6 +4,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from quadpatch.mesh.hole_measures import Hole, find_holes
+from quadpatch.mesh.loop_diameter import loop_diameter
 from quadpatch.types import FloatArray, TriangleMesh
 from tests.quadpatch.shapes import cylinder, open_grid, punched, random_rotation, sphere
 
@@ -160,3 +161,18 @@ def test_measures_scale_with_the_mesh(scale: float) -> None:
     assert scaled.planarity == pytest.approx(one.planarity, rel=1e-6)
     assert scaled.diameter == pytest.approx(one.diameter * scale, rel=1e-6)
     assert scaled.kind == one.kind
+
+
+@pytest.mark.parametrize("shape", ["circle", "ball", "oval"])
+def test_a_loop_of_80_000_extreme_vertices_is_measured_closely(shape: str) -> None:
+    n = 80_000
+    angle = -2 * np.pi * np.arange(n) / n
+    height = {"circle": 0.0, "ball": 0.3, "oval": 0.0}[shape] * np.cos(40 * angle)
+    radius = np.sqrt(1 - height**2)
+    points = np.stack([radius * np.cos(angle), radius * np.sin(angle), height], axis=1)
+    width = 2.0
+    if shape == "oval":
+        # An oval whose longest way lies between the directions that are tried.
+        points = points * [1.0, 0.9, 1.0]
+    turned = points @ random_rotation(np.random.default_rng(5))
+    assert width * 0.998 <= loop_diameter(turned) <= width * (1 + 1e-12)
