@@ -15,6 +15,7 @@ from torch import nn
 from torch.nn.parallel import DistributedDataParallel
 
 from quadpatch.errors import OptionError
+from quadpatch.networks.precision import has_fast_bfloat16
 
 DEVICES = ("auto", "cpu", "cuda")
 
@@ -45,8 +46,7 @@ class Place:
         """Whether the device multiplies bfloat16 matrices faster than float32 ones."""
         if self.device.type == "cuda":
             return bool(torch.cuda.is_bf16_supported())
-        capabilities = torch.cpu.get_capabilities()
-        return bool(capabilities.get("amx_bf16") or capabilities.get("avx512_bf16"))
+        return has_fast_bfloat16()
 
     def share(self, size: int) -> slice:
         """Return this process's part of a batch of that size."""

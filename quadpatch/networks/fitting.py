@@ -11,6 +11,7 @@ from torch import Tensor
 from quadpatch.inpainters.corrections import RESOLUTION, corrected, network_input
 from quadpatch.inpainters.inpainter import Surroundings
 from quadpatch.lessons import Lessons, give_lessons
+from quadpatch.networks.precision import has_fast_bfloat16
 from quadpatch.networks.residual import Residual, errors, turned
 from quadpatch.options import NetworkOptions
 from quadpatch.types import FloatArray, Patches, Progress, no_progress
@@ -137,7 +138,7 @@ def _batch(tensors: tuple[Tensor, ...], random: torch.Generator) -> tuple[Tensor
 
 def _step(network: Residual, optimiser: torch.optim.Optimizer, batch: tuple[Tensor, ...]) -> None:
     channels, correction, asked = batch
-    with torch.autocast("cpu", torch.bfloat16):
+    with torch.autocast("cpu", torch.bfloat16, enabled=has_fast_bfloat16()):
         answer = network(channels.contiguous(memory_format=torch.channels_last))
     loss = errors(answer.float(), correction, asked).loss
     optimiser.zero_grad()
