@@ -1,6 +1,7 @@
 """Fitting the network `residual` to one mesh: it practises on that mesh's own undamaged surface."""
 
 import time
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from itertools import islice
 
@@ -100,12 +101,28 @@ def gather_lessons(
 
 
 def fit(
-    network: Residual, lessons: Lessons, options: NetworkOptions, seed: int, progress: Progress = no_progress
+    network: Residual,
+    lessons: Lessons,
+    options: NetworkOptions,
+    seed: int,
+    progress: Progress = no_progress,
+    clock: Callable[[], float] = time.monotonic,
 ) -> int:
     """Train a network in place.
 
-    The rate falls along a cosine that ends with the steps, or with the time where that is shorter: the outcome is the
-    same for the same seed as long as the steps fit into the time.
+    The rate falls along a cosine that ends with the steps, or with the time where that is shorter. The outcome is the
+    same bits for the same seed as long as the time does not run ahead of the steps.
+
+    Parameters
+    ----------
+    network : Residual
+    lessons : Lessons
+    options : NetworkOptions
+    seed : int
+    progress : callable
+        Told the share that is done, as stage `learn`.
+    clock : callable
+        Gives the seconds by which the limit on time goes.
 
     Returns
     -------
@@ -117,10 +134,9 @@ def fit(
     tensors = tuple(torch.from_numpy(array) for array in arrays)
     network.to(memory_format=torch.channels_last)  # type: ignore[call-overload]  # torch's own stubs lack it
     optimiser = torch.optim.AdamW(network.parameters(), RATE, weight_decay=1e-2)
-    started = time.monotonic()
+    started = clock()
     for step in range(options.steps):
-        spent = (time.monotonic() - started) / max(options.seconds, 1e-9)
-        done = max(step / options.steps, spent)
+        done = _share_done(step / options.steps, 1 / options.steps, (clock() - started) / max(options.seconds, 1e-9))
         if done >= 1.0:
             return step
         for group in optimiser.param_groups:
@@ -128,6 +144,11 @@ def fit(
         _step(network, optimiser, _batch(tensors, random))
         progress("learn", done)
     return options.steps
+
+
+def _share_done(of_steps: float, one_step: float, of_time: float) -> float:
+    """Share of the schedule that is done: by time only where that is ahead by a step, for time never comes twice."""
+    return of_time if of_time >= min(of_steps + one_step, 1.0) else of_steps
 
 
 def _batch(tensors: tuple[Tensor, ...], random: torch.Generator) -> tuple[Tensor, ...]:

@@ -1,4 +1,5 @@
 from dataclasses import replace
+from itertools import count
 
 import numpy as np
 import pytest
@@ -7,6 +8,7 @@ import torch
 from quadpatch.inpainters.corrections import RESOLUTION, corrected, network_input
 from quadpatch.lessons import Ground, Lessons, give_lessons
 from quadpatch.networks.fitting import LESSONS_SHARE, MAX_ROUNDS, FittingInpainter, fit, gather_lessons
+from quadpatch.networks.precision import has_fast_bfloat16
 from quadpatch.networks.residual import Errors, Residual, errors
 from quadpatch.options import NetworkOptions
 from quadpatch.types import Patches
@@ -73,21 +75,38 @@ def test_the_same_seed_gives_the_same_bits_and_another_one_others(lessons: Lesso
 def test_a_short_time_ends_the_steps_early_and_the_rate_still_falls_to_its_end(lessons: Lessons) -> None:
     shares: list[float] = []
     network = fresh()
-    steps = fit(network, lessons, NetworkOptions(steps=100_000, seconds=4.0), 0, lambda _, share: shares.append(share))
-    assert 2 < steps < 100_000
+    options = NetworkOptions(steps=100_000, seconds=30.0)
+    steps = fit(network, lessons, options, 0, lambda _, share: shares.append(share), count(0.0).__next__)
     # The rate follows the share, on a cosine: the last steps are small.
-    assert shares == sorted(shares)
-    assert len(shares) == steps
-    assert shares[0] < 0.01
-    assert shares[-1] > 0.6
+    assert steps == 29
+    assert shares == pytest.approx([second / 30 for second in range(1, 30)])
     assert measured(network, lessons).loss < measured(Residual(), lessons).loss
 
 
 def test_without_time_nothing_is_done(lessons: Lessons) -> None:
     network = fresh()
     before = weights(network)
-    assert fit(network, lessons, NetworkOptions(steps=10, seconds=1e-9), 0) == 0
+    assert fit(network, lessons, NetworkOptions(steps=10, seconds=1e-9), 0, clock=count(0.0).__next__) == 0
     assert weights(network) == before
+
+
+def test_matrix_products_are_in_bfloat16_only_where_the_processor_is_fast_at_them(lessons: Lessons) -> None:
+    network, seen = fresh(), set[torch.dtype]()
+    network.last.register_forward_hook(lambda _module, _seen, answer: seen.add(answer.dtype))
+    fit(network, lessons, NetworkOptions(steps=1), 0)
+    assert seen == {torch.bfloat16 if has_fast_bfloat16() else torch.float32}
+
+
+def test_the_outcome_is_the_same_on_a_busy_machine_as_long_as_the_time_is_not_ahead_of_the_steps(
+    lessons: Lessons,
+) -> None:
+    options, found = NetworkOptions(steps=5, seconds=50.0), []
+    for seconds_a_step in (0.01, 7.0, 9.9, 10.1):
+        found.append(fresh())
+        assert fit(found[-1], lessons, options, 3, clock=count(0.0, seconds_a_step).__next__) >= 4
+    slow, in_time = weights(found.pop()), {weights(network) for network in found}
+    assert len(in_time) == 1
+    assert slow not in in_time
 
 
 @pytest.mark.slow
