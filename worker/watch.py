@@ -50,8 +50,23 @@ class Observer:
     on_memory: Callable[[float], None] = lambda _: None
 
 
-def run_engine(nursery: Nursery, request: EngineRequest, folder: Path, observer: Observer) -> Failure | None:
+def run_engine(
+    nursery: Nursery,
+    request: EngineRequest,
+    folder: Path,
+    observer: Observer,
+    clock: Callable[[], float] = time.monotonic,
+) -> Failure | None:
     """Run a request to its end; results lie in `folder` afterwards.
+
+    Parameters
+    ----------
+    nursery : Nursery
+    request : EngineRequest
+    folder : Path
+    observer : Observer
+    clock : callable
+        Gives the seconds by which the limit on time goes.
 
     Returns
     -------
@@ -71,7 +86,7 @@ def run_engine(nursery: Nursery, request: EngineRequest, folder: Path, observer:
     except NurseryLostError as error:
         _log.error("no engine could be started: %s", error)
         raise EngineFailedError(crashed(None, None)) from error
-    watch = _Watch(nursery, child, request.limits, observer)
+    watch = _Watch(nursery, child, request.limits, observer, clock)
     try:
         watch.listen()
     finally:
@@ -89,12 +104,20 @@ def run_engine(nursery: Nursery, request: EngineRequest, folder: Path, observer:
 
 
 class _Watch:
-    def __init__(self, nursery: Nursery, child: EngineChild, limits: EngineLimits, observer: Observer) -> None:
+    def __init__(
+        self,
+        nursery: Nursery,
+        child: EngineChild,
+        limits: EngineLimits,
+        observer: Observer,
+        clock: Callable[[], float],
+    ) -> None:
         self._nursery = nursery
         self._child = child
         self._limits = limits
         self._observer = observer
-        self._deadline = time.monotonic() + limits.time_s
+        self._clock = clock
+        self._deadline = clock() + limits.time_s
         self._buffer = b""
         self.stage: str | None = None
         self.failure: Failure | None = None
@@ -154,7 +177,7 @@ class _Watch:
             self.failure = Failure(**report["failure"])
 
     def _keep_limits(self) -> None:
-        if time.monotonic() > self._deadline:
+        if self._clock() > self._deadline:
             self.failure = over_time(self._limits.time_s, self.stage)
             return
         resident_mb = _resident_mb(self._child.pid)

@@ -2,20 +2,19 @@ import json
 import os
 import signal
 import threading
-import time
-from collections.abc import Callable
 from pathlib import Path
 
 import psutil
 import pytest
 
+from tests.waiting import GUARD_S, wait_until
 from worker.failures import EngineFailedError, EngineStoppedError, Failure, StopReason
 from worker.limits import EngineLimits
 from worker.nursing import Nursery
 from worker.request import EngineRequest
 from worker.watch import Observer, run_engine
 
-LIMITS = EngineLimits(time_s=60.0, memory_mb=1024, n_threads=1)
+LIMITS = EngineLimits(time_s=GUARD_S, memory_mb=1024, n_threads=1)
 
 
 def never() -> StopReason | None:
@@ -41,13 +40,6 @@ def engines() -> list[psutil.Process]:
         for engine in nursery.children(recursive=True)
         if engine.status() != psutil.STATUS_ZOMBIE
     ]
-
-
-def wait_until(condition: Callable[[], bool]) -> None:
-    deadline = time.monotonic() + 20
-    while not condition():
-        assert time.monotonic() < deadline
-        time.sleep(0.02)
 
 
 def test_an_engine_works_in_its_folder_and_reports_progress(rogue_nursery: Nursery, tmp_path: Path) -> None:
@@ -82,15 +74,20 @@ def test_every_request_gets_a_fresh_process(rogue_nursery: Nursery, tmp_path: Pa
 
 
 def test_an_engine_over_its_time_is_ended(rogue_nursery: Nursery, tmp_path: Path) -> None:
-    limits = EngineLimits(time_s=0.5, memory_mb=1024, n_threads=1)
-    failure = failure_of(rogue_nursery, tmp_path, "hang_in_native_code", limits)
+    times = [0.0]
+    limits = EngineLimits(time_s=30.0, memory_mb=1024, n_threads=1)
+    # The time is up as soon as the engine is at work, however long it took to come there.
+    observer = Observer(lambda stage, fraction: times.append(31.0), never)
+    with pytest.raises(EngineFailedError) as caught:
+        run_engine(rogue_nursery, request("hang_in_native_code", limits), tmp_path, observer, lambda: times[-1])
+    failure = caught.value.failure
     assert (failure.code, failure.stage, failure.retryable) == ("time_limit_exceeded", "fill", False)
     assert engines() == []
 
 
 @pytest.mark.parametrize("deed", ["hog_memory", "ask_for_too_much_at_once"])
 def test_an_engine_over_its_memory_is_ended(rogue_nursery: Nursery, tmp_path: Path, deed: str) -> None:
-    limits = EngineLimits(time_s=60.0, memory_mb=300, n_threads=1)
+    limits = EngineLimits(time_s=GUARD_S, memory_mb=300, n_threads=1)
     failure = failure_of(rogue_nursery, tmp_path, deed, limits)
     assert (failure.code, failure.retryable) == ("out_of_memory", False)
     assert engines() == []
@@ -122,7 +119,7 @@ def test_the_details_of_an_unforeseen_error_stay_in_the_log(
 
 
 def test_an_engine_can_not_fill_the_disk(rogue_nursery: Nursery, tmp_path: Path) -> None:
-    limits = EngineLimits(time_s=60.0, memory_mb=1024, file_mb=4, n_threads=1)
+    limits = EngineLimits(time_s=GUARD_S, memory_mb=1024, file_mb=4, n_threads=1)
     failure = failure_of(rogue_nursery, tmp_path, "fill_the_disk", limits)
     assert failure.code == "result_too_large"
     assert (tmp_path / "huge").stat().st_size == 4 << 20
