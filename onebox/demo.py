@@ -26,7 +26,7 @@ from worker.leash import leash
 MODEL = "general-dictionary@1"
 _HOST = "127.0.0.1"
 _SCAN = Path("tests/sample_meshes/rangemaps/face000.ply")
-_READY_TIMEOUT_S = 120.0
+_READY_TIMEOUT_S = 900.0
 _STOP_TIMEOUT_S = 40.0
 _TIMEOUT_S = 600.0
 

@@ -93,7 +93,7 @@ class Supervisor:
         """Ask `start` and `watch` to return soon; fit to be a signal handler."""
         self._is_stopping = True
 
-    def start(self, timeout_s: float = 60.0) -> None:
+    def start(self, timeout_s: float = 300.0) -> None:
         """Start the programs, each once the one before it is ready; returns early when a stop is requested.
 
         Those that stand alongside each other come up together.

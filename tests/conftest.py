@@ -9,14 +9,13 @@ import shutil
 import socket
 import subprocess
 import sys
-import time
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from urllib.parse import urlsplit
 
-import httpx
+import hypothesis
 import numpy as np
 import pytest
 from pydantic import SecretStr
@@ -29,6 +28,16 @@ from quadpatch.model_file import save_dictionary
 from quadpatch.sparse.dictionary import Dictionary
 from quadpatch.sparse.signals import HEIGHTS, NORMALISATION
 from tests.servers import PostgresServer, S3Server, fresh_bucket, fresh_database, running_postgres, running_s3
+from tests.waiting import end, wait_until_answered
+
+# How long an example takes says more about the machine than about the code. In CI the examples are always the same.
+hypothesis.settings.register_profile(
+    "tests",
+    deadline=None,
+    suppress_health_check=[hypothesis.HealthCheck.too_slow],
+    derandomize="CI" in os.environ,
+)
+hypothesis.settings.load_profile("tests")
 
 BACKENDS = ("sqlite-local", "postgres-s3")
 
@@ -232,11 +241,10 @@ def run_service(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., Abstr
                 [sys.executable, "-m", "service"], env=environment | named, stdout=log, stderr=subprocess.STDOUT
             )
         try:
-            _wait_until_it_answers(f"http://127.0.0.1:{port}", process, Path(log.name))
+            wait_until_answered(f"http://127.0.0.1:{port}/healthz", process, Path(log.name))
             yield RunningService(f"http://127.0.0.1:{port}", process)
         finally:
-            process.terminate()
-            process.wait(20)
+            end(process)
 
     return run
 
@@ -247,16 +255,3 @@ def serve(
 ) -> Callable[..., AbstractContextManager[RunningService]]:
     """Run the service with the settings of this test."""
     return functools.partial(run_service, settings)
-
-
-def _wait_until_it_answers(url: str, process: subprocess.Popen[bytes], log: Path) -> None:
-    deadline = time.monotonic() + 60
-    while True:
-        try:
-            httpx.get(f"{url}/healthz")
-        except httpx.TransportError:
-            assert process.poll() is None, log.read_text()
-            assert time.monotonic() < deadline, log.read_text()
-            time.sleep(0.05)
-        else:
-            return
