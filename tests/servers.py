@@ -10,7 +10,6 @@ import signal
 import socket
 import subprocess
 import tempfile
-import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -21,11 +20,11 @@ from moto.server import ThreadedMotoServer
 from psycopg.sql import SQL, Composable, Identifier
 
 from jobkit.database import Database
+from tests.waiting import GUARD_S, wait_until
 from worker.leash import leash
 
 # PostgreSQL refuses to run as root; this one may do nothing, and needs to do nothing.
 _UNPRIVILEGED = "nobody"
-_READY_TIMEOUT_S = 60.0
 # Tests kill processes, never the machine: no need to wait for the disk. One pytest process has few connections.
 _OPTIONS = {
     "fsync": "off",
@@ -89,23 +88,13 @@ class PostgresServer:
                 cwd=self.folder,
                 preexec_fn=leash(os.getpid(), signal.SIGINT),  # noqa: PLW1509 - two system calls, no lock taken
             )
-        deadline = time.monotonic() + _READY_TIMEOUT_S
-        while True:
-            try:
-                self.execute(SQL("SELECT 1"))
-            except psycopg.OperationalError:
-                log_text = (self.folder / "log").read_text()
-                assert self._process.poll() is None, log_text
-                assert time.monotonic() < deadline, log_text
-                time.sleep(0.02)
-            else:
-                return
+        wait_until(self._answers, self._process, self.folder / "log")
 
     def stop(self, how: signal.Signals = signal.SIGINT) -> None:
         """Stop it: SIGINT breaks off all connections, SIGKILL is a crash."""
         if self._process is not None:
             self._process.send_signal(how)
-            self._process.wait(30)
+            self._process.wait(GUARD_S)
             self._process = None
 
     def remove(self) -> None:
@@ -131,6 +120,13 @@ class PostgresServer:
             host=str(self.folder), port=self.port, user="postgres", dbname="postgres", autocommit=True
         ) as connection:
             connection.execute(statement)
+
+    def _answers(self) -> bool:
+        try:
+            self.execute(SQL("SELECT 1"))
+        except psycopg.OperationalError:
+            return False
+        return True
 
 
 @contextmanager

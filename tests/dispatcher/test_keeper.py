@@ -3,6 +3,8 @@ import time
 from dispatcher.keeper import Keeper
 from jobkit.reconcile import Reconciled
 
+HEARTBEAT_S = 3600.0
+
 
 def test_workers_get_a_heartbeat_where_nobody_led_and_none_otherwise() -> None:
     took_leases: list[bool] = []
@@ -12,11 +14,11 @@ def test_workers_get_a_heartbeat_where_nobody_led_and_none_otherwise() -> None:
         return Reconciled(0, 0, 0)
 
     found_at = float("-inf")
-    keeper = Keeper(reconcile, lambda: found_at, heartbeat_s=0.3)
+    keeper = Keeper(reconcile, lambda: found_at, heartbeat_s=HEARTBEAT_S)
     keeper.look(lambda: False)
     found_at = time.monotonic()
     keeper.look(lambda: False)
-    time.sleep(0.35)
+    found_at -= HEARTBEAT_S
     keeper.look(lambda: False)
     assert took_leases == [True, False, True]
 

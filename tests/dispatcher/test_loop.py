@@ -6,6 +6,7 @@ from dispatcher.loop import Dispatch, Duty
 from jobkit.database import Database
 from jobkit.errors import QueueUnavailableError
 from jobkit.leadership import Leadership, current_leader
+from tests.waiting import GUARD_S
 
 NAME = "dispatcher"
 
@@ -30,14 +31,14 @@ class Counter:
 
 @contextmanager
 def running(database: Database, holder: str, *duties: Duty) -> Iterator[Dispatch]:
-    dispatch = Dispatch(Leadership(database, NAME, holder, 0.6), 0.1, duties)
+    dispatch = Dispatch(Leadership(database, NAME, holder, lease_s=GUARD_S), 0.1, duties)
     thread = threading.Thread(target=dispatch.run)
     thread.start()
     try:
         yield dispatch
     finally:
         dispatch.stop()
-        thread.join(30)
+        thread.join(GUARD_S)
         assert not thread.is_alive()
 
 
@@ -45,39 +46,39 @@ def test_a_leader_does_its_duties_again_and_again_whatever_goes_wrong_in_them(da
     known, unforeseen, sound = Counter(QueueUnavailableError("away")), Counter(ValueError("bug")), Counter()
     duties = [Duty(str(number), 0.01, work) for number, work in enumerate((known, unforeseen, sound))]
     with running(database, "a", *duties):
-        assert all(counter.enough.wait(30) for counter in (known, unforeseen, sound))
+        assert all(counter.enough.wait(GUARD_S) for counter in (known, unforeseen, sound))
 
 
 def test_a_slow_duty_holds_up_no_other(database: Database) -> None:
     goes_on, quick = threading.Event(), Counter()
 
     def slow(is_over: Callable[[], bool]) -> str:
-        goes_on.wait(30)
+        goes_on.wait(GUARD_S)
         return ""
 
     with running(database, "a", Duty("slow", 0.01, slow), Duty("quick", 0.01, quick)):
-        assert quick.enough.wait(30)
+        assert quick.enough.wait(GUARD_S)
         goes_on.set()
 
 
 def test_one_that_stands_by_does_nothing_until_the_leader_is_gone(database: Database) -> None:
     first, second = Counter(), Counter()
     with running(database, "a", Duty("x", 0.01, first)):
-        assert first.enough.wait(30)
+        assert first.enough.wait(GUARD_S)
         with running(database, "b", Duty("x", 0.01, second)) as waiting:
             turns = first.turns
             first.enough.clear()
-            assert first.enough.wait(30)
+            assert first.enough.wait(GUARD_S)
             assert first.turns > turns
             assert second.turns == 0
             assert waiting is not None
     with running(database, "b", Duty("x", 0.01, second)):
-        assert second.enough.wait(30)
+        assert second.enough.wait(GUARD_S)
 
 
 def test_a_dispatcher_that_stops_lets_another_lead_at_once(database: Database) -> None:
     with running(database, "a", Duty("x", 0.01, work := Counter())):
-        assert work.enough.wait(30)
+        assert work.enough.wait(GUARD_S)
     assert current_leader(database, NAME) is None
 
 
@@ -92,6 +93,6 @@ def test_a_duty_is_told_to_break_off_when_the_dispatcher_stops(database: Databas
         return ""
 
     with running(database, "a", Duty("long", 0.01, long)) as dispatch:
-        assert began.wait(30)
+        assert began.wait(GUARD_S)
         dispatch.stop()
-        assert broke_off.wait(30)
+        assert broke_off.wait(GUARD_S)

@@ -18,6 +18,7 @@ from dispatcher.sending import Answer, LookUp, Outgoing, Sender
 from jobkit.addresses import parse_networks
 from jobkit.webhooks import new_secret
 from tests.dispatcher.receivers import LOOPBACK, Receiver, receiving, talking
+from tests.waiting import GUARD_S
 
 NAME = "receiver.example"
 BODY = '{"type":"webhook.test","data":{"word":"größer"}}'
@@ -29,7 +30,7 @@ def receiver() -> Iterator[Receiver]:
         yield receiver
 
 
-def send(url: str, *secrets: str, allowed: str = LOOPBACK, timeout_s: float = 10.0, **values: Any) -> Answer:
+def send(url: str, *secrets: str, allowed: str = LOOPBACK, timeout_s: float = GUARD_S, **values: Any) -> Answer:
     sender = Sender(parse_networks(allowed), timeout_s, **values)
     try:
         return asyncio.run(sender.send(Outgoing(url, "msg_1", secrets or (new_secret(),), BODY)))
@@ -104,7 +105,7 @@ def test_redirects_are_not_followed(receiver: Receiver) -> None:
 def test_proxies_and_cookies_play_no_part(receiver: Receiver, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("HTTP_PROXY", "http://127.0.0.1:9")
     receiver.answers = [(200, {"Set-Cookie": "a=b"})]
-    sender = Sender(parse_networks(LOOPBACK), 10.0)
+    sender = Sender(parse_networks(LOOPBACK), GUARD_S)
 
     async def twice() -> list[Answer]:
         return [await sender.send(Outgoing(receiver.url(), "msg_1", (new_secret(),), BODY)) for _ in range(2)]
@@ -145,7 +146,7 @@ def test_an_answer_without_end_is_cut_off_and_its_status_counts() -> None:
             connection.sendall(b"1000\r\n" + bytes(4096) + b"\r\n")
 
     with talking(pour) as url:
-        answer = send(url, timeout_s=30.0)
+        answer = send(url, timeout_s=GUARD_S)
     assert (answer.status, answer.is_delivered) == (200, True)
 
 

@@ -27,6 +27,7 @@ from jobkit.tables import DeliveryRow
 from jobkit.webhooks import Webhooks
 from tests.dispatcher.conftest import FailJob, Subscribe
 from tests.dispatcher.receivers import receiving
+from tests.waiting import GUARD_S
 
 
 def never() -> bool:
@@ -115,13 +116,13 @@ def test_a_receiver_that_does_not_answer_holds_up_no_other(
         deliverer = threading.Thread(target=deliver_webhooks, args=(database, patient, never))
         deliverer.start()
         for _ in range(MAX_PER_WEBHOOK):
-            assert slow.arrived.acquire(timeout=20)
+            assert slow.arrived.acquire(timeout=GUARD_S)
         # While the slow one has all that it may have, messages to another one come and go.
         other = subscribe(quick.url())
         for _ in range(2 * MAX_PER_WEBHOOK):
             deliveries.send_test(other.id)
         for _ in range(2 * MAX_PER_WEBHOOK):
-            assert quick.arrived.acquire(timeout=20)
+            assert quick.arrived.acquire(timeout=GUARD_S)
         assert len(slow.received) == MAX_PER_WEBHOOK
         slow.hold.set()
         deliverer.join()
@@ -139,7 +140,7 @@ def test_many_receivers_that_do_not_answer_are_waited_for_at_the_same_time(
         deliverer = threading.Thread(target=deliver_webhooks, args=(database, settings, never))
         deliverer.start()
         # None of them has answered when the last one is asked.
-        assert all(receiver.arrived.acquire(timeout=20) for receiver in receivers)
+        assert all(receiver.arrived.acquire(timeout=GUARD_S) for receiver in receivers)
         for receiver in receivers:
             receiver.hold.set()
         deliverer.join()
@@ -155,9 +156,9 @@ def test_a_dispatcher_that_has_to_go_breaks_off_and_the_message_comes_again(
         delivery = deliveries.send_test(webhook.id)
         deliverer = threading.Thread(target=deliver_webhooks, args=(database, patient, over.is_set))
         deliverer.start()
-        assert receiver.arrived.acquire(timeout=20)
+        assert receiver.arrived.acquire(timeout=GUARD_S)
         over.set()
-        deliverer.join(timeout=20)
+        deliverer.join(timeout=GUARD_S)
         assert not deliverer.is_alive()
         assert deliveries.get(webhook.id, delivery.id).state is DeliveryState.PENDING
         assert deliver_webhooks(database, patient, over.is_set) == ""

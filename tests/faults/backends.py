@@ -23,10 +23,10 @@ from jobkit.store import ObjectStore, open_store
 from tests.faults.disks import Disk, open_disks
 from tests.faults.network import Network
 from tests.servers import PostgresServer, free_port
+from tests.waiting import wait_until
 
 BackendName = Literal["sqlite-local", "postgres-s3"]
 _BUCKET = "quadpatch-faults"
-_S3_READY_TIMEOUT_S = 60.0
 _S3_VARIABLES = {"AWS_ACCESS_KEY_ID": "test", "AWS_SECRET_ACCESS_KEY": "test", "AWS_REGION": "us-east-1"}
 
 
@@ -224,15 +224,15 @@ def _s3(root: Path, host: str) -> Iterator[dict[str, str]]:
             aws_secret_access_key="test",
             region_name="us-east-1",
         )
-        deadline = time.monotonic() + _S3_READY_TIMEOUT_S
-        while True:
+
+        def has_bucket() -> bool:
             try:
                 client.create_bucket(Bucket=_BUCKET)
             except Exception:  # noqa: BLE001 - whatever a server answers that is just coming up
-                assert time.monotonic() < deadline, (root / "s3.log").read_text()
-                time.sleep(0.2)
-            else:
-                break
+                return False
+            return True
+
+        wait_until(has_bucket, server, root / "s3.log")
         client.close()
         yield variables
     finally:

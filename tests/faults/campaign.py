@@ -21,6 +21,7 @@ from tests.faults.load import Book, Load, Plan, Station
 from tests.faults.network import open_network
 from tests.faults.probes import Probe
 from tests.faults.strikes import Record, Strike
+from tests.waiting import GUARD_S
 
 _TRIES = 20
 _LOOK_S = 0.2
@@ -172,7 +173,7 @@ def _running(cluster: Cluster) -> Iterator[Cluster]:
         cluster.stop()
 
 
-def _wait_until_quiet(cluster: Cluster, backend: Backend, timeout_s: float = 60.0) -> None:
+def _wait_until_quiet(cluster: Cluster, backend: Backend, timeout_s: float = GUARD_S) -> None:
     """Wait until all workers are back and idle; what is not ended or swept up by then is left over."""
     deadline = time.monotonic() + timeout_s
     while time.monotonic() < deadline:

@@ -17,6 +17,7 @@ import psutil
 from jobkit.readiness import READY_FILE_VARIABLE
 from onebox.logs import log_tail
 from tests.faults.network import Network
+from tests.waiting import GUARD_S
 from worker.leash import leash
 from worker.limits import thread_environment
 
@@ -27,8 +28,7 @@ WORKERS = ("worker-1", "worker-2", "worker-3")
 VALKEY = "valkey"
 _MODULES = {"api": "service", "dispatcher": "dispatcher", "worker": "worker"}
 _TICK_S = 0.05
-_READY_TIMEOUT_S = 120.0
-_STOP_TIMEOUT_S = 30.0
+_STOP_TIMEOUT_S = 120.0
 # As those do that look after processes elsewhere.
 RESTART_S = 0.75
 
@@ -126,7 +126,7 @@ class Cluster:
         os.kill(pid, how)
         return pid
 
-    def wait_for_death(self, pid: int, timeout_s: float = 40.0) -> Death:
+    def wait_for_death(self, pid: int, timeout_s: float = GUARD_S) -> Death:
         """Return how a process ended."""
         self._wait(lambda: any(death.pid == pid for death in self.deaths), f"process {pid} lives on", timeout_s)
         return next(death for death in self.deaths if death.pid == pid)
@@ -144,7 +144,7 @@ class Cluster:
         """Start everything and wait until it is ready."""
         self._thread.start()
         for name in (*APIS, *DISPATCHERS, *WORKERS):
-            self._wait(partial(self.is_ready, name), f"{name} never came up", _READY_TIMEOUT_S, name)
+            self._wait(partial(self.is_ready, name), f"{name} never came up", name=name)
 
     def is_ready(self, name: str) -> bool:
         """Tell whether an API, a dispatcher or a worker does its work."""
@@ -214,7 +214,7 @@ class Cluster:
     def _ready_file(self, name: str) -> Path:
         return self._setup.root / f"{name}.ready"
 
-    def _wait(self, condition: Callable[[], object], words: str, timeout_s: float = 60.0, name: str = "") -> None:
+    def _wait(self, condition: Callable[[], object], words: str, timeout_s: float = GUARD_S, name: str = "") -> None:
         deadline = time.monotonic() + timeout_s
         while not condition():
             assert time.monotonic() < deadline, f"{words}; {log_tail(self.log(name)) if name else ''}"

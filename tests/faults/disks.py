@@ -9,9 +9,10 @@ from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
+from tests.waiting import GUARD_S
+
 _FILLER = "filler"
 _PIECE_BYTES = 1 << 20
-_PATIENCE_S = 10.0
 
 
 class Disk:
@@ -45,7 +46,7 @@ class Disk:
 
     def make_read_only(self) -> None:
         """Refuse writes; files that are just being written hold it up for a moment."""
-        deadline = time.monotonic() + _PATIENCE_S
+        deadline = time.monotonic() + GUARD_S
         while not self._remount("ro"):
             assert time.monotonic() < deadline, "the disk never stood still long enough to be made read-only"
             time.sleep(0.01)

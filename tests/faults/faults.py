@@ -20,10 +20,10 @@ from tests.faults.disks import Disk
 from tests.faults.load import Station
 from tests.faults.probes import Probe
 from tests.faults.strikes import Record, Strike, Victim, leader_holder, leader_name, victims
+from tests.waiting import GUARD_S
 
 _LOOK_S = 0.1
 _VICTIM_TIMEOUT_S = 20.0
-_SHOW_TIMEOUT_S = 40.0
 
 
 @dataclass(frozen=True)
@@ -276,7 +276,7 @@ def _is_alive(process: psutil.Process) -> bool:
 
 
 def _wait(condition: Callable[[], object], words: str) -> None:
-    deadline = time.monotonic() + _SHOW_TIMEOUT_S
+    deadline = time.monotonic() + GUARD_S
     while True:
         try:
             if condition():

@@ -19,12 +19,13 @@ from jobkit.schema import JobState
 from tests.faults.cluster import API_KEY
 from tests.integration.conftest import ply_bytes
 from tests.quadpatch.shapes import punched, relief, sphere
+from tests.waiting import GUARD_S
 
 CancelKind = Literal["queued", "running", "dead worker"]
 SMOOTH: dict[str, Any] = {"method": "smooth"}
 # Learns from the mesh itself: seconds in native code, for kills to fall into.
 LEARN: dict[str, Any] = {"method": "dictionary", "model": "self"}
-_PATIENCE_S = 240.0
+_PATIENCE_S = 2 * GUARD_S
 _TRY_AGAIN = frozenset({429, 502, 503, 504})
 
 
@@ -74,7 +75,7 @@ class Station:
         self._book = book
         self._url = next(self._urls)
         self._client = httpx.Client(
-            headers={"Authorization": f"Bearer {API_KEY}"}, timeout=httpx.Timeout(30, connect=3), trust_env=False
+            headers={"Authorization": f"Bearer {API_KEY}"}, timeout=httpx.Timeout(60, connect=3), trust_env=False
         )
 
     def close(self) -> None:
@@ -157,7 +158,7 @@ class Plan:
     long_share: float = 0.3
     cancel_share: float = 0.2
     long_width: int = 80
-    patience_s: float = 300.0
+    patience_s: float = 2 * GUARD_S
 
 
 class Load:

@@ -16,9 +16,9 @@ from quadpatch.types import Triangles, Vertices
 # Short leases, so that the loss of a worker shows within seconds.
 FAST = {
     "QUADPATCH_HEARTBEAT_S": "0.5",
-    "QUADPATCH_LEASE_S": "5",
+    "QUADPATCH_LEASE_S": "8",
     "QUADPATCH_DISPATCH_S": "0.3",
-    "QUADPATCH_LEADER_LEASE_S": "2",
+    "QUADPATCH_LEADER_LEASE_S": "4",
 }
 
 

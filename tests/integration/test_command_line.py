@@ -5,7 +5,6 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
@@ -17,6 +16,7 @@ from typer.testing import CliRunner, Result
 from client.cli import app
 from client.exits import ExitCode
 from jobkit.schema import JobState
+from tests.waiting import GUARD_S, wait_until
 
 
 @pytest.fixture
@@ -121,15 +121,14 @@ def test_ctrl_c_cancels_the_job_and_says_so(client: Any, box: Any, large_relief:
         # A run in the background is started with Ctrl-C ignored, and hands that on.
         preexec_fn=partial(signal.signal, signal.SIGINT, signal.SIG_DFL),  # noqa: PLW1509
     )
-    deadline = time.monotonic() + 60
-    while not (jobs := [j for j in client.jobs(20) if j.spec.label == "interrupted" and j.state == JobState.RUNNING]):
-        assert time.monotonic() < deadline
-        time.sleep(0.05)
+
+    def running() -> list[Any]:
+        return [job for job in client.jobs(20) if job.spec.label == "interrupted" and job.state == JobState.RUNNING]
+
+    (job,) = wait_until(running, process)
     process.send_signal(signal.SIGINT)
-    _, said = process.communicate(timeout=60)
+    _, said = process.communicate(timeout=GUARD_S)
     assert process.returncode == ExitCode.INTERRUPTED
-    assert f"job {jobs[0].id}: cancel" in said
-    while not client.job(jobs[0].id).state.is_terminal:
-        assert time.monotonic() < deadline
-        time.sleep(0.05)
-    assert client.job(jobs[0].id).state == JobState.CANCELED
+    assert f"job {job.id}: cancel" in said
+    wait_until(lambda: client.job(job.id).state.is_terminal)
+    assert client.job(job.id).state == JobState.CANCELED

@@ -10,13 +10,14 @@ import pytest
 
 from onebox.demo import find_scan
 from quadpatch.formats.reading import read_scan
+from tests.waiting import GUARD_S
 
 
 @pytest.mark.slow
 def test_the_demo_repairs_a_real_scan_and_leaves_three_files(tmp_path: Path) -> None:
     folder = tmp_path / "demo"
     command = [sys.executable, "-m", "onebox", "demo", "--folder", str(folder)]
-    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=300)
+    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=2 * GUARD_S)
     assert done.returncode == 0, done.stdout + done.stderr
     names = ["before_after.png", "face000_repaired.ply", "report.json"]
     assert sorted(path.name for path in folder.iterdir()) == names

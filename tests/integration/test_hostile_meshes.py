@@ -10,6 +10,7 @@ import pytest
 from client.errors import JobFailedError, MeshRejectedError, RefusedError
 from client.sdk import Client
 from jobkit.schema import Job, JobSpec, Mesh
+from tests.waiting import GUARD_S
 
 SHARED = Path(__file__).resolve().parents[3] / "shared"
 INPUTS, CASES = SHARED / "inputs", SHARED / "cases"
@@ -64,7 +65,7 @@ def test_a_hostile_file_is_rejected_with_its_code(client: Client, tmp_path: Path
     path = tmp_path / name
     path.write_bytes(content)
     with pytest.raises(MeshRejectedError) as caught:
-        client.wait_for_mesh(client.upload(path).id, timeout_s=60)
+        client.wait_for_mesh(client.upload(path).id, timeout_s=GUARD_S)
     assert caught.value.problem.code == code
     assert str(tmp_path) not in caught.value.problem.message
     assert caught.value.problem.message.isprintable()
@@ -97,7 +98,7 @@ def test_every_file_that_people_have_gives_a_mesh_or_an_error_with_a_code(
     repaired = [name for name in files if is_small[name] and endings[name] == "mesh"]
     assert [name for name in repaired if not _has_picture(client, jobs[name])] == []
     # And after all that, work goes on.
-    mesh = client.wait_for_mesh(client.upload(relief_file("float.ply")).id, timeout_s=60)
+    mesh = client.wait_for_mesh(client.upload(relief_file("float.ply")).id, timeout_s=GUARD_S)
     assert mesh.facts is not None
 
 
@@ -126,12 +127,12 @@ def _ending(client: Client, mesh: Mesh, job: Job | str) -> str:
     """`mesh`, or the code of the error."""
     if isinstance(job, Job):
         try:
-            client.wait(job.id, timeout_s=600)
+            client.wait(job.id, timeout_s=GUARD_S)
         except JobFailedError as failure:
             return failure.job.error.code if failure.job.error else ""
         return "mesh"
     try:
-        client.wait_for_mesh(mesh.id, timeout_s=120)
+        client.wait_for_mesh(mesh.id, timeout_s=GUARD_S)
     except MeshRejectedError as rejection:
         return rejection.problem.code
     return job

@@ -12,13 +12,14 @@ from client.sdk import Client
 from jobkit.schema import JobSpec, JobState
 from quadpatch.formats.reading import read_scan
 from quadpatch.model_file import SHIPPED_MODELS
+from tests.waiting import GUARD_S
 
 NETWORKS = sorted(path.stem for path in SHIPPED_MODELS.glob("*.onnx"))
 
 
 def run(client: Client, source: Path, method: dict[str, str]) -> Any:
     spec = {"mesh_id": client.upload(source).id, "output": {"preview": False}, "method": method}
-    return client.wait(client.create_job(JobSpec.model_validate(spec)).id, timeout_s=240)
+    return client.wait(client.create_job(JobSpec.model_validate(spec)).id, timeout_s=GUARD_S)
 
 
 @pytest.mark.parametrize("name", NETWORKS)

@@ -1,6 +1,5 @@
 """A 202 is a promise: it outlives the process that gave it, and the queue."""
 
-import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
@@ -19,13 +18,19 @@ from jobkit.reconcile import GRACE_S
 from jobkit.settings import Settings
 from jobkit.tables import JobRow
 from tests.dispatcher.process import dispatching
+from tests.waiting import GUARD_S, wait_until
 
 SMOOTH = {"method": "smooth"}
 
 
 def post_job(url: str, **headers: str) -> httpx.Response:
-    mesh = httpx.post(f"{url}/v1/meshes?filename=a.ply", content=b"ply").raise_for_status().json()
-    return httpx.post(f"{url}/v1/jobs", json={"mesh_id": mesh["id"], "method": SMOOTH}, headers=headers)
+    mesh = httpx.post(f"{url}/v1/meshes?filename=a.ply", content=b"ply", timeout=GUARD_S).raise_for_status().json()
+    spec = {"mesh_id": mesh["id"], "method": SMOOTH}
+    return httpx.post(f"{url}/v1/jobs", json=spec, headers=headers, timeout=GUARD_S)
+
+
+def get(url: str, **headers: str) -> Any:
+    return httpx.get(url, headers=headers, timeout=GUARD_S).json()
 
 
 def test_a_job_outlives_the_service_and_the_queue(
@@ -40,12 +45,9 @@ def test_a_job_outlives_the_service_and_the_queue(
     with database.write() as session:
         session.execute(update(JobRow).values(enqueued_at=utc_now() - timedelta(seconds=GRACE_S + 1)))
     with serve() as service, dispatching(settings):
-        again = httpx.get(f"{service.url}/v1/jobs/{job['id']}", headers={"Prefer": "wait=1"}).json()
+        again = get(f"{service.url}/v1/jobs/{job['id']}", Prefer="wait=1")
         assert again == job
-        deadline = time.monotonic() + 60
-        while job_entry(job["id"], 1) not in queue.waiting():
-            assert time.monotonic() < deadline
-            time.sleep(0.05)
+        wait_until(lambda: job_entry(job["id"], 1) in queue.waiting())
     queue.close()
 
 
@@ -59,15 +61,15 @@ def test_services_that_start_at_once_share_one_database(
     with ExitStack() as stack, ThreadPoolExecutor(2) as pool:
         first, second = pool.map(lambda _: stack.enter_context(serve()), range(2))
         job = post_job(first.url).raise_for_status().json()
-        assert httpx.get(f"{second.url}/v1/jobs/{job['id']}").json() == job
-        models = httpx.get(f"{second.url}/v1/models").json()
+        assert get(f"{second.url}/v1/jobs/{job['id']}") == job
+        models = get(f"{second.url}/v1/models")
         assert [(model["name"], model["latest"]) for model in models["models"]] == [("general-dictionary", 1)]
 
 
 def test_a_station_that_repeats_itself_through_a_bad_line_gets_one_job(serve: Callable[..., Any]) -> None:
     with serve() as service, ThreadPoolExecutor(8) as pool:
         answers = list(pool.map(lambda _: post_job(service.url, **{"Idempotency-Key": "order-17"}), range(16)))
-        jobs = httpx.get(f"{service.url}/v1/jobs").json()["items"]
+        jobs = get(f"{service.url}/v1/jobs")["items"]
     assert {answer.status_code for answer in answers} == {202}
     assert {answer.json()["id"] for answer in answers} == {jobs[0]["id"]}
     assert len(jobs) == 1

@@ -13,6 +13,7 @@ from quadpatch.formats.reading import read_scan
 from quadpatch.model_file import shipped_model
 from quadpatch.repair import inspect_file
 from tests.integration.conftest import ply_bytes, punched_relief, stl_bytes
+from tests.waiting import GUARD_S
 
 SMOOTH = {"method": "smooth"}
 SELF = {"method": "dictionary", "model": "self"}
@@ -30,7 +31,7 @@ def test_measured_vertices_and_faces_keep_their_bits_and_their_order(
 ) -> None:
     source, output = relief_file(name), tmp_path / f"repaired-{name}"
     mesh = client.upload(source)
-    job = client.wait(client.create_job(spec(mesh.id, method=method)).id, timeout_s=120)
+    job = client.wait(client.create_job(spec(mesh.id, method=method)).id, timeout_s=GUARD_S)
     client.download(job, "result", output)
     before, after = read_scan(source), read_scan(output)
     assert np.array_equal(after.vertices[: len(before.vertices)], before.vertices)
@@ -43,7 +44,7 @@ def test_a_job_leaves_a_report_and_a_picture_that_fit_its_facts(
     client: Client, relief_file: Callable[[str], Path], tmp_path: Path
 ) -> None:
     mesh = client.upload(relief_file("float.ply"))
-    job = client.wait(client.create_job(spec(mesh.id, method=SMOOTH, output={"preview": True})).id, timeout_s=120)
+    job = client.wait(client.create_job(spec(mesh.id, method=SMOOTH, output={"preview": True})).id, timeout_s=GUARD_S)
     client.download(job, "report", tmp_path / "report.json")
     client.download(job, "preview", tmp_path / "preview.png")
     report = json.loads((tmp_path / "report.json").read_text())
@@ -92,7 +93,7 @@ def test_a_job_is_named_after_the_file_that_came_for_it(client: Client, relief_f
 def test_a_job_without_a_word_about_its_model_is_pinned_to_the_one_that_ships(
     client: Client, relief_file: Callable[[str], Path]
 ) -> None:
-    job = client.wait(client.create_job(spec(client.upload(relief_file("float.ply")).id)).id, timeout_s=120)
+    job = client.wait(client.create_job(spec(client.upload(relief_file("float.ply")).id)).id, timeout_s=GUARD_S)
     shipped = shipped_model("general-dictionary@1").read_bytes()
     assert (job.model.requested, job.model.name, job.model.version) == ("default", "general-dictionary", 1)
     assert job.model.sha256 == hashlib.sha256(shipped).hexdigest()
@@ -101,15 +102,15 @@ def test_a_job_without_a_word_about_its_model_is_pinned_to_the_one_that_ships(
 def test_a_picture_is_drawn_on_request_only(client: Client, relief_file: Callable[[str], Path]) -> None:
     mesh = client.upload(relief_file("float.ply"))
     job = client.create_job(spec(mesh.id, method=SMOOTH))
-    assert client.wait(job.id, timeout_s=120).links.preview is None
+    assert client.wait(job.id, timeout_s=GUARD_S).links.preview is None
 
 
 def test_the_hole_list_of_a_mesh_agrees_with_what_a_repair_finds(
     client: Client, relief_file: Callable[[str], Path]
 ) -> None:
-    mesh = client.wait_for_mesh(client.upload(relief_file("float.ply")).id, timeout_s=60)
+    mesh = client.wait_for_mesh(client.upload(relief_file("float.ply")).id, timeout_s=GUARD_S)
     plan = client.plan(spec(mesh.id, method=SMOOTH, holes={"ids": [2, 3]}))
-    job = client.wait(client.create_job(spec(mesh.id, method=SMOOTH, holes={"ids": [2, 3]})).id, timeout_s=120)
+    job = client.wait(client.create_job(spec(mesh.id, method=SMOOTH, holes={"ids": [2, 3]})).id, timeout_s=GUARD_S)
     assert mesh.state == MeshState.READY
     assert mesh.facts is not None
     assert [hole.edges for hole in mesh.facts.holes] == sorted((h.edges for h in mesh.facts.holes), reverse=True)
@@ -123,7 +124,8 @@ def test_every_format_comes_back_as_another_one_when_asked(
 ) -> None:
     mesh = client.upload(relief_file("float.ply"))
     job = client.wait(
-        client.create_job(spec(mesh.id, method=SMOOTH, output={"format": "stl", "preview": False})).id, timeout_s=120
+        client.create_job(spec(mesh.id, method=SMOOTH, output={"format": "stl", "preview": False})).id,
+        timeout_s=GUARD_S,
     )
     client.download(job, "result", tmp_path / "repaired.stl")
     assert read_scan(tmp_path / "repaired.stl").format == "stl"
@@ -134,7 +136,7 @@ def test_one_idempotency_key_starts_one_job(client: Client, relief_file: Callabl
     key = f"test-{mesh.id[:8]}-once"
     first = client.create_job(spec(mesh.id, method=SMOOTH), key)
     assert client.create_job(spec(mesh.id, method=SMOOTH), key).id == first.id
-    client.wait(first.id, timeout_s=120)
+    client.wait(first.id, timeout_s=GUARD_S)
 
 
 def test_the_same_job_twice_gives_the_same_bytes(client: Client, relief_file: Callable[[str], Path]) -> None:
@@ -142,7 +144,7 @@ def test_the_same_job_twice_gives_the_same_bytes(client: Client, relief_file: Ca
     jobs = [client.create_job(spec(mesh.id, method=SELF)) for _ in range(2)]
     hashes = set()
     for job in jobs:
-        result = client.wait(job.id, timeout_s=120).result
+        result = client.wait(job.id, timeout_s=GUARD_S).result
         assert result is not None
         hashes.add(result.files[0].sha256)
     assert len(hashes) == 1

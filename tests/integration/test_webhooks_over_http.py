@@ -1,6 +1,5 @@
 """Subscriptions over HTTP, delivered by dispatchers in processes of their own, one of them killed at work."""
 
-import time
 from collections.abc import Callable
 from typing import Any
 
@@ -14,6 +13,7 @@ from jobkit.settings import Settings
 from jobkit.tables import DeliveryRow
 from tests.dispatcher.process import dispatching
 from tests.dispatcher.receivers import LOOPBACK, receiving
+from tests.waiting import GUARD_S, wait_until
 
 ALLOWED = {"webhook_allowed_networks": LOOPBACK}
 
@@ -21,20 +21,24 @@ ALLOWED = {"webhook_allowed_networks": LOOPBACK}
 def test_the_end_of_a_job_reaches_its_subscriber_although_the_dispatcher_is_killed_in_the_middle(
     serve: Callable[..., Any], settings: Settings, database: Database
 ) -> None:
-    with serve(**ALLOWED) as service, receiving(held=True) as receiver, httpx.Client(base_url=service.url) as client:
+    with (
+        serve(**ALLOWED) as service,
+        receiving(held=True) as receiver,
+        httpx.Client(base_url=service.url, timeout=GUARD_S) as client,
+    ):
         webhook = client.post("/v1/webhooks", json={"url": receiver.url()}).raise_for_status().json()
         mesh = client.post("/v1/meshes?filename=a.ply", content=b"ply").raise_for_status().json()
         spec = {"mesh_id": mesh["id"], "method": {"method": "smooth"}}
         job = client.post("/v1/jobs", json=spec).raise_for_status().json()
         with dispatching(settings, **ALLOWED) as first:
             client.post(job["links"]["cancel"]).raise_for_status()
-            assert receiver.arrived.acquire(timeout=60)
+            assert receiver.arrived.acquire(timeout=GUARD_S)
             first.kill()
         receiver.hold.set()
         with database.write() as session:  # as if the claim had run out
             session.execute(update(DeliveryRow).values(next_try_at=utc_now()))
         with dispatching(settings, **ALLOWED):
-            assert receiver.arrived.acquire(timeout=60)
+            assert receiver.arrived.acquire(timeout=GUARD_S)
             delivery = wait_until_delivered(client, webhook)
         told, again = receiver.received
         assert receiver.ids() == [delivery["id"]] * 2
@@ -46,11 +50,5 @@ def test_the_end_of_a_job_reaches_its_subscriber_although_the_dispatcher_is_kill
 
 
 def wait_until_delivered(client: httpx.Client, webhook: dict[str, Any]) -> dict[str, Any]:
-    deadline = time.monotonic() + 60
-    while True:
-        page = client.get(f"{webhook['links']['deliveries']}?state=delivered").json()
-        if page["items"]:
-            (delivery,) = page["items"]
-            return dict(delivery)
-        assert time.monotonic() < deadline
-        time.sleep(0.05)
+    (delivery,) = wait_until(lambda: client.get(f"{webhook['links']['deliveries']}?state=delivered").json()["items"])
+    return dict(delivery)

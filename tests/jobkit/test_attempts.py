@@ -157,7 +157,7 @@ def test_a_job_that_waits_out_an_outage_is_not_started_before_its_time(database:
     assert attempts.start(job.id, "w", 30).attempt.number == 2
 
 
-@settings(max_examples=20, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=20, suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow])
 @given(endings=st.lists(st.sampled_from(["hand_back", "requeue"]), max_size=10))
 def test_attempts_that_count_are_never_more_than_allowed(
     database: Database, new_job: NewJob, endings: list[str]
@@ -179,7 +179,7 @@ STEPS = st.lists(
 )
 
 
-@settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=25, suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow])
 @given(steps=STEPS)
 def test_no_order_of_calls_leaves_the_drawn_life_of_a_job(
     database: Database, new_job: NewJob, steps: list[str]

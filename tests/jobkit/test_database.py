@@ -15,6 +15,7 @@ from jobkit.database import Database
 from jobkit.errors import DatabaseUnavailableError, SettingsError
 from jobkit.tables import Base, JobRow, MeshRow, ModelRow
 from tests.servers import PostgresServer, fresh_database, running_postgres
+from tests.waiting import GUARD_S, let_others_run
 
 NOW = datetime(2026, 11, 22, 10, 0, tzinfo=UTC)
 
@@ -96,7 +97,7 @@ def write_while(database: Database, mesh_id: str, act: Callable[[], object], sta
 
 def _migrate(url: str, barrier: "multiprocessing.synchronize.Barrier", outcome: "multiprocessing.Queue[str]") -> None:
     database = Database(url)
-    barrier.wait(30)
+    barrier.wait(GUARD_S)
     try:
         database.migrate()
     except Exception as error:  # noqa: BLE001 - the parent reports it
@@ -111,9 +112,9 @@ def test_processes_that_start_at_once_migrate_once(empty_url: str) -> None:
     processes = [context.Process(target=_migrate, args=(empty_url, barrier, outcome)) for _ in range(3)]
     for process in processes:
         process.start()
-    assert [outcome.get(timeout=60) for _ in processes] == ["", "", ""]
+    assert [outcome.get(timeout=GUARD_S) for _ in processes] == ["", "", ""]
     for process in processes:
-        process.join(30)
+        process.join(GUARD_S)
     outcome.close()
     outcome.join_thread()
     database = Database(empty_url)
@@ -182,7 +183,7 @@ def test_more_threads_than_connections_take_turns(database: Database) -> None:
     seen: list[int] = []
 
     def ask() -> None:
-        barrier.wait(30)
+        barrier.wait(GUARD_S)
         with database.read() as session:
             seen.append(session.scalar(select(1)) or 0)
 
@@ -253,7 +254,7 @@ def test_a_transaction_that_takes_too_long_is_an_outage_that_passes(postgres: Po
     with fresh_database(postgres) as url:
         database = Database(f"{url}?options=-c%20{timeout}%3D50")
         with pytest.raises(DatabaseUnavailableError):
-            write_while(database, "m", lambda: threading.Event().wait(0.3), "SELECT pg_sleep(60)")
+            write_while(database, "m", let_others_run, "SELECT pg_sleep(60)")
         database.ping()
         database.close()
 

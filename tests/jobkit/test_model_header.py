@@ -62,7 +62,7 @@ def test_deeply_nested_json_is_refused(tmp_path: Path) -> None:
         read_dictionary_card(path)
 
 
-@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow])
 @given(position=st.integers(0, 200), byte=st.integers(0, 255))
 @example(position=0, byte=0)
 def test_no_single_byte_crashes_the_reader(

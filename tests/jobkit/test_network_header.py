@@ -2,7 +2,7 @@ import json
 from pathlib import Path
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from onnx import TensorProto, helper
 
@@ -27,7 +27,6 @@ def network_bytes(properties: dict[str, str], n_weights: int = 10) -> bytes:
     return bytes(model.SerializeToString())
 
 
-@settings(deadline=None)
 @given(n_weights=st.integers(0, 5000), others=st.dictionaries(st.text(max_size=300), st.text(max_size=300), max_size=3))
 def test_the_card_is_found_behind_any_graph_and_among_any_metadata(
     tmp_path_factory: pytest.TempPathFactory, n_weights: int, others: dict[str, str]
@@ -44,7 +43,6 @@ def test_a_network_without_a_readable_card_has_none(tmp_path: Path, card: str | 
     assert read_network_card(path) is None
 
 
-@settings(deadline=None)
 @given(data=st.binary(max_size=200), keep=st.integers(0, 400))
 def test_damaged_bytes_have_no_card_or_the_whole_one(
     tmp_path_factory: pytest.TempPathFactory, data: bytes, keep: int

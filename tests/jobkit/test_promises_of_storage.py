@@ -121,7 +121,7 @@ class World:
         return {found.key for found in self.store.keys("") if found.modified_at < utc_now() - GRACE}
 
 
-@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow])
 @given(script=st.lists(st.tuples(st.sampled_from(STEPS + TURNS), st.integers(0, 2)), min_size=3, max_size=40))
 def test_no_row_lacks_its_object_and_no_old_object_its_row(
     database: Database, store: ObjectStore, script: list[tuple[str, int]]
@@ -148,7 +148,7 @@ def test_no_row_lacks_its_object_and_no_old_object_its_row(
     assert {key for key in unnamed if key.split("/")[1] not in at_work} == set()
 
 
-@settings(max_examples=20, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=20, suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow])
 @given(script=st.lists(st.tuples(st.sampled_from(STEPS), st.integers(0, 2)), min_size=3, max_size=30))
 def test_when_all_has_expired_nothing_is_left_but_what_is_pinned_or_unfinished(
     database: Database, store: ObjectStore, script: list[tuple[str, int]]

@@ -23,6 +23,7 @@ from jobkit.registry import Registry
 from jobkit.schema import Job, JobError, JobResult, JobState, Mesh
 from jobkit.store import ObjectStore, StoredObject
 from jobkit.tables import AttemptRow, JobRow, LeaderRow
+from tests.waiting import GUARD_S, let_others_run
 
 LIMITS = TimeLimits(queue_s=1e6, total_s=1e6, memory_mb=1000)
 ERROR = JobError(code="worker_lost", message="it fell silent", retryable=True)
@@ -38,7 +39,7 @@ def at_once(calls: list[Callable[[], Any]]) -> list[Any]:
     barrier = threading.Barrier(len(calls))
 
     def run(call: Callable[[], Any]) -> Any:
-        barrier.wait(30)
+        barrier.wait(GUARD_S)
         try:
             return call()
         except (StaleAttemptError, JobFinishedError) as error:
@@ -120,9 +121,9 @@ def test_a_cancel_reaches_a_job_that_is_just_being_handed_back(database: Databas
             end_attempt(session, mine, another_try(ERROR), utc_now())
             # The other one still finds a running job, and then waits for this transaction.
             canceled = pool.submit(Jobs(database).request_cancel, job.id)
-            threading.Event().wait(0.3)
+            let_others_run()
             assert not canceled.done()
-        assert canceled.result(30).state == JobState.CANCELED
+        assert canceled.result(GUARD_S).state == JobState.CANCELED
     assert_log_is_whole(database, job.id)
 
 
@@ -134,9 +135,9 @@ def test_a_lease_that_is_renewed_while_it_is_taken_for_lost_stays(database: Data
             session.execute(update(JobRow).values(lease_until=later + timedelta(seconds=30)))
             # The other one finds the old lease, and then waits for this transaction.
             taken = pool.submit(end_overdue, database, LIMITS, later)
-            threading.Event().wait(0.3)
+            let_others_run()
             assert not taken.done()
-        assert taken.result(30) == 0
+        assert taken.result(GUARD_S) == 0
     assert Jobs(database).get(job.id).state == JobState.RUNNING
 
 

@@ -14,6 +14,7 @@ from jobkit.errors import ObjectNotFoundError, StoreUnavailableError
 from jobkit.s3_store import S3Store
 from jobkit.store import ObjectStore
 from tests.servers import S3Server, fresh_bucket
+from tests.waiting import GUARD_S
 
 
 @pytest.fixture
@@ -198,7 +199,7 @@ class _dropping_relay:  # noqa: N801 - used like a function
         self._listener.shutdown(socket.SHUT_RDWR)
         self._listener.close()
         for thread in self._threads:
-            thread.join(10)
+            thread.join(GUARD_S)
 
     def _accept(self) -> None:
         for client in self._connections():

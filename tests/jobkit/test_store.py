@@ -23,7 +23,7 @@ def keys(store: ObjectStore, prefix: str = "") -> set[str]:
     return {listed.key for listed in store.keys(prefix)}
 
 
-@settings(max_examples=30, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=30, suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow])
 @given(chunks=st.lists(st.binary(max_size=200), max_size=8), start=st.integers(0, 900), length=st.integers(0, 900))
 def test_what_is_written_in_chunks_is_read_back_in_any_range(
     any_store: ObjectStore, chunks: list[bytes], start: int, length: int

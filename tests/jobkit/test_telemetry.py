@@ -10,6 +10,7 @@ from opentelemetry.sdk.trace.export.in_memory_span_exporter import InMemorySpanE
 from opentelemetry.trace import SpanKind
 
 from jobkit.telemetry import Telemetry, current_traceparent, open_telemetry
+from tests.waiting import GUARD_S
 
 
 class Recorded:
@@ -100,6 +101,6 @@ for endpoint in ("", "http://127.0.0.1:1"):
     with open_telemetry("api", {"OTEL_EXPORTER_OTLP_ENDPOINT": endpoint}) as telemetry, telemetry.span("attempt"):
         print(current_traceparent())
 """
-    ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=True)
+    ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=GUARD_S, check=True)
     assert ended.stdout.split() == ["None", "None"]
     assert ended.stderr.count("the extra `telemetry` is not installed") == 1

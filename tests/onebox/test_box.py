@@ -10,12 +10,13 @@ import pytest
 from onebox.box import Box, default_workers, owned_folder, programs, ready_check, usable_port
 from onebox.demo import find_scan
 from onebox.errors import StartError
+from tests.waiting import GUARD_S
 
 
 def serve(*arguments: str | Path, **environment: str) -> subprocess.CompletedProcess[str]:
     command = [sys.executable, "-m", "onebox", "serve", *map(str, arguments)]
     variables = {**os.environ, **environment}
-    return subprocess.run(command, env=variables, capture_output=True, text=True, check=False, timeout=60)
+    return subprocess.run(command, env=variables, capture_output=True, text=True, check=False, timeout=GUARD_S)
 
 
 def test_a_free_port_is_found_and_a_taken_one_refused() -> None:

@@ -3,7 +3,6 @@ import signal
 import subprocess
 import sys
 import threading
-import time
 from collections.abc import Callable
 from pathlib import Path
 
@@ -11,27 +10,19 @@ import pytest
 
 from onebox.errors import StartError
 from onebox.processes import Program, Supervisor
-
-SLEEP = "import time; time.sleep(60)"
+from tests.waiting import wait_until
 
 
 def python(name: str, source: str, ready: Callable[[], bool] = lambda: True) -> Program:
     return Program(name, (sys.executable, "-c", source), ready=ready, stop_timeout_s=2.0)
 
 
-def wait_until(condition: Callable[[], bool]) -> None:
-    deadline = time.monotonic() + 20
-    while not condition():
-        assert time.monotonic() < deadline
-        time.sleep(0.02)
-
-
 def test_programs_start_in_order_and_each_waits_for_the_one_before(tmp_path: Path) -> None:
     mark = tmp_path / "first is ready"
     first = python(
-        "first", f"import time; time.sleep(0.2); open({str(mark)!r}, 'w').close(); time.sleep(60)", mark.exists
+        "first", f"import time; time.sleep(0.2); open({str(mark)!r}, 'w').close(); time.sleep(999)", mark.exists
     )
-    second = python("second", f"import os, time; print(os.path.exists({str(mark)!r}), flush=True); time.sleep(60)")
+    second = python("second", f"import os, time; print(os.path.exists({str(mark)!r}), flush=True); time.sleep(999)")
     supervisor = Supervisor([first, second], tmp_path / "logs", say=lambda line: None)
     supervisor.start()
     wait_until(lambda: "True" in supervisor.log_path("second").read_text())
@@ -71,7 +62,7 @@ def test_a_missing_program_is_an_error(tmp_path: Path) -> None:
 
 
 def test_a_program_deaf_to_sigterm_is_killed(tmp_path: Path) -> None:
-    source = "import signal, time; signal.signal(15, signal.SIG_IGN); print('deaf', flush=True); time.sleep(60)"
+    source = "import signal, time; signal.signal(15, signal.SIG_IGN); print('deaf', flush=True); time.sleep(999)"
     log = tmp_path / "logs" / "deaf.log"
     program = python("deaf", source, ready=lambda: "deaf" in log.read_text())
     lines: list[str] = []
@@ -84,7 +75,7 @@ def test_a_program_deaf_to_sigterm_is_killed(tmp_path: Path) -> None:
 def test_children_of_a_killed_supervisor_end_too(tmp_path: Path) -> None:
     source = (
         "import sys; from pathlib import Path; from onebox.processes import Program, Supervisor\n"
-        "code = 'import os, time; print(os.getpid(), flush=True); time.sleep(60)'\n"
+        "code = 'import os, time; print(os.getpid(), flush=True); time.sleep(999)'\n"
         "child = Program('child', (sys.executable, '-c', code))\n"
         "supervisor = Supervisor([child], Path(sys.argv[1]), print); supervisor.start(); supervisor.watch()"
     )

@@ -11,6 +11,7 @@ from quadpatch import drawing
 from quadpatch.cli import app, summary
 from quadpatch.formats.reading import read_scan
 from tests.quadpatch.shapes import bumpy_plate, punched, sphere, write_ply
+from tests.waiting import GUARD_S
 
 
 @pytest.fixture(scope="module")
@@ -267,7 +268,7 @@ def test_the_summary_counts_reasons() -> None:
 
 def test_the_module_runs_as_a_process(scan_file: Path, tmp_path: Path) -> None:
     command = [sys.executable, "-m", "quadpatch", "fill", str(scan_file), "-o", str(tmp_path / "out.stl")]
-    done = subprocess.run([*command, "--model", "smooth"], capture_output=True, text=True, check=False, timeout=60)
+    done = subprocess.run([*command, "--model", "smooth"], capture_output=True, text=True, check=False, timeout=GUARD_S)
     assert done.returncode == 0, done.stderr
     assert done.stdout == ""
     assert read_scan(tmp_path / "out.stl").format == "stl"

@@ -119,7 +119,7 @@ def test_a_file_that_is_no_model_is_refused(tmp_path: Path, content: bytes) -> N
 
 
 @given(cut=st.integers(0, 1000), position=st.integers(0, 400), value=st.integers(0, 255))
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 def test_a_damaged_file_loads_as_a_dictionary_or_is_refused(
     tmp_path_factory: pytest.TempPathFactory, cut: int, position: int, value: int
 ) -> None:

@@ -93,7 +93,7 @@ def test_what_the_recipe_has_no_use_for_is_refused(scan_file: Path, tmp_path: Pa
 
 
 @given(seed=st.integers(0, 2**32 - 1), n=st.integers(3, 40), m=st.integers(1, 80))
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 def test_heaps_of_random_triangles_give_a_repair_or_an_error_with_a_code(
     tmp_path_factory: pytest.TempPathFactory, seed: int, n: int, m: int
 ) -> None:

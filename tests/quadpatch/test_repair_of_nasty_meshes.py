@@ -125,7 +125,7 @@ def test_meshes_without_a_surface_are_refused(tmp_path: Path, vertices: FloatArr
 
 
 @given(seed=st.integers(0, 2**32 - 1), n=st.integers(3, 40), m=st.integers(1, 80), lattice=st.booleans())
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 def test_heaps_of_random_triangles_give_a_repair_or_an_error_with_a_code(
     tmp_path_factory: pytest.TempPathFactory, seed: int, n: int, m: int, lattice: bool
 ) -> None:

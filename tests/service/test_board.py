@@ -14,6 +14,7 @@ from jobkit.meshes import Meshes
 from jobkit.schema import Job, JobSpec, JobState, ResolvedModel
 from jobkit.store import ObjectStore
 from service.board import Board
+from tests.waiting import GUARD_S
 
 
 class CountingJobs(Jobs):
@@ -30,7 +31,7 @@ class CountingJobs(Jobs):
         self.glanced.append(set(job_ids))
         found = super().glances(job_ids)
         self.has_begun.set()
-        assert self.may_go_on.wait(60)
+        assert self.may_go_on.wait(GUARD_S)
         return found
 
     def get_many(self, job_ids: Collection[str]) -> dict[str, Job]:

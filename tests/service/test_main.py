@@ -5,6 +5,7 @@ import sys
 import pytest
 
 from service.__main__ import main
+from tests.waiting import GUARD_S
 
 
 @pytest.fixture(autouse=True)
@@ -47,5 +48,5 @@ def test_serving_loads_no_numeric_library() -> None:
         "import sys; import service.app; "
         "heavy = {'numpy', 'scipy', 'trimesh', 'pymeshlab', 'quadpatch', 'worker'}; print(heavy & set(sys.modules))"
     )
-    ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=True)
+    ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=GUARD_S, check=True)
     assert ended.stdout.strip() == "set()"

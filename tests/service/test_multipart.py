@@ -40,7 +40,7 @@ def parts_of(body: bytes, cuts: list[int], content_type: str = TYPE) -> list[tup
     return anyio.run(collect)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(cuts=st.lists(st.integers(0, 10_000), max_size=12))
 def test_parts_come_out_the_same_however_the_body_is_cut(cuts: list[int]) -> None:
     assert parts_of(BODY, cuts) == [
@@ -49,7 +49,7 @@ def test_parts_come_out_the_same_however_the_body_is_cut(cuts: list[int]) -> Non
     ]
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(length=st.integers(0, len(BODY) - 5))
 def test_a_body_that_ends_early_is_never_taken_for_whole(length: int) -> None:
     with pytest.raises(ProblemError) as caught:

@@ -2,7 +2,7 @@ from pathlib import Path
 
 import pytest
 import torch
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from training.checkpoint import Checkpoint, TrainingState, load_checkpoint, save_checkpoint
@@ -40,7 +40,6 @@ def test_a_checkpoint_that_can_not_be_written_leaves_the_one_before(tmp_path: Pa
     assert file.read_bytes() == before
 
 
-@settings(deadline=None)
 @given(data=st.binary(max_size=100), keep=st.integers(0, 3000))
 def test_damaged_bytes_are_no_checkpoint(tmp_path_factory: pytest.TempPathFactory, data: bytes, keep: int) -> None:
     file = tmp_path_factory.mktemp("run") / "run.checkpoint"

@@ -1,6 +1,6 @@
 import numpy as np
 import torch
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from training.holes import LARGEST, N_TURNS, Holes, draw_holes, turn
@@ -32,7 +32,6 @@ def test_a_hole_of_no_width_takes_nothing() -> None:
     assert one_hole((0.3, 0.3), 0.0, True).cut(24, CPU).all()
 
 
-@settings(deadline=None)
 @given(seed=st.integers(0, 1000))
 def test_drawn_holes_follow_from_their_generator_and_leave_something_to_see(seed: int) -> None:
     one, two = (draw_holes(50, np.random.default_rng(seed)).cut(24, CPU) for _ in range(2))

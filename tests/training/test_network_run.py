@@ -6,7 +6,6 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import numpy as np
@@ -22,6 +21,7 @@ from quadpatch.repair import repair_file
 from tests.quadpatch.shapes import punched
 from tests.training.patches import write_corpus
 from tests.training.test_main import write_ply
+from tests.waiting import GUARD_S, wait_until
 from training.__main__ import app
 from training.commands import INTERRUPTED
 from training.procedural import relief_mesh
@@ -130,11 +130,9 @@ def test_ctrl_c_writes_a_checkpoint_and_says_how_to_go_on(corpus: Path, tmp_path
     environment = {**os.environ, "OMP_NUM_THREADS": "1"}
     process = subprocess.Popen(command, cwd=ROOT, stderr=subprocess.PIPE, text=True, env=environment)
     checkpoint = tmp_path / "x.checkpoint"
-    deadline = time.monotonic() + 200
-    while not checkpoint.exists() and process.poll() is None and time.monotonic() < deadline:
-        time.sleep(0.05)
+    wait_until(lambda: checkpoint.exists() or process.poll() is not None)
     process.send_signal(signal.SIGINT)
-    _, said = process.communicate(timeout=60)
+    _, said = process.communicate(timeout=GUARD_S)
     assert process.returncode == INTERRUPTED, said
     assert f"--resume {checkpoint}" in said
     assert not (tmp_path / "x.onnx").exists()

@@ -1,5 +1,5 @@
 import torch
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from torch import nn
 
@@ -7,7 +7,6 @@ from training.autoencoder import build
 from training.pixel_shuffle import with_pixel_shuffle
 
 
-@settings(deadline=None)
 @given(
     kernel=st.sampled_from([3, 5, 7]),
     channels=st.tuples(st.integers(1, 4), st.integers(1, 4)),

@@ -9,6 +9,7 @@ import torch
 
 from quadpatch.errors import OptionError
 from tests.training.patches import write_corpus
+from tests.waiting import GUARD_S
 from training.processes import Place, take_place
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -43,7 +44,7 @@ def train(folder: Path, *launcher: str) -> subprocess.CompletedProcess[str]:
     command = [sys.executable, "-W", "error", *launcher, "-m", "training", "network", "--arch", "small_4x"]
     command += ["--corpus", str(folder.parent / "corpus"), "--name", "x", "--output", str(folder / "x.onnx")]
     command += ["--steps", "6", "--batch", "8", "--precision", "float32", "--device", "cpu"]
-    return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=300, check=False)
+    return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=GUARD_S, check=False)
 
 
 def weights(folder: Path) -> dict[str, np.ndarray]:

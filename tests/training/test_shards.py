@@ -3,7 +3,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from quadpatch.errors import OptionError
@@ -13,7 +13,6 @@ from training.shards import MANIFEST, Corpus, CorpusWriter, PatchSet
 from training.sources import Source
 
 
-@settings(deadline=None)
 @given(sizes=st.lists(st.integers(0, 6), min_size=1, max_size=5), data=st.data())
 def test_gathered_patches_are_those_of_all_meshes_joined(sizes: list[int], data: st.DataObject) -> None:
     shards = [patch_arrays(n, 4, seed) for seed, n in enumerate(sizes)]

@@ -4,8 +4,7 @@ import os
 import signal
 import subprocess
 import sys
-import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import ExitStack, closing
 from pathlib import Path
 
@@ -21,15 +20,9 @@ from jobkit.settings import Settings
 from jobkit.store import ObjectStore
 from onebox.valkey import prepare_valkey, running_valkey
 from tests.integration.conftest import ply_bytes, punched_relief
+from tests.waiting import GUARD_S, end, wait_until
 
 SMOOTH, LEARN = {"method": "smooth"}, {"method": "dictionary", "model": "self"}
-
-
-def wait_until(condition: Callable[[], object], timeout_s: float = 60.0) -> None:
-    deadline = time.monotonic() + timeout_s
-    while not condition():
-        assert time.monotonic() < deadline
-        time.sleep(0.05)
 
 
 @pytest.fixture
@@ -52,8 +45,7 @@ def worker(settings: Settings, queue_folder: Path, tmp_path: Path) -> Iterator[s
     try:
         yield process
     finally:
-        process.terminate()
-        process.wait(30)
+        end(process)
 
 
 def test_a_worker_outlives_a_queue_that_goes_away_in_the_middle_of_a_task(
@@ -84,4 +76,4 @@ def test_a_worker_outlives_a_queue_that_goes_away_in_the_middle_of_a_task(
         wait_until(lambda: state(second).has_result)
         assert worker.poll() is None
         worker.send_signal(signal.SIGTERM)
-        assert worker.wait(30) == 0
+        assert worker.wait(GUARD_S) == 0

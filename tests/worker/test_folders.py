@@ -10,7 +10,7 @@ from worker.folders import request_folder, worker_folder
 
 HOLD = (
     "import sys, time; from pathlib import Path; from worker.folders import worker_folder\n"
-    "with worker_folder(Path(sys.argv[1])): print('held', flush=True); time.sleep(60)"
+    "with worker_folder(Path(sys.argv[1])): print('held', flush=True); time.sleep(999)"
 )
 
 

@@ -1,10 +1,10 @@
 import threading
-from collections.abc import Callable
 
 import pytest
 from sqlalchemy.exc import OperationalError
 
 from jobkit.errors import DatabaseUnavailableError, StaleAttemptError
+from tests.waiting import GUARD_S, wait_until
 from worker.failures import StopReason
 from worker.pulse import Pulse, Vitals
 
@@ -32,20 +32,11 @@ class Patient:
         return Vitals(self.renew, lambda: self.cancel, lambda *report: self.reports.append(report), 0.0, patience_s)
 
 
-def wait_for(reason: Callable[[], StopReason | None]) -> StopReason | None:
-    ticks = threading.Event()
-    for _ in range(200):
-        if reason() is not None:
-            break
-        ticks.wait(0.05)
-    return reason()
-
-
 def test_the_lease_is_renewed_and_progress_written_once() -> None:
     patient = Patient()
     with Pulse(patient.vitals()) as pulse:
         pulse.reach("fill", 1.0)
-        assert patient.has_beaten.wait(10)
+        assert patient.has_beaten.wait(GUARD_S)
         assert pulse.stop_reason is None
     assert patient.reports == [("fill", 16.0)]
 
@@ -55,18 +46,18 @@ def test_the_most_memory_that_was_seen_goes_out_with_the_heartbeat() -> None:
     with Pulse(patient.vitals()) as pulse:
         for memory_mb in (100.0, 250.5, 80.0):
             pulse.note_memory(memory_mb)
-        assert patient.has_beaten.wait(10)
+        assert patient.has_beaten.wait(GUARD_S)
     assert patient.memory_mb == 250
 
 
 def test_a_cancel_flag_is_brought_back() -> None:
     with Pulse(Patient(is_canceled=True).vitals()) as pulse:
-        assert wait_for(lambda: pulse.stop_reason) is StopReason.CANCELED
+        assert wait_until(lambda: pulse.stop_reason) is StopReason.CANCELED
 
 
 def test_an_attempt_that_was_taken_away_is_lost() -> None:
     with Pulse(Patient(renewal=StaleAttemptError("taken")).vitals()) as pulse:
-        assert wait_for(lambda: pulse.stop_reason) is StopReason.LOST
+        assert wait_until(lambda: pulse.stop_reason) is StopReason.LOST
 
 
 @pytest.mark.parametrize(("patience_s", "reason"), [(0.0, StopReason.LOST), (3600.0, None)])
@@ -79,7 +70,7 @@ def test_a_database_that_is_away_is_waited_for_as_long_as_patience_lasts(
     patient = Patient(renewal=error)
     with Pulse(patient.vitals(patience_s)) as pulse:
         if reason is None:
-            assert patient.has_beaten.wait(10)
+            assert patient.has_beaten.wait(GUARD_S)
             assert pulse.stop_reason is None
         else:
-            assert wait_for(lambda: pulse.stop_reason) is reason
+            assert wait_until(lambda: pulse.stop_reason) is reason

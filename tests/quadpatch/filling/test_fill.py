@@ -117,7 +117,7 @@ def test_holes_that_touch_in_many_corners_are_closed_without_an_edge_of_three_fa
 
 
 @given(seed=st.integers(0, 2**32 - 1), share=st.sampled_from([0.02, 0.1, 0.3]))
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 def test_whatever_is_missing_a_fill_never_makes_an_edge_of_three_faces(seed: int, share: float) -> None:
     rng = np.random.default_rng(seed)
     whole = sphere(2)

@@ -114,7 +114,7 @@ def test_far_away_scans_lose_nothing_beyond_their_own_rounding() -> None:
 
 
 @given(seed=st.integers(0, 2**32 - 1), power=st.integers(-20, 20))
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 def test_a_fill_moves_turns_and_grows_with_its_mesh(seed: int, power: int) -> None:
     rng = np.random.default_rng(seed)
     mesh = punched(bumpy_plate(30, 2.0), (0.3, 0.2, 0), (-0.5, -0.4, 0), radius=0.35)

@@ -143,7 +143,7 @@ def canonical(corners: FloatArray) -> list[list[list[float]]]:
 
 
 @given(n=st.integers(4, 30), seed=st.integers(0, 2**32 - 1))
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 def test_flipping_keeps_the_rim_and_never_doubles_an_edge(n: int, seed: int) -> None:
     rng = np.random.default_rng(seed)
     angle = -2 * np.pi * (np.arange(n) + rng.uniform(-0.4, 0.4, n)) / n
@@ -162,7 +162,7 @@ def fan(loop: IntArray) -> Triangles:
 
 
 @given(seed=st.integers(0, 2**32 - 1))
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 def test_flipping_uses_no_edge_that_is_taken(seed: int) -> None:
     rng = np.random.default_rng(seed)
     n = 16

@@ -55,7 +55,7 @@ def assert_closes(loop: IntArray, triangles: Triangles) -> None:
 
 
 @given(n=st.integers(3, 24), seed=st.integers(0, 2**32 - 1), low=st.sampled_from([0.3, 1.0]))
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 def test_flat_polygons_convex_or_not_are_covered_once(n: int, seed: int, low: float) -> None:
     corners = star(n, seed, low)
     found = triangulate(corners)
@@ -114,7 +114,7 @@ def test_the_smaller_area_decides_between_equal_angles() -> None:
 
 
 @given(lengths=st.lists(st.integers(3, 12), min_size=1, max_size=8), seed=st.integers(0, 1000))
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 def test_many_loops_at_once_are_triangulated_as_one_by_one(lengths: list[int], seed: int) -> None:
     pieces = [star(n, seed + i) + np.random.default_rng(i).normal(0, 0.1, (n, 3)) for i, n in enumerate(lengths)]
     starts = np.cumsum([0, *lengths])
@@ -129,7 +129,7 @@ def test_many_loops_at_once_are_triangulated_as_one_by_one(lengths: list[int], s
 
 
 @given(n=st.integers(4, 12), seed=st.integers(0, 2**32 - 1))
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 def test_edges_that_are_taken_are_not_used_again(n: int, seed: int) -> None:
     rng = np.random.default_rng(seed)
     chords = np.array([(i, j) for j in range(n) for i in range(j - 1) if (i, j) != (0, n - 1)])

@@ -1,7 +1,7 @@
 """Known values spread over a graph."""
 
 import numpy as np
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from quadpatch.formats.harmonic import extend_harmonically
@@ -23,7 +23,6 @@ def test_along_a_path_values_run_straight_from_end_to_end(n: int, low: float, hi
 
 
 @given(seed=st.integers(0, 10_000), n=st.integers(2, 30))
-@settings(deadline=None)
 def test_every_unknown_node_is_the_mean_of_its_neighbours_and_within_the_known_range(seed: int, n: int) -> None:
     rng = np.random.default_rng(seed)
     edges = rng.integers(0, n, (3 * n, 2))

@@ -2,7 +2,7 @@ import itertools
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from quadpatch.mesh.boundary import Boundary, boundary_edge_mask, boundary_loops, directed_edges
@@ -169,7 +169,6 @@ def broken_meshes(draw: st.DrawFn) -> Triangles:
 
 
 @given(faces=broken_meshes())
-@settings(deadline=None)
 def test_every_boundary_edge_lies_on_exactly_one_loop_or_its_chain_is_flagged(faces: Triangles) -> None:
     boundary = boundary_loops(faces)
     single = boundary_edges(faces)
@@ -188,7 +187,6 @@ def test_every_boundary_edge_lies_on_exactly_one_loop_or_its_chain_is_flagged(fa
 
 
 @given(faces=broken_meshes(), seed=st.integers(0, 2**32 - 1))
-@settings(deadline=None)
 def test_the_order_of_triangles_does_not_matter(faces: Triangles, seed: int) -> None:
     rng = np.random.default_rng(seed)
     turned = np.take_along_axis(faces, (np.arange(3) + rng.integers(0, 3, (len(faces), 1))) % 3, axis=1)
@@ -199,7 +197,6 @@ def test_the_order_of_triangles_does_not_matter(faces: Triangles, seed: int) -> 
 
 
 @given(n_holes=st.integers(1, 3), seed=st.integers(0, 2**32 - 1))
-@settings(deadline=None)
 def test_relabelling_vertices_relabels_the_loops(n_holes: int, seed: int) -> None:
     mesh = punched(open_grid(15), *[(-4.0, 0, 0), (0.0, 2, 0), (4.0, 1, 0)][:n_holes], radius=1.2)
     names = np.random.default_rng(seed).permutation(1000)[: len(mesh.vertices)]
@@ -211,7 +208,6 @@ def test_relabelling_vertices_relabels_the_loops(n_holes: int, seed: int) -> Non
 
 
 @given(faces=broken_meshes())
-@settings(deadline=None)
 def test_the_mask_marks_the_edges_of_one_face(faces: Triangles) -> None:
     marked = directed_edges(faces)[boundary_edge_mask(faces)]
     assert sorted(map(tuple, marked.tolist())) == sorted(boundary_edges(faces))

@@ -41,7 +41,7 @@ def test_without_area_or_triangles_there_is_no_normal() -> None:
 
 
 @given(seed=st.integers(0, 2**32 - 1))
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 def test_normals_turn_with_the_mesh_and_have_unit_length(seed: int) -> None:
     rng = np.random.default_rng(seed)
     mesh, rotation = bumpy_plate(8, 1.0, seed=seed), random_rotation(rng)

@@ -75,7 +75,7 @@ def test_rough_patches_are_in_charge_where_meshes_are_many_but_not_alone() -> No
     assert 0.01 * rough.item() < smooth.item() < 0.3 * rough.item()
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(turns=st.integers(0, 3), mirrored=st.booleans(), seed=st.integers(0, 100))
 def test_turns_are_undone_by_their_inverse(turns: int, mirrored: bool, seed: int) -> None:
     tensors = random_tensor(seed, 2, 2, 6, 6), random_tensor(seed + 1, 2, 1, 6, 6)

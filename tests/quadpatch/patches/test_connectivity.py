@@ -45,7 +45,7 @@ def local(mesh: TriangleMesh, patches: Patches) -> FloatArray:
     return np.asarray(np.einsum("pij,pvj->pvi", patches.frames, mesh.vertices[None] - patches.origins[:, None]))
 
 
-@settings(deadline=None, max_examples=20)
+@settings(max_examples=20)
 @given(seed=st.integers(0, 2**32 - 1))
 def test_a_vertex_is_in_exactly_the_patches_whose_square_it_lies_over(seed: int) -> None:
     mesh = wave()
@@ -60,7 +60,7 @@ def test_a_vertex_is_in_exactly_the_patches_whose_square_it_lies_over(seed: int)
     assert not shown[~over].any()
 
 
-@settings(deadline=None, max_examples=20)
+@settings(max_examples=20)
 @given(seed=st.integers(0, 2**32 - 1))
 def test_reading_heights_back_returns_the_vertices(seed: int) -> None:
     mesh = wave()

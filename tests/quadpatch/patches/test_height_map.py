@@ -1,5 +1,5 @@
 import numpy as np
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from quadpatch.patches.height_map import REACH, bin_centres, sample_height_maps
@@ -103,7 +103,6 @@ def test_heights_of_a_sphere_cap_are_the_analytic_ones() -> None:
     np.testing.assert_allclose(patches.heights[0], expected, atol=2 * (2 / n) ** 2 / (8 * radius) * 1.5)
 
 
-@settings(deadline=None)
 @given(seed=st.integers(0, 2**32 - 1))
 def test_surface_points_lie_on_the_triangle_that_was_hit(seed: int) -> None:
     mesh = wave(60)
@@ -117,7 +116,6 @@ def test_surface_points_lie_on_the_triangle_that_was_hit(seed: int) -> None:
         assert (inside >= -1e-6 * np.einsum("ij,ij->i", normal, normal)).all()
 
 
-@settings(deadline=None)
 @given(seed=st.integers(0, 2**32 - 1))
 def test_heights_do_not_change_when_mesh_and_seeds_move_together(seed: int) -> None:
     rng = np.random.default_rng(seed)

@@ -42,7 +42,7 @@ def test_a_planted_dictionary_is_found_through_masks() -> None:
 
 
 @given(seed=st.integers(0, 2**32 - 1), masked=st.booleans())
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 def test_the_error_never_rises_and_atoms_have_unit_norm(seed: int, masked: bool) -> None:
     rng = np.random.default_rng(seed)
     signals = rng.normal(size=(120, 16)) @ rng.normal(size=(16, 16))

@@ -44,7 +44,7 @@ def residual_norms(signals: FloatArray, known: BoolArray, atoms: FloatArray, cod
 
 
 @given(seed=st.integers(0, 2**32 - 1), n_nonzero=st.integers(1, 8), same_mask=st.booleans())
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 def test_codes_equal_those_of_a_plain_pursuit_signal_by_signal(seed: int, n_nonzero: int, same_mask: bool) -> None:
     rng = np.random.default_rng(seed)
     atoms = random_atoms(rng, 40, 60)
@@ -70,7 +70,7 @@ def test_signals_of_one_mask_and_of_many_are_coded_alike_side_by_side(monkeypatc
 
 
 @given(seed=st.integers(0, 2**32 - 1))
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 def test_support_is_bounded_and_the_residual_never_grows_with_it(seed: int) -> None:
     rng = np.random.default_rng(seed)
     atoms = random_atoms(rng, 25, 40)
@@ -115,7 +115,7 @@ def test_a_sparse_signal_is_completed_exactly_from_half_its_bins() -> None:
 
 
 @given(seed=st.integers(0, 2**32 - 1), power=st.integers(-12, 12))
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 def test_codes_scale_with_their_signal(seed: int, power: int) -> None:
     rng = np.random.default_rng(seed)
     atoms = random_atoms(rng, 20, 30)

@@ -5,6 +5,7 @@ import pytest
 from threadpoolctl import threadpool_info
 
 from quadpatch.sparse.parallel import map_batches, n_processors
+from tests.waiting import GUARD_S
 
 
 def test_results_come_in_the_order_of_the_items() -> None:
@@ -29,5 +30,5 @@ def test_an_error_in_a_batch_reaches_the_caller() -> None:
 
 @pytest.mark.skipif(n_processors() < 2, reason="needs two processors")
 def test_two_batches_run_at_the_same_time() -> None:
-    both = threading.Barrier(2, timeout=30.0)
+    both = threading.Barrier(2, timeout=GUARD_S)
     assert len(map_batches(lambda _: both.wait(), range(2))) == 2

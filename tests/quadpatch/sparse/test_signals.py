@@ -1,5 +1,5 @@
 import numpy as np
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from quadpatch.sparse.signals import from_signals, mean_free, to_signals
@@ -22,7 +22,6 @@ def test_known_bins_have_mean_zero_and_spread_one() -> None:
 
 
 @given(seed=st.integers(0, 1000), scale=st.floats(1e-6, 1e6), shift=st.floats(-10, 10))
-@settings(deadline=None)
 def test_depth_and_offset_of_a_relief_do_not_change_its_signal(seed: int, scale: float, shift: float) -> None:
     detail, known = some_patches(seed)
     signals, scaling = to_signals(detail, known)
@@ -62,7 +61,6 @@ def test_patches_flatter_than_the_least_spread_stay_small() -> None:
 
 
 @given(seed=st.integers(0, 1000), scale=st.floats(1e-3, 1e3), shift=st.floats(-10, 10))
-@settings(deadline=None)
 def test_mean_free_heights_keep_their_depth_and_lose_their_offset(seed: int, scale: float, shift: float) -> None:
     heights, known = some_patches(seed)
     signals, scaling = mean_free(heights, known)

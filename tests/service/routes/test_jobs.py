@@ -1,5 +1,4 @@
 import threading
-import time
 from collections.abc import Callable
 from typing import Any
 
@@ -8,6 +7,7 @@ from starlette.testclient import TestClient
 
 from jobkit.schema import Job, JobError, JobState
 from service.services import Services
+from tests.waiting import wait_until
 
 SMOOTH = {"method": "smooth"}
 
@@ -141,9 +141,7 @@ def test_a_client_that_prefers_to_wait_gets_the_end(
     client: TestClient, services: Services, mesh_id: str, finish: Callable[[str], Job]
 ) -> None:
     def work() -> None:
-        while not (jobs := services.jobs.page(1).items):
-            pass
-        finish(jobs[0].id)
+        finish(wait_until(lambda: services.jobs.page(1).items)[0].id)
 
     worker = threading.Thread(target=work)
     worker.start()
@@ -200,9 +198,12 @@ def test_the_short_way_to_an_unchanged_job_knows_the_tag_of_the_long_way(
 
 def poll_until(client: TestClient, path: str, is_seen: Callable[[Any], bool]) -> Any:
     """Poll while the places in the queue are those of a moment ago."""
-    while not is_seen((answer := client.get(path)).json()):
-        time.sleep(0.05)
-    return answer
+
+    def seen() -> Any:
+        answer = client.get(path)
+        return answer if is_seen(answer.json()) else None
+
+    return wait_until(seen)
 
 
 def test_pages_hold_every_job_once_though_new_ones_arrive(client: TestClient, mesh_id: str) -> None:

@@ -28,7 +28,7 @@ def ascii_ply(n_vertices: int, vertices: str, faces: str, element: str = "face 1
 
 
 @given(made=ply_files())
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 def test_vertices_and_faces_are_read_from_any_header(made: tuple[Ply, list[list[float]], list[list[int]]]) -> None:
     ply, vertices, faces = made
     scan = read(ply.encode())

@@ -5,7 +5,7 @@ import io
 import numpy as np
 import pytest
 import trimesh
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given, settings
 
 from quadpatch.errors import FormatError
 from quadpatch.formats.limits import ReadLimits
@@ -48,7 +48,7 @@ def small_fill(scan: Scan) -> Fill:
 
 
 @given(made=ply_files())
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 def test_every_measured_value_of_every_element_comes_back(made: tuple[Ply, list[list[float]], list[list[int]]]) -> None:
     ply, _, _ = made
     index = next(prop for name, _, props in ply.elements if name == "face" for prop in props if "vertex" in prop.name)
@@ -70,7 +70,7 @@ def test_every_measured_value_of_every_element_comes_back(made: tuple[Ply, list[
 
 
 @given(made=ply_files())
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 def test_header_lines_stay_but_for_counts_and_marks(made: tuple[Ply, list[list[float]], list[list[int]]]) -> None:
     data = made[0].encode()
     repaired, _, _ = append(data, EMPTY)
@@ -81,7 +81,7 @@ def test_header_lines_stay_but_for_counts_and_marks(made: tuple[Ply, list[list[f
 
 
 @given(made=ply_files())
-@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=60)
 def test_what_is_invented_is_marked_and_what_is_measured_is_not(
     made: tuple[Ply, list[list[float]], list[list[int]]],
 ) -> None:
@@ -97,7 +97,7 @@ def test_what_is_invented_is_marked_and_what_is_measured_is_not(
 
 
 @given(made=ply_files())
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 def test_a_second_repair_adds_rows_and_no_properties(made: tuple[Ply, list[list[float]], list[list[int]]]) -> None:
     once, _, _ = append(made[0].encode(), small_fill(read(made[0].encode())))
     twice, scan, _ = append(once, small_fill(read(once)))
