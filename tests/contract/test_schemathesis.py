@@ -66,6 +66,8 @@ parameters = {{ "path.webhook_id" = "{webhook_id}", "path.delivery_id" = "{deliv
                 "--generation-deterministic",
                 "--no-color",
                 "--warnings=off",
+                f"--request-timeout={GUARD_S:g}",
+                "--suppress-health-check=too_slow",
             ],
             cwd=tmp_path,
             capture_output=True,
