@@ -61,7 +61,7 @@ parameters = {{ "path.webhook_id" = "{webhook_id}", "path.delivery_id" = "{deliv
                 f"{service.url}/openapi.json",
                 f"--header=Authorization:Bearer {KEY}",
                 "--checks=all",
-                "--max-examples=6",
+                "--max-examples=4",
                 "--seed=1",
                 "--generation-deterministic",
                 "--no-color",

@@ -36,7 +36,7 @@ def start_job(url: str) -> str:
 
 
 class Work:
-    """What a worker does: report progress as fast as the database takes it, then publish."""
+    """What a worker does: report progress many times a second, then publish."""
 
     def __init__(self, database: Database, job_id: str) -> None:
         self._attempts = Attempts(database)
@@ -57,7 +57,7 @@ class Work:
 
     def _work(self) -> None:
         step = 0
-        while not self._may_end.wait(0.002):
+        while not self._may_end.wait(0.01):
             step += 1
             self._attempts.report_progress(self._attempt, "fill", step % 1000 / 10)
         self._attempts.publish(self._attempt, JobResult(format="ply"))

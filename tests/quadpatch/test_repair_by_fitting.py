@@ -22,7 +22,7 @@ from tests.quadpatch.shapes import punched, relief, write_ply
 ROOT = Path(__file__).resolve().parents[2]
 WHOLE = relief(100, 2.8, 0.04, 11)
 SCAN = punched(WHOLE, (-0.6, -0.65, 0), (0.35, 0.4, 0), radius=0.13)
-OPTIONS = RepairOptions(patches=PatchOptions(overlap=1), network=NetworkOptions(steps=40, seconds=1000.0))
+OPTIONS = RepairOptions(patches=PatchOptions(overlap=1), network=NetworkOptions(steps=40, seconds=1e6))
 
 
 @pytest.fixture
@@ -62,7 +62,7 @@ def test_a_network_that_is_fitted_to_a_relief_fills_it_better_than_geometry_and_
     assert after.triangles[: len(before.triangles)].tobytes() == before.triangles.tobytes()
 
     assert report["model"] == {"name": SELF_NETWORK, "fitted_from": f"{BASE_NETWORK}@1"}
-    assert report["options"]["network"] == {"steps": 40, "seconds": 1000.0}
+    assert report["options"]["network"] == {"steps": 40, "seconds": 1e6}
     assert len(set(heard)) > 35
 
     assert repair_file(scan_file, again, SELF_NETWORK, OPTIONS)["model"] == report["model"]

@@ -139,7 +139,7 @@ def test_bfloat16_comes_close_to_float32() -> None:
     """Eight bits of every number are enough for gradients."""
     losses = []
     for precision in ("float32", "bfloat16"):
-        options = TrainOptions(steps=40, batch=16, rate=3e-3, precision=precision)
+        options = TrainOptions(steps=15, batch=8, rate=3e-3, precision=precision)
         trainer = Trainer(small_task(), options, PLACE)
         trainer.run()
         assert next(trainer.module.parameters()).dtype == torch.float32
