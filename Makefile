@@ -22,9 +22,10 @@ demo: $(READY)            ## repair a real scan over HTTP; results land in demo/
 serve: $(READY)           ## one box on http://127.0.0.1:8000 until Ctrl-C
 	@$(BIN)/python -m onebox serve
 
-# One thread for each of the two processes: where four share two cores, each waits for the others.
+# One thread for each of the two processes: where four share two cores, each waits for the others. At most 8 minutes on
+# two idle cores: what is slow is listed, so that it is made cheaper or gets a target of its own, such as `faults`.
 test: $(READY)            ## every test, with the real Valkey
-	@OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadfile
+	@OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadfile --durations 10
 
 test-postgres: $(READY)   ## the tests of service and workers on PostgreSQL and S3, both started by the tests
 	@TEST_BACKEND=postgres-s3 OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadfile \
