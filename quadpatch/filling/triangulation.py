@@ -9,7 +9,7 @@ divided by chords first (`quadpatch.filling.division`).
 import numpy as np
 
 from quadpatch.filling.division import RimLoop, divide
-from quadpatch.mesh.boundary import directed_edges
+from quadpatch.mesh.boundary import directed_edges, edge_keys
 from quadpatch.mesh.normals import cross, length
 from quadpatch.types import BoolArray, FloatArray, IntArray, Triangles, Vertices
 
@@ -42,9 +42,13 @@ def triangulate_loops(
     """
     found = _triangulate(loops, vertices, rim_normals, taken)
     # Two holes with two corners in common may want the same chord; the later one has to do without.
+    members = np.concatenate([np.zeros(0, np.int64), *loops])
+    owner = np.repeat(np.arange(len(loops)), [len(loop) for loop in loops])
     for i in _clashing(found):
-        others = [directed_edges(t) for j, t in enumerate(found) if j != i and t is not None]
-        found[i] = _triangulate([loops[i]], vertices, [rim_normals[i]], taken.with_edges(np.concatenate(others)))[0]
+        near = np.unique(owner[np.isin(members, loops[i])]).tolist()
+        others = [directed_edges(t) for j, t in ((j, found[j]) for j in near if j != i) if t is not None]
+        known = taken.among(loops[i]).with_edges(np.concatenate([np.zeros((0, 2), np.int64), *others]))
+        found[i] = _triangulate([loops[i]], vertices, [rim_normals[i]], known)[0]
     return found
 
 
@@ -81,18 +85,15 @@ def _joined(parts: list[Triangles | None]) -> Triangles | None:
 
 def _clashing(found: list[Triangles | None]) -> list[int]:
     """Positions of triangulations with a chord that an earlier one has."""
-    clashing, chords = [], EdgeSet(np.zeros((0, 2), np.int64))
-    corners = [np.unique(t) for t in found if t is not None]
-    if not corners or np.unique(np.concatenate(corners), return_counts=True)[1].max() < 2:
+    owned = [(i, directed_edges(triangles)) for i, triangles in enumerate(found) if triangles is not None]
+    if not owned:
         return []
-    for i, triangles in enumerate(found):
-        if triangles is None:
-            continue
-        edges = directed_edges(triangles)
-        if chords.contains(edges).any():
-            clashing.append(i)
-        chords = chords.with_edges(edges)
-    return clashing
+    owner = np.repeat([i for i, _ in owned], [len(edges) for _, edges in owned])
+    edges = np.concatenate([edges for _, edges in owned])
+    keys = edge_keys(edges, int(edges.max()) + 1)
+    # The sort is stable, so the first of several equal keys is that of the first owner.
+    _, first, of_edge = np.unique(keys, return_index=True, return_inverse=True)
+    return np.unique(owner[owner != owner[first[of_edge]]]).tolist()
 
 
 def _by_length(
@@ -121,6 +122,11 @@ class EdgeSet:
     def with_edges(self, edges: IntArray) -> "EdgeSet":
         """Add edges (n, 2) to a copy of the set."""
         return EdgeSet(np.concatenate([np.stack([self._keys >> 32, self._keys & 0xFFFFFFFF], axis=1), edges]))
+
+    def among(self, vertices: IntArray) -> "EdgeSet":
+        """Leave out edges with an end that is none of some vertices (n,)."""
+        edges = np.stack([self._keys >> 32, self._keys & 0xFFFFFFFF], axis=1)
+        return EdgeSet(edges[np.isin(edges, vertices).all(axis=1)])
 
     def contains(self, edges: IntArray) -> BoolArray:
         """Whether each edge (..., 2) is in the set."""

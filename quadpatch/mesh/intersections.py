@@ -4,7 +4,7 @@ import numpy as np
 from igl.copyleft.cgal import remesh_self_intersections
 from scipy.spatial import cKDTree
 
-from quadpatch.mesh.normals import area_vectors, length
+from quadpatch.mesh.normals import cross, length
 from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Triangles, Vertices
 
 # A triangle lower than this share of its longest edge is a line in all but name: it has no side to be crossed on.
@@ -55,8 +55,11 @@ def _cross_when_shrunk(mesh: TriangleMesh, pairs: IntArray) -> BoolArray:
 def heights(vertices: Vertices, triangles: Triangles) -> FloatArray:
     """Measure the height of every triangle over its longest edge, in shares of that edge: (n_triangles,)."""
     corners = vertices[triangles]
-    longest = np.max([length(corners[:, k] - corners[:, k - 1]) for k in range(3)], axis=0)
-    return np.asarray(length(area_vectors(vertices, triangles)) / np.maximum(longest, 1e-300) ** 2)
+    edges = np.stack([corners[:, k] - corners[:, k - 1] for k in range(3)], axis=1)
+    # Divided before they are multiplied: the squares of small edges vanish in float64.
+    longest = np.maximum(np.abs(edges).max(axis=(1, 2), initial=0.0), np.finfo(np.float64).tiny)
+    edges = edges / longest[:, None, None]
+    return np.asarray(length(cross(edges[:, 0], edges[:, 1])) / np.maximum(length(edges).max(axis=1), 1.0) ** 2)
 
 
 def touching_boxes(low: FloatArray, high: FloatArray, mesh: TriangleMesh) -> BoolArray:
