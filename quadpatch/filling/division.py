@@ -2,7 +2,8 @@
 
 The table of the minimum-weight triangulation costs O(n^3), so a long loop is divided first, into loops short enough
 for it. The best chord is short for the stretch of rim that it cuts off: in a crack it leads from one side to the other,
-in a disk it is a diameter. It must start and end inside the hole, which lies on the right of its loop.
+in a disk it is a diameter. It must start and end inside the hole, which lies on the right of its loop, and may not run
+through another stretch of the rim: around an island, or a finger of surface, that would be the shortest way.
 """
 
 from collections.abc import Callable
@@ -22,6 +23,11 @@ _MAX_ENDS = 512
 _LEAST_ANGLE = 0.05
 # Smallest share of a loop's edges that a chord cuts off.
 _LEAST_SHARE = 1 / 8
+# A rim edge is in the way of a chord if it passes it within this share of its length, along the normal.
+_REACH = 0.5
+# The best chords are compared with the rim so many at a time, and so many in all.
+_BATCH = 32
+_MOST_COMPARED = 4096
 
 
 @dataclass(frozen=True)
@@ -89,9 +95,39 @@ def _best_chord(loop: RimLoop, points: Vertices, taken: Taken) -> tuple[int, int
     inside = starts_inside & starts_inside.T & allowed
     ratio = np.linalg.norm(chords, axis=-1) / np.maximum(_rim_between(rim, ends), 1e-300)
     ratio = np.where(inside if inside.any() else allowed, ratio, np.inf)
-    best = int(ratio.argmin())
-    i, j = sorted((int(ends[best // len(ends)]), int(ends[best % len(ends)])))
-    return (i, j) if np.isfinite(ratio.flat[best]) else None
+    # Every chord stands there twice.
+    ratio[np.tril_indices(len(ends))] = np.inf
+    best = np.argsort(ratio, axis=None, kind="stable")[: min(_MOST_COMPARED, int(np.isfinite(ratio).sum()))]
+    found = np.stack([ends[best // len(ends)], ends[best % len(ends)]], axis=1)
+    if not len(found):
+        return None
+    for start in range(0, len(found), _BATCH):
+        some = found[start : start + _BATCH]
+        clear = np.flatnonzero(~_runs_through_rim(loop, rim, some))
+        if len(clear):
+            return int(some[clear[0], 0]), int(some[clear[0], 1])
+    return int(found[0, 0]), int(found[0, 1])
+
+
+def _runs_through_rim(loop: RimLoop, rim: Vertices, chords: IntArray) -> BoolArray:
+    """Whether each chord (k, 2), by positions, meets a rim edge, seen along the normals at its ends: (k,)."""
+    start = rim[chords[:, 0]]
+    chord = rim[chords[:, 1]] - start
+    up = unit(_at_vertices(loop.normals)[chords].sum(axis=1))
+    size = np.linalg.norm(chord, axis=1, keepdims=True)
+    ahead = chord / np.maximum(size, np.finfo(np.float64).tiny)
+    offset = rim[None] - start[:, None]
+    # Where the rim lies (k, n): to the side of a chord, along it, above it.
+    side, along, above = (np.einsum("knj,kj->kn", offset, axis) for axis in (cross(ahead, up), ahead, up))
+    other_side = np.roll(side, -1, axis=1)
+    passes = (side > 0) != (other_side > 0)
+    share = np.where(passes, side / np.where(passes, side - other_side, 1.0), 0.0)
+    along, above = (at + share * (np.roll(at, -1, axis=1) - at) for at in (along, above))
+    passes &= (along > 0) & (along < size) & (np.abs(above) < _REACH * size)
+    # The edges at its ends touch a chord; those of their twins at a bridge do as well.
+    ends = loop.vertices[chords]
+    is_end = (loop.vertices[None] == ends[:, :1]) | (loop.vertices[None] == ends[:, 1:])
+    return np.asarray((passes & ~is_end & ~np.roll(is_end, -1, axis=1)).any(axis=1))
 
 
 def _rim_between(rim: Vertices, ends: IntArray) -> FloatArray:
