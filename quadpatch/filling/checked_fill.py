@@ -113,7 +113,7 @@ def fill_checked(
             faults = find_faults(filled, obstacles=obstacles)
         for i in better.tolist():
             names[i] = name
-    kept, refused = _without_wrong(filled, faults, obstacles)
+    kept, refused = _without_wrong(filled, faults)
     relieved = relieve_rims(kept)
     if relieved is not filled:
         faults = find_faults(relieved, obstacles=obstacles)
@@ -146,20 +146,26 @@ def _departure(filled: FilledMesh, first: FilledMesh, loops: IntArray) -> FloatA
     return mean_by(filled.vertex_hole[looked_at], distance, len(filled.gap))
 
 
-def _without_wrong(
-    filled: FilledMesh, faults: Faults, obstacles: Triangles | None
-) -> tuple[FilledMesh, dict[int, tuple[str, str]]]:
-    """Open the loops again whose fills are wrong: the worst half first, since others may cross nothing but those."""
-    refused: dict[int, tuple[str, str]] = {}
-    wrong = np.flatnonzero(faults.is_wrong)
-    while len(wrong):
-        worst = wrong[np.argsort(-faults.severity[wrong], kind="stable")][: -(-len(wrong) // 2)]
-        filled = filled.without(worst)
-        for i in worst.tolist():
-            refused[i] = _reason(int(faults.crossings[i]), int(faults.n_folds[i]))
-        faults = find_faults(filled, np.setdiff1d(wrong, worst), obstacles)
-        wrong = np.flatnonzero(faults.is_wrong)
-    return filled, refused
+def _without_wrong(filled: FilledMesh, faults: Faults) -> tuple[FilledMesh, dict[int, tuple[str, str]]]:
+    """Open the loops again whose fills are wrong."""
+    opened = _to_open(faults)
+    refused = {i: _reason(int(faults.crossings[i]), int(faults.n_folds[i])) for i in opened.tolist()}
+    return filled.without(opened) if refused else filled, refused
+
+
+def _to_open(faults: Faults) -> IntArray:
+    """Choose loops (k,): those that are wrong by themselves; of rivals, the one with most of them, until none is left.
+
+    One fill that runs through all others, such as that of an outer border, costs none of those.
+    """
+    opened = faults.is_wrong_alone.copy()
+    rivals, n_loops = faults.rivals, len(faults.crossings)
+    while True:
+        rivals = rivals[~opened[rivals].any(axis=1)]
+        if not len(rivals):
+            return np.flatnonzero(opened)
+        n_rivals = np.bincount(rivals.ravel(), minlength=n_loops)
+        opened[np.lexsort((-faults.crossings, -n_rivals))[0]] = True
 
 
 def _reason(n_crossings: int, n_folds: int) -> tuple[str, str]:

@@ -55,10 +55,16 @@ class Faults:
     folds : Folds
     crossings : (n_loops,) int64
         New triangles that run through measured or new surface.
+    rivals : (n, 2) int64
+        Pairs of loops whose fills run through each other, each pair once.
+    is_lost : (n_loops,) bool
+        True where a fill runs through measured surface or through itself, whatever becomes of the others.
     """
 
     folds: Folds
     crossings: IntArray
+    rivals: IntArray
+    is_lost: BoolArray
 
     @property
     def n_folds(self) -> IntArray:
@@ -73,7 +79,12 @@ class Faults:
     @property
     def is_wrong(self) -> BoolArray:
         """Loops (n_loops,) whose fill is no surface to hand out."""
-        return (self._count(~self.folds.is_excused & ~self.folds.is_sliver) > 0) | (self.crossings > 0)
+        return self.is_wrong_alone | (self.crossings > 0)
+
+    @property
+    def is_wrong_alone(self) -> BoolArray:
+        """Loops (n_loops,) whose fill would be wrong without the fills of others too."""
+        return (self._count(~self.folds.is_excused & ~self.folds.is_sliver) > 0) | self.is_lost
 
     @property
     def severity(self) -> IntArray:
@@ -98,7 +109,7 @@ def find_faults(filled: FilledMesh, loops: IntArray | None = None, obstacles: Tr
     """
     n_loops = len(filled.gap)
     looked_at = np.ones(n_loops, bool) if loops is None else np.isin(np.arange(n_loops), loops)
-    return Faults(find_folds(filled, looked_at), _crossings(filled, looked_at, obstacles))
+    return Faults(find_folds(filled, looked_at), *_crossings(filled, looked_at, obstacles))
 
 
 def find_folds(filled: FilledMesh, looked_at: BoolArray) -> Folds:
@@ -146,17 +157,28 @@ def _neighbours(triangles: Triangles) -> tuple[IntArray, IntArray]:
     return np.stack([order[twin] // 3, order[twin + 1] // 3], axis=1), edges[order[twin]]
 
 
-def _crossings(filled: FilledMesh, looked_at: BoolArray, obstacles: Triangles | None) -> IntArray:
+def _crossings(
+    filled: FilledMesh, looked_at: BoolArray, obstacles: Triangles | None
+) -> tuple[IntArray, IntArray, BoolArray]:
+    """Find crossings, rivals and lost loops, as `Faults` has them."""
+    n_loops = len(filled.gap)
     triangles, mine = filled.mesh.triangles, np.zeros(len(filled.mesh.triangles), bool)
     mine[filled.n_measured_triangles :] = looked_at[filled.triangle_hole]
     if not mine.any():
-        return np.zeros(len(filled.gap), np.int64)
+        return np.zeros(n_loops, np.int64), np.zeros((0, 2), np.int64), np.zeros(n_loops, bool)
     others = triangles[~mine] if obstacles is None else np.concatenate([triangles[~mine], obstacles])
     around = TriangleMesh(filled.mesh.vertices, others)
     near = others[touching_boxes(*_boxes(filled, looked_at), around)]
     pairs = crossing_pairs(TriangleMesh(around.vertices, np.concatenate([triangles[mine], near])))
     owner = filled.triangle_hole[mine[filled.n_measured_triangles :]]
-    return np.bincount(owner[np.unique(pairs[pairs < len(owner)])], minlength=len(filled.gap))
+    crossings = np.bincount(owner[np.unique(pairs[pairs < len(owner)])], minlength=n_loops)
+    # What is near comes behind the fills that are looked at; it has no loop.
+    loops = np.concatenate([owner, np.full(len(near), -1)])[pairs]
+    loops = np.unique(np.sort(loops, axis=1), axis=0)
+    is_lost = np.zeros(n_loops, bool)
+    is_lost[loops[(loops[:, 0] < 0) & (loops[:, 1] >= 0), 1]] = True
+    is_lost[loops[(loops[:, 0] == loops[:, 1]) & (loops[:, 0] >= 0), 0]] = True
+    return crossings, loops[(loops[:, 0] >= 0) & (loops[:, 0] < loops[:, 1])], is_lost
 
 
 def _boxes(filled: FilledMesh, looked_at: BoolArray) -> tuple[FloatArray, FloatArray]:
