@@ -57,7 +57,8 @@ def heights(vertices: Vertices, triangles: Triangles) -> FloatArray:
     corners = vertices[triangles]
     edges = np.stack([corners[:, k] - corners[:, k - 1] for k in range(3)], axis=1)
     # Divided before they are multiplied: the squares of small edges vanish in float64.
-    longest = np.maximum(np.abs(edges).max(axis=(1, 2), initial=0.0), np.finfo(np.float64).tiny)
+    longest = np.abs(edges).max(axis=(1, 2), initial=0.0)
+    longest[longest == 0] = 1.0
     edges = edges / longest[:, None, None]
     return np.asarray(length(cross(edges[:, 0], edges[:, 1])) / np.maximum(length(edges).max(axis=1), 1.0) ** 2)
 

@@ -103,6 +103,40 @@ def punched(mesh: TriangleMesh, *centres: tuple[float, float, float], radius: fl
     return TriangleMesh(mesh.vertices, mesh.triangles[~gone[mesh.triangles].any(axis=1)])
 
 
+def plate_with_disc(n_rim: int, n_rings: int = 3) -> TriangleMesh:
+    """Build a flat plate around a round hole of radius 1: rings of equal triangles, z up; the rim comes first."""
+    step = 2 * np.pi / n_rim
+    ring, column = np.divmod(np.arange(n_rim * (n_rings + 1)), n_rim)
+    angle, radius = step * (column + 0.5 * (ring % 2)), 1 + step * ring
+    triangles = []
+    for k in range(n_rings):
+        here, there = k * n_rim + np.arange(n_rim), (k + 1) * n_rim + np.arange(n_rim)
+        after, beyond = np.roll(here, -1), np.roll(there, -1)
+        if k % 2 == 0:
+            triangles += [np.stack([here, there, after], 1), np.stack([after, there, beyond], 1)]
+        else:
+            triangles += [np.stack([here, there, beyond], 1), np.stack([here, beyond, after], 1)]
+    vertices = np.stack([radius * np.cos(angle), radius * np.sin(angle), np.zeros(len(angle))], axis=1)
+    return TriangleMesh(vertices, np.concatenate(triangles))
+
+
+def plate_with_window(n: int, margin: int = 3) -> TriangleMesh:
+    """Build a flat square of n x n vertices, one unit apart, of which a frame `margin` cells wide is left."""
+    whole = open_grid(n)
+    middle = np.abs(whole.vertices[whole.triangles].mean(axis=1)).max(axis=1)
+    return TriangleMesh(whole.vertices, whole.triangles[middle > (n - 1) / 2 - margin])
+
+
+def moved(mesh: TriangleMesh, shift: tuple[float, float, float]) -> TriangleMesh:
+    """Shift a mesh."""
+    return TriangleMesh(mesh.vertices + np.array(shift), mesh.triangles)
+
+
+def flipped(mesh: TriangleMesh) -> TriangleMesh:
+    """Turn a mesh inside out."""
+    return TriangleMesh(mesh.vertices, np.ascontiguousarray(mesh.triangles[:, ::-1]))
+
+
 def random_rotation(rng: np.random.Generator) -> FloatArray:
     """Draw a rotation matrix (3, 3)."""
     q, _ = np.linalg.qr(rng.normal(size=(3, 3)))
