@@ -93,7 +93,7 @@ def _clashing(found: list[Triangles | None]) -> list[int]:
     keys = edge_keys(edges, int(edges.max()) + 1)
     # The sort is stable, so the first of several equal keys is that of the first owner.
     _, first, of_edge = np.unique(keys, return_index=True, return_inverse=True)
-    return np.unique(owner[owner != owner[first[of_edge]]]).tolist()
+    return [int(i) for i in np.unique(owner[owner != owner[first[of_edge]]])]
 
 
 def _by_length(
