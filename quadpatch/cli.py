@@ -151,7 +151,7 @@ def holes(
         table.add_column(name, overflow="fold")
     for row in facts["holes"]:
         numbers = [f"{row[name]:.5g}" for name in ("perimeter", "diameter")]
-        fate = "fill" if row["chosen"] else f"leave open: {row['reason']}"
+        fate = (row["reason"] or "fill") if row["chosen"] else f"leave open: {row['reason']}"
         table.add_row(str(row["id"]), str(row["edges"]), *numbers, row["kind"], _centre(row), fate)
     console = Console()
     console.print(table, width=min(console.width, MAX_TABLE_WIDTH))

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from quadpatch.errors import EmptyMeshError, OptionError, TorchMissingError
+from quadpatch.filling.islands import join_islands
 from quadpatch.formats.marks import NUMBERED
 from quadpatch.formats.precision import check_precision
 from quadpatch.formats.reading import read_scan
@@ -146,6 +147,9 @@ def inspect_file(source: Path, weld_tolerance: Tolerance = "auto") -> dict[str, 
     mesh = welded.mesh
     holes = find_holes(mesh)
     selection = select_holes(holes, RepairOptions().holes, diagonal(mesh))
+    host_of = join_islands(mesh, holes, selection.chosen).host_of
+    reasons = {i: reason for i, (_, reason) in selection.skipped.items()}
+    reasons |= {island: f"joined to hole {host}, in which it lies" for island, host in host_of.items()}
     facts: dict[str, Any] = json_ready(
         {
             **describe_mesh(scan, mesh),
@@ -155,9 +159,9 @@ def inspect_file(source: Path, weld_tolerance: Tolerance = "auto") -> dict[str, 
             "holes": [
                 {
                     **describe_hole(hole),
-                    "chosen": hole.id not in selection.skipped,
+                    "chosen": hole.id not in selection.skipped or hole.id in host_of,
                     "action": selection.actions.get(hole.id),
-                    "reason": selection.skipped.get(hole.id, (None, None))[1],
+                    "reason": reasons.get(hole.id),
                 }
                 for hole in holes
             ],

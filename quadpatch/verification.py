@@ -13,6 +13,8 @@ from quadpatch.judge import HoleResult, confidence
 from quadpatch.mesh.holes import Hole
 from quadpatch.types import BoolArray, Triangles
 
+_NO_PLANE_PATCH = "no_plane_patch", "in its plane the rim crosses itself, or encloses no area"
+
 
 @dataclass(frozen=True)
 class Verified:
@@ -97,6 +99,8 @@ def verified_results(
         result = by_id[hole.id]
         if i in checked.refused:
             by_id[hole.id] = HoleResult(hole, "refused", *checked.refused[i])
+        elif result.verdict == "refused" and checked.fill[i] == "flat":
+            by_id[hole.id] = HoleResult(hole, "refused", *_NO_PLANE_PATCH)
         elif result.verdict.startswith("filled"):
             by_id[hole.id] = _verified(result, checked, faults, i, size)
     for island, host in rims.host_of.items():
