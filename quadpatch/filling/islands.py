@@ -11,7 +11,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from quadpatch.mesh.holes import Hole
-from quadpatch.mesh.normals import vertex_normals
+from quadpatch.mesh.normals import length, vertex_normals
 from quadpatch.mesh.pieces import find_pieces
 from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Vertices
 
@@ -68,13 +68,15 @@ def join_islands(mesh: TriangleMesh, holes: list[Hole], chosen: list[Hole]) -> J
     rims: dict[int, IntArray] = {}
     # The smallest hole around an island is its own.
     for hole, found in sorted(zip(chosen, candidates, strict=True), key=lambda pair: pair[0].diameter):
-        rims[hole.id] = hole.loop
-        for island in found:
-            if island.id in host_of or piece[island.loop[0]] == piece[hole.loop[0]]:
-                continue
-            if _lies_in(mesh.vertices, normals, hole.loop, island.loop):
-                host_of[island.id] = hole.id
-                rims[hole.id] = _bridged(mesh.vertices, rims[hole.id], island.loop)
+        islands = [
+            island
+            for island in found
+            if island.id not in host_of
+            and piece[island.loop[0]] != piece[hole.loop[0]]
+            and _lies_in(mesh.vertices, normals, hole.loop, island.loop)
+        ]
+        host_of.update((island.id, hole.id) for island in islands)
+        rims[hole.id] = _bridged(mesh.vertices, hole.loop, [island.loop for island in islands])
     left = [hole for hole in chosen if hole.id not in host_of]
     return JoinedRims([rims[hole.id] for hole in left], left, host_of)
 
@@ -116,9 +118,33 @@ def _is_inside(polygon: FloatArray, points: FloatArray) -> BoolArray:
     return inside
 
 
-def _bridged(vertices: Vertices, rim: IntArray, island: IntArray) -> IntArray:
-    """Join two rims by their shortest bridge: (n_rim + n_island + 2,) int64."""
-    distance, at = cKDTree(vertices[rim]).query(vertices[island])
-    j = int(np.argmin(distance))
-    i = int(np.asarray(at)[j])
-    return np.concatenate([rim[: i + 1], np.roll(island, -j), island[j : j + 1], rim[i:]])
+def _bridged(vertices: Vertices, rim: IntArray, islands: list[IntArray]) -> IntArray:
+    """Join a rim to islands by short bridges: (n_rim + n_islands + 2 per island,) int64.
+
+    The nearest island comes first, as in the algorithm of Prim: the bridge to another one may start at it, and would
+    run through it otherwise.
+    """
+    if not islands:
+        return rim
+    members = np.concatenate(islands)
+    owner = np.repeat(np.arange(len(islands)), [len(island) for island in islands])
+    starts = np.searchsorted(owner, np.arange(len(islands)))
+    waiting = np.ones(len(members), bool)
+    loop, joined, gap = rim, rim, np.full(len(members), np.inf)
+    while waiting.any():
+        gap = np.minimum(gap, cKDTree(vertices[joined]).query(vertices[members])[0])
+        at = int(np.where(waiting, gap, np.inf).argmin())
+        joined = islands[owner[at]]
+        j = at - int(starts[owner[at]])
+        waiting &= owner != owner[at]
+        i = _bridge_head(vertices, loop, members[at])
+        loop = np.concatenate([loop[: i + 1], np.roll(joined, -j), joined[j : j + 1], loop[i:]])
+    return loop
+
+
+def _bridge_head(vertices: Vertices, loop: IntArray, other: int) -> int:
+    """Find the position in a loop next to a vertex, where no other bridge begins: the order of two would be open."""
+    distance = length(vertices[loop] - vertices[other])
+    _, position, count = np.unique(loop, return_inverse=True, return_counts=True)
+    free = count[position] == 1
+    return int(np.where(free if free.any() else True, distance, np.inf).argmin())
