@@ -1,0 +1,189 @@
+import numpy as np
+import pytest
+
+from quadpatch.filling.checked_fill import PLAINER_FILLS, CheckedFill, Fill, fill_checked
+from quadpatch.filling.fairing import Energy
+from quadpatch.filling.faults import find_faults
+from quadpatch.filling.fill import close_flat, close_holes, fair_holes
+from quadpatch.filling.filled_mesh import FilledMesh
+from quadpatch.mesh.boundary import boundary_loops
+from quadpatch.mesh.distance import distance_to_mesh
+from quadpatch.mesh.normals import vertex_normals
+from quadpatch.types import FloatArray, IntArray, TriangleMesh
+from tests.quadpatch.filling.fills import all_loops, assert_keeps
+from tests.quadpatch.shapes import joined, open_grid, plate_with_disc, punched, sphere
+
+# On a saddle, the fills of all energies and the flat one lie apart.
+SADDLE = open_grid(25, 2.0)
+SADDLE.vertices[:, 2] = SADDLE.vertices[:, 0] ** 2 - SADDLE.vertices[:, 1] ** 2 + 0.5 * SADDLE.vertices[:, 0] ** 3
+SADDLE = punched(SADDLE, (0, 0, 0), radius=0.7)
+HOLE = [min(all_loops(SADDLE), key=len)]
+BALL = punched(sphere(3), (0, 0, 1), (1, 0, 0), (0, -1, 0), radius=0.4)
+LOOPS = all_loops(BALL)
+
+
+def smooth(mesh: TriangleMesh, loops: list[IntArray]) -> FilledMesh:
+    return fair_holes(close_holes(mesh, loops), Energy(plate=1.0, variation=20.0))
+
+
+def surface(filled: FilledMesh) -> TriangleMesh:
+    return TriangleMesh(filled.mesh.vertices, filled.mesh.triangles[filled.n_measured_triangles :])
+
+
+def blades(mesh: TriangleMesh, through: list[Fill], spared: Fill | None) -> TriangleMesh:
+    """A mesh with small blades, one through each of some fills of its hole and clear of another fill."""
+    near: TriangleMesh | None = surface(spared(mesh, HOLE)) if spared else None
+    parts = [mesh]
+    for fill in through:
+        filled = fill(mesh, HOLE)
+        points = filled.mesh.vertices[filled.n_measured_vertices :]
+        clearance = distance_to_mesh(points, near) if near else np.full(len(points), 0.1)
+        at = int(clearance.argmax())
+        assert clearance[at] > 1e-3
+        half = 0.4 * clearance[at]
+        up = vertex_normals(filled.mesh.vertices, filled.mesh.triangles)[filled.n_measured_vertices + at]
+        aside = np.cross(up, [1.0, 0.3, 0.2])
+        aside /= np.linalg.norm(aside)
+        # Shifted, so that no vertex lies on the blade.
+        foot = points[at] + 0.07 * half * aside
+        corners = np.array([foot - half * up - half * aside, foot - half * up + half * aside, foot + half * up])
+        parts.append(TriangleMesh(corners, np.array([[0, 1, 2]])))
+    return joined(*parts)
+
+
+ORDER: list[tuple[str, Fill]] = [("energies", smooth), *PLAINER_FILLS.items()]
+
+
+def obstacles_of(mesh: TriangleMesh) -> tuple[TriangleMesh, IntArray]:
+    """The saddle with the vertices of the blades, and their triangles."""
+    n = len(SADDLE.triangles)
+    return TriangleMesh(mesh.vertices, mesh.triangles[:n]), mesh.triangles[n:]
+
+
+@pytest.mark.parametrize("n_spoiled", [0, 1, 2, 3])
+@pytest.mark.parametrize("in_file", [True, False])
+def test_the_first_fill_in_the_order_of_plainness_that_holds_is_taken(n_spoiled: int, in_file: bool) -> None:
+    name, fill = ORDER[n_spoiled]
+    mesh = blades(SADDLE, [fill for _, fill in ORDER[:n_spoiled]], fill)
+    obstacles = None
+    if not in_file:
+        mesh, obstacles = obstacles_of(mesh)
+    checked = fill_checked(mesh, HOLE, smooth, obstacles)
+    assert checked.fill == [name]
+    assert checked.refused == {}
+    assert checked.faults.severity.tolist() == [0]
+    assert_keeps(checked.filled, mesh)
+    expected = surface(fill(mesh, HOLE))
+    assert distance_to_mesh(checked.filled.mesh.vertices[len(mesh.vertices) :], expected).max() < 1e-9
+    # How far it lies from the first fill is told where it is another one.
+    distance = distance_to_mesh(checked.filled.mesh.vertices[len(mesh.vertices) :], surface(smooth(mesh, HOLE)))
+    assert checked.departure[0] == pytest.approx(distance.mean() if n_spoiled else 0.0, abs=1e-12)
+    assert (checked.departure[0] > 0) == (n_spoiled > 0)
+
+
+def test_a_hole_whose_every_fill_runs_through_something_is_refused() -> None:
+    mesh = blades(SADDLE, [fill for _, fill in ORDER], None)
+    checked = fill_checked(mesh, HOLE, smooth)
+    code, reason = checked.refused[0]
+    assert code == "crosses_surface"
+    assert "triangles" in reason
+    assert_opened(checked, mesh)
+
+
+def assert_opened(checked: CheckedFill, mesh: TriangleMesh) -> None:
+    assert_keeps(checked.filled, mesh)
+    assert len(checked.filled.mesh.vertices) == len(mesh.vertices)
+    assert len(checked.filled.mesh.triangles) == len(mesh.triangles)
+    assert checked.faults.severity.tolist() == [0] * len(checked.filled.gap)
+    assert checked.departure.tolist() == [0.0] * len(checked.filled.gap)
+
+
+def test_a_lonely_triangle_is_refused_since_its_back_folds_over() -> None:
+    triangle = TriangleMesh(np.eye(3), np.array([[0, 1, 2]]))
+    checked = fill_checked(triangle, all_loops(triangle), smooth)
+    code, reason = checked.refused[0]
+    assert code == "folds_over"
+    assert "3 edges" in reason
+    assert_opened(checked, triangle)
+
+
+def test_the_back_of_a_flat_sheet_is_refused_since_it_doubles_its_own_surface() -> None:
+    # The outer border of the plate with a hole comes last.
+    for sheet in (open_grid(2), open_grid(6), plate_with_disc(12, 2)):
+        checked = fill_checked(sheet, all_loops(sheet)[-1:], smooth)
+        assert checked.refused.keys() == {0}
+        assert_opened(checked, sheet)
+
+
+def crumpled(which: int) -> Fill:
+    """A fill that throws the new vertices of one loop about."""
+
+    def fill(mesh: TriangleMesh, loops: list[IntArray]) -> FilledMesh:
+        filled = smooth(mesh, loops)
+        new = filled.mesh.vertices[filled.n_measured_vertices :]
+        thrown = new + np.random.default_rng(0).normal(0, 0.2, new.shape)
+        return filled.with_vertices(np.where((filled.vertex_hole == which)[:, None], thrown, new))
+
+    return fill
+
+
+def fill_of(filled: FilledMesh, loop: int) -> tuple[FloatArray, FloatArray]:
+    new = filled.mesh.vertices[filled.n_measured_vertices :]
+    triangles = filled.mesh.triangles[filled.n_measured_triangles :][filled.triangle_hole == loop]
+    return new[filled.vertex_hole == loop], filled.mesh.vertices[triangles]
+
+
+@pytest.mark.parametrize("which", [0, 1, 2])
+def test_the_fills_of_other_holes_are_left_alone_when_one_is_replaced(which: int) -> None:
+    first = crumpled(which)(BALL, LOOPS)
+    assert find_faults(first).is_wrong.tolist() == [i == which for i in range(3)]
+    checked = fill_checked(BALL, LOOPS, crumpled(which))
+    assert checked.fill == ["thin_plate" if i == which else "energies" for i in range(3)]
+    assert (checked.departure > 0).tolist() == [i == which for i in range(3)]
+    assert_keeps(checked.filled, BALL)
+    for loop in range(3):
+        same = [
+            one.tobytes() == other.tobytes()
+            for one, other in zip(fill_of(checked.filled, loop), fill_of(first, loop), strict=True)
+        ]
+        assert same == [loop != which] * 2
+
+
+def test_a_good_fill_comes_back_as_it_is() -> None:
+    first = smooth(BALL, LOOPS)
+    checked = fill_checked(BALL, LOOPS, smooth)
+    assert checked.filled.mesh.vertices.tobytes() == first.mesh.vertices.tobytes()
+    assert checked.filled.mesh.triangles.tobytes() == first.mesh.triangles.tobytes()
+    assert checked.fill == ["energies"] * 3
+    assert (checked.refused, checked.departure.tolist()) == ({}, [0.0] * 3)
+
+
+def test_no_loop_is_no_fault() -> None:
+    checked = fill_checked(BALL, [], smooth)
+    assert (checked.fill, checked.refused, checked.departure.tolist()) == ([], {}, [])
+    assert_keeps(checked.filled, BALL)
+
+
+@pytest.mark.parametrize("n_holes", [2, 9])
+def test_one_fill_that_runs_through_those_of_all_others_is_the_only_one_refused(n_holes: int) -> None:
+    # A flat sheet with small holes; closing its outer border lays a second sheet over each of them.
+    sheet = open_grid(16)
+    cells = 15 * np.arange(2, 12, 4)[:, None] + np.arange(2, 12, 4)[None]
+    mesh = TriangleMesh(sheet.vertices, np.delete(sheet.triangles, cells.ravel()[:n_holes], axis=0))
+    loops = sorted(boundary_loops(mesh.triangles).loops, key=len)[::-1]
+    assert len(loops) == n_holes + 1
+    checked = fill_checked(mesh, loops, close_flat)
+    assert checked.refused.keys() == {0}
+    assert np.bincount(checked.filled.triangle_hole, minlength=n_holes + 1).tolist() == [0] + [1] * n_holes
+
+
+def test_a_fill_that_runs_into_nothing_but_a_refused_one_stays() -> None:
+    # A small ring stands upright in a wide hole: the wide lid runs into the ring, the small lid into the wide one only.
+    wide, small = plate_with_disc(40), plate_with_disc(12)
+    upright = TriangleMesh(0.2 * small.vertices[:, [2, 0, 1]] + [0.03, 0.02, 0.01], small.triangles)
+    mesh = joined(wide, upright)
+    rims = [np.arange(40)[::-1], len(wide.vertices) + np.arange(12)[::-1]]
+    checked = fill_checked(mesh, rims, close_flat)
+    assert {i: code for i, (code, _) in checked.refused.items()} == {0: "crosses_surface"}
+    assert checked.fill[1] == "energies"
+    assert set(checked.filled.triangle_hole.tolist()) == {1}
