@@ -186,3 +186,42 @@ def test_an_edge_set_knows_its_edges_in_both_directions() -> None:
     edges = EdgeSet(np.array([[3, 1], [2, 5]]))
     assert edges.contains(np.array([[[1, 3], [3, 1]], [[5, 2], [1, 2]]])).tolist() == [[True, True], [True, False]]
     assert NOTHING.contains(np.array([[1, 3]])).tolist() == [False]
+
+
+def ring(n: int) -> tuple[FloatArray, IntArray]:
+    """The flat ring between a rim and an island, n vertices each: their places, and the loop that joins them."""
+    angle = -2 * np.pi * np.arange(n) / n
+    rim = np.stack([np.cos(angle), np.sin(angle), np.zeros(n)], axis=1)
+    island = n + np.append(0, np.arange(n - 1, 0, -1))
+    return np.concatenate([rim, 0.5 * rim]), np.concatenate([np.arange(n), [0], island, [n]])
+
+
+@pytest.mark.parametrize("n", [3, 4, 10, 63, 64, 150, 400])
+def test_a_ring_with_a_bridge_is_closed_once_and_the_bridge_is_an_edge_like_any_other(n: int) -> None:
+    points, loop = ring(n)
+    (found,) = triangulate_loops([loop], points, [np.tile(UP, (len(loop), 1))], NOTHING)
+    assert found is not None
+    assert len(found) == len(loop) - 2 == 2 * n
+    assert is_oriented_manifold(found)
+    assert (found != np.roll(found, 1, axis=1)).all()
+    assert faces_per_edge(found).tolist().count(1) == 2 * n
+    edges = [frozenset(edge) for edge in directed_edges(found).tolist()]
+    assert edges.count(frozenset({0, n})) == 2
+    areas = signed_areas(points, found)
+    assert areas.min() > 0
+    assert areas.sum() == pytest.approx(0.75 * polygon_area(points[:n]))
+
+
+@pytest.mark.parametrize("n_roofs", [2, 3, 12])
+def test_of_many_roofs_over_one_ridge_one_is_creased_along_it(n_roofs: int) -> None:
+    levels = [SADDLE[[1, 3]] - [0, 0, 0.2 * i] for i in range(n_roofs)]
+    vertices = np.concatenate([SADDLE[[0, 2]], *levels])
+    loops = [np.array([0, 2 + 2 * i, 1, 3 + 2 * i]) for i in range(n_roofs)]
+    found = [t for t in triangulate_loops(loops, vertices, [np.zeros((4, 3))] * n_roofs, NOTHING) if t is not None]
+    assert len(found) == n_roofs
+    assert faces_per_edge(np.concatenate(found)).max() <= 2
+
+
+def test_edges_among_some_vertices_are_those_with_both_ends_there() -> None:
+    edges = EdgeSet(np.array([[0, 1], [1, 2], [2, 3], [3, 0]])).among(np.array([2, 1, 0]))
+    assert edges.contains(np.array([[1, 0], [2, 1], [3, 2], [0, 3]])).tolist() == [True, True, False, False]
