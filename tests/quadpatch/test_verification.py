@@ -15,8 +15,9 @@ from quadpatch.judge import HoleResult, confidence, judge
 from quadpatch.mesh.holes import Hole, Selection, find_holes
 from quadpatch.patches.scale import PatchScale
 from quadpatch.types import FloatArray, IntArray, TriangleMesh
-from quadpatch.verification import verified_results, with_named_faults, without_faults
+from quadpatch.verification import limited_to, verified_results, with_named_faults, without_faults
 from tests.quadpatch.filling.fills import assert_keeps
+from tests.quadpatch.filling.handmade import as_holes
 from tests.quadpatch.shapes import bumpy_plate, punched
 
 MESH = punched(bumpy_plate(40, 2.0), (-0.5, -0.5, 0), (0.5, 0.5, 0), (0.5, -0.5, 0), radius=0.2)
@@ -30,7 +31,7 @@ def plate(mesh: TriangleMesh, loops: list[IntArray]) -> FilledMesh:
     return fair_holes(close_holes(mesh, loops), THIN_PLATE)
 
 
-CHECKED = fill_checked(MESH, RIMS.loops, plate)
+CHECKED = fill_checked(MESH, as_holes(RIMS.loops), plate)
 
 
 def displaced(displacement: FloatArray, trust: tuple[bool, bool, bool] = (True, True, True)) -> Completion:
@@ -92,7 +93,7 @@ def test_a_displacement_into_an_obstacle_is_taken_back() -> None:
     roof = top + 0.02 * np.array([[-1.0, -1, 0], [1, -1, 0], [0, 1, 0]])
     mesh = TriangleMesh(np.concatenate([MESH.vertices, roof]), MESH.triangles)
     obstacle = len(MESH.vertices) + np.array([[0, 1, 2]])
-    checked = fill_checked(mesh, RIMS.loops, plate, obstacle)
+    checked = fill_checked(mesh, as_holes(RIMS.loops), plate, obstacle)
     assert checked.faults.severity.tolist() == [0, 0, 0]
     lift = np.where(checked.filled.vertex_hole == 0, 0.1, 0.001)[:, None] * [0.0, 0, 1]
     lifted = checked.filled.with_vertices(checked.filled.mesh.vertices[len(mesh.vertices) :] + lift)
@@ -129,8 +130,8 @@ def judged(
 
 
 def test_every_filled_hole_names_its_fill_and_its_faults() -> None:
-    results = judged(replace(CHECKED, fill=["energies", "membrane", "flat"]))
-    assert [result.fill for result in results] == ["", "energies", "membrane", "flat"]
+    results = judged(replace(CHECKED, fill=["energies", "membrane", "unfaired"]))
+    assert [result.fill for result in results] == ["", "energies", "membrane", "unfaired"]
     for result in results[1:]:
         assert (result.measures["folds"], result.measures["crossings"]) == (0.0, 0.0)
     assert "folds" not in results[0].measures
@@ -159,7 +160,7 @@ def test_a_plainer_fill_far_from_the_best_one_is_expected_to_be_as_wrong_as_it_i
     assert plain[1].expected_error is not None
     expected = plain[1].expected_error
     departure = np.array([0.5 * expected, 3 * expected, 0.0])
-    results = judged(replace(CHECKED, fill=["flat", "flat", "energies"], departure=departure))
+    results = judged(replace(CHECKED, fill=["unfaired", "unfaired", "energies"], departure=departure))
     assert results[1].expected_error == plain[1].expected_error
     assert results[1].confidence == plain[1].confidence
     assert results[2].expected_error == departure[1]
@@ -170,7 +171,7 @@ def test_a_plainer_fill_far_from_the_best_one_is_expected_to_be_as_wrong_as_it_i
 def test_an_island_is_filled_with_the_hole_that_it_was_joined_to() -> None:
     island, rest = CHOSEN[2], CHOSEN[:2]
     rims = JoinedRims([hole.loop for hole in rest], rest, {island.id: rest[0].id})
-    result = judged(fill_checked(MESH, rims.loops, plate), rims)[island.id]
+    result = judged(fill_checked(MESH, as_holes(rims.loops), plate), rims)[island.id]
     assert (result.verdict, result.code) == ("filled_smooth", "joined")
     assert f"hole {rest[0].id}" in result.reason
 
@@ -194,3 +195,23 @@ def holes_of(results: list[HoleResult]) -> list[Hole]:
 
 def test_results_stay_in_the_order_of_the_holes() -> None:
     assert holes_of(judged()) == HOLES
+
+
+def test_a_plane_patch_expects_no_error_and_says_why_where_there_is_none() -> None:
+    flat = replace(CHECKED, fill=["flat", "energies", "energies"])
+    result = judged(flat)[1]
+    assert (result.verdict, result.code) == ("filled_smooth", "flat")
+    assert (result.confidence, result.expected_error) == (None, None)
+    missing = replace(flat, filled=replace(CHECKED.filled.without(np.array([0])), unfilled=[0]))
+    assert (judged(missing)[1].verdict, judged(missing)[1].code) == ("refused", "no_plane_patch")
+
+
+def test_a_rule_may_keep_the_model_out_of_a_hole() -> None:
+    completion = displaced(noise(0.001, 2))
+    limited = limited_to(completion, CHECKED.filled, np.array([True, False, True]))
+    moved = np.linalg.norm(limited.filled.mesh.vertices - CHECKED.filled.mesh.vertices, axis=1)
+    hole = CHECKED.filled.vertex_hole
+    new = moved[CHECKED.filled.n_measured_vertices :]
+    assert (new[hole == 1] == 0).all()
+    assert (new[hole != 1] > 0).any()
+    assert [result.code for result in judged(completion=limited)[1:]] == ["", "geometry", ""]

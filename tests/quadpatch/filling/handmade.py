@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from quadpatch.filling.checked_fill import LoopsToFill
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.types import FloatArray, IntArray, TriangleMesh
 from tests.quadpatch.shapes import plate_with_disc
@@ -35,3 +36,9 @@ def fan(rim: IntArray) -> IntArray:
 def tent(apex: tuple[float, float, float], n: int = 12) -> FilledMesh:
     """A flat plate with a round hole of radius 1, closed by one vertex."""
     return put_together(plate_with_disc(n, 2), (np.array([apex]), fan(np.arange(n))))
+
+
+def as_holes(loops: list[IntArray]) -> LoopsToFill:
+    """Loops to be filled by what is tried first: neither plane patches nor borders."""
+    none = np.zeros(len(loops), bool)
+    return LoopsToFill(loops, none, none)

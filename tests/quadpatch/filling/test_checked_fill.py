@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from quadpatch.filling.checked_fill import PLAINER_FILLS, CheckedFill, Fill, fill_checked
+from quadpatch.filling.checked_fill import PLAINER_FILLS, CheckedFill, Fill, LoopsToFill, fill_checked
 from quadpatch.filling.fairing import Energy
 from quadpatch.filling.faults import find_faults
 from quadpatch.filling.fill import close_flat, close_holes, fair_holes
@@ -11,6 +11,7 @@ from quadpatch.mesh.distance import distance_to_mesh
 from quadpatch.mesh.normals import vertex_normals
 from quadpatch.types import FloatArray, IntArray, TriangleMesh
 from tests.quadpatch.filling.fills import all_loops, assert_keeps
+from tests.quadpatch.filling.handmade import as_holes
 from tests.quadpatch.shapes import joined, open_grid, plate_with_disc, punched, sphere
 
 # On a saddle, the fills of all energies and the flat one lie apart.
@@ -68,7 +69,7 @@ def test_the_first_fill_in_the_order_of_plainness_that_holds_is_taken(n_spoiled:
     obstacles = None
     if not in_file:
         mesh, obstacles = obstacles_of(mesh)
-    checked = fill_checked(mesh, HOLE, smooth, obstacles)
+    checked = fill_checked(mesh, as_holes(HOLE), smooth, obstacles)
     assert checked.fill == [name]
     assert checked.refused == {}
     assert checked.faults.severity.tolist() == [0]
@@ -83,7 +84,7 @@ def test_the_first_fill_in_the_order_of_plainness_that_holds_is_taken(n_spoiled:
 
 def test_a_hole_whose_every_fill_runs_through_something_is_refused() -> None:
     mesh = blades(SADDLE, [fill for _, fill in ORDER], None)
-    checked = fill_checked(mesh, HOLE, smooth)
+    checked = fill_checked(mesh, as_holes(HOLE), smooth)
     code, reason = checked.refused[0]
     assert code == "crosses_surface"
     assert "triangles" in reason
@@ -100,7 +101,7 @@ def assert_opened(checked: CheckedFill, mesh: TriangleMesh) -> None:
 
 def test_a_lonely_triangle_is_refused_since_its_back_folds_over() -> None:
     triangle = TriangleMesh(np.eye(3), np.array([[0, 1, 2]]))
-    checked = fill_checked(triangle, all_loops(triangle), smooth)
+    checked = fill_checked(triangle, as_holes(all_loops(triangle)), smooth)
     code, reason = checked.refused[0]
     assert code == "folds_over"
     assert "3 edges" in reason
@@ -110,9 +111,39 @@ def test_a_lonely_triangle_is_refused_since_its_back_folds_over() -> None:
 def test_the_back_of_a_flat_sheet_is_refused_since_it_doubles_its_own_surface() -> None:
     # The outer border of the plate with a hole comes last.
     for sheet in (open_grid(2), open_grid(6), plate_with_disc(12, 2)):
-        checked = fill_checked(sheet, all_loops(sheet)[-1:], smooth)
+        checked = fill_checked(sheet, as_holes(all_loops(sheet)[-1:]), smooth)
         assert checked.refused.keys() == {0}
         assert_opened(checked, sheet)
+
+
+def test_the_border_of_a_sheet_is_refused_since_its_fill_doubles_the_sheet() -> None:
+    # Slightly bent, so that the fill crosses nothing.
+    sheet = open_grid(8)
+    bent = TriangleMesh(sheet.vertices + np.outer(0.01 * (sheet.vertices**2).sum(axis=1), [0, 0, 1]), sheet.triangles)
+    loops = all_loops(bent)
+    wanted = LoopsToFill(loops, np.zeros(1, bool), np.ones(1, bool))
+    checked = fill_checked(bent, wanted, close_flat)
+    assert checked.refused[0][0] == "doubles_surface"
+    assert_opened(checked, bent)
+
+
+def test_a_deep_bowl_may_be_closed_at_its_border() -> None:
+    bowl = punched(sphere(3), (0, 0, 1), radius=1.3)
+    wanted = LoopsToFill(all_loops(bowl), np.zeros(1, bool), np.ones(1, bool))
+    checked = fill_checked(bowl, wanted, smooth)
+    assert checked.refused == {}
+
+
+def test_plane_patches_are_taken_where_they_are_asked_for() -> None:
+    flat = np.array([True, *[False] * (len(LOOPS) - 1)])
+    checked = fill_checked(BALL, LoopsToFill(LOOPS, flat, np.zeros(len(LOOPS), bool)), smooth)
+    assert checked.fill[:2] == ["flat", "energies"]
+    others = fill_checked(BALL, as_holes(LOOPS), smooth)
+    for loop in range(1, len(LOOPS)):
+        # One system holds all loops, so its rounding differs.
+        np.testing.assert_allclose(fill_of(checked.filled, loop)[1], fill_of(others.filled, loop)[1], atol=1e-9)
+    vertices, _ = fill_of(checked.filled, 0)
+    assert np.linalg.svd(vertices - vertices.mean(axis=0), compute_uv=False)[-1] < 1e-12
 
 
 def crumpled(which: int) -> Fill:
@@ -137,7 +168,7 @@ def fill_of(filled: FilledMesh, loop: int) -> tuple[FloatArray, FloatArray]:
 def test_the_fills_of_other_holes_are_left_alone_when_one_is_replaced(which: int) -> None:
     first = crumpled(which)(BALL, LOOPS)
     assert find_faults(first).is_wrong.tolist() == [i == which for i in range(3)]
-    checked = fill_checked(BALL, LOOPS, crumpled(which))
+    checked = fill_checked(BALL, as_holes(LOOPS), crumpled(which))
     assert checked.fill == ["thin_plate" if i == which else "energies" for i in range(3)]
     assert (checked.departure > 0).tolist() == [i == which for i in range(3)]
     assert_keeps(checked.filled, BALL)
@@ -151,7 +182,7 @@ def test_the_fills_of_other_holes_are_left_alone_when_one_is_replaced(which: int
 
 def test_a_good_fill_comes_back_as_it_is() -> None:
     first = smooth(BALL, LOOPS)
-    checked = fill_checked(BALL, LOOPS, smooth)
+    checked = fill_checked(BALL, as_holes(LOOPS), smooth)
     assert checked.filled.mesh.vertices.tobytes() == first.mesh.vertices.tobytes()
     assert checked.filled.mesh.triangles.tobytes() == first.mesh.triangles.tobytes()
     assert checked.fill == ["energies"] * 3
@@ -159,7 +190,7 @@ def test_a_good_fill_comes_back_as_it_is() -> None:
 
 
 def test_no_loop_is_no_fault() -> None:
-    checked = fill_checked(BALL, [], smooth)
+    checked = fill_checked(BALL, as_holes([]), smooth)
     assert (checked.fill, checked.refused, checked.departure.tolist()) == ([], {}, [])
     assert_keeps(checked.filled, BALL)
 
@@ -172,7 +203,7 @@ def test_one_fill_that_runs_through_those_of_all_others_is_the_only_one_refused(
     mesh = TriangleMesh(sheet.vertices, np.delete(sheet.triangles, cells.ravel()[:n_holes], axis=0))
     loops = sorted(boundary_loops(mesh.triangles).loops, key=len)[::-1]
     assert len(loops) == n_holes + 1
-    checked = fill_checked(mesh, loops, close_flat)
+    checked = fill_checked(mesh, as_holes(loops), close_flat)
     assert checked.refused.keys() == {0}
     assert np.bincount(checked.filled.triangle_hole, minlength=n_holes + 1).tolist() == [0] + [1] * n_holes
 
@@ -183,7 +214,7 @@ def test_a_fill_that_runs_into_nothing_but_a_refused_one_stays() -> None:
     upright = TriangleMesh(0.2 * small.vertices[:, [2, 0, 1]] + [0.03, 0.02, 0.01], small.triangles)
     mesh = joined(wide, upright)
     rims = [np.arange(40)[::-1], len(wide.vertices) + np.arange(12)[::-1]]
-    checked = fill_checked(mesh, rims, close_flat)
+    checked = fill_checked(mesh, as_holes(rims), close_flat)
     assert {i: code for i, (code, _) in checked.refused.items()} == {0: "crosses_surface"}
     assert checked.fill[1] == "energies"
     assert set(checked.filled.triangle_hole.tolist()) == {1}

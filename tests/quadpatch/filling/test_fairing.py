@@ -164,8 +164,8 @@ def with_sliver(mesh: TriangleMesh, triangle: int, height: float) -> TriangleMes
     return TriangleMesh(vertices, np.concatenate([np.delete(mesh.triangles, triangle, axis=0), parts]))
 
 
-# In edges: how far a sliver at the rim may move a fill. Cut off one by one, its cotangents moved these by 0.1, 2.5, 1,900
-# and 69,000.
+# In edges: how far a sliver at the rim may move a fill. Cut off one by one, its cotangents moved these by 0.1, 2.5,
+# 1,900 and 69,000.
 WORST = {"membrane": 0.1, "plate": 0.3, "variation": 2.2, "blend": 2.2}
 
 

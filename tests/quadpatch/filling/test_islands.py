@@ -10,6 +10,7 @@ from quadpatch.filling.islands import MOST_HEIGHT, JoinedRims, join_islands
 from quadpatch.mesh.holes import Hole, find_holes
 from quadpatch.types import IntArray, TriangleMesh
 from tests.quadpatch.filling.fills import assert_keeps
+from tests.quadpatch.filling.handmade import as_holes
 from tests.quadpatch.shapes import (
     euler_characteristic,
     faces_per_edge,
@@ -210,5 +211,5 @@ def test_without_islands_loops_are_those_of_the_chosen_holes() -> None:
 def test_an_island_that_faces_the_other_way_is_run_into_and_its_hole_refused() -> None:
     mesh = joined(PLATE, flipped(moved(ISLAND, (0.1, 0.2, 0))))
     rims = joins(mesh)
-    checked = fill_checked(mesh, rims.loops, close_flat)
+    checked = fill_checked(mesh, as_holes(rims.loops), close_flat)
     assert [code for code, _ in checked.refused.values()] == ["crosses_surface"]
