@@ -113,6 +113,24 @@ def test_neither_confidence_nor_expected_error_is_made_up(repaired: Repair) -> N
     assert repaired.results[1].n_new_triangles > 0
 
 
+def test_faults_are_named_and_handed_out_all_the_same() -> None:
+    # A blade stands in the hole: the paper's closing runs through it, and so do the vertices that it places.
+    whole = sphere(4)
+    blade = np.array([[-0.1, 0.02, 0.8], [0.1, 0.03, 0.8], [0.01, 0.025, 1.3]])
+    n = len(whole.vertices)
+    mesh = punched(TriangleMesh(np.concatenate([whole.vertices, blade]), whole.triangles), (0, 0, 1), radius=0.3)
+    with_blade = TriangleMesh(mesh.vertices, np.concatenate([mesh.triangles, [[n, n + 1, n + 2]]]))
+    ids = RepairOptions(HoleOptions(max_diameter=0.8), recipe="paper")
+    for repair in (
+        inpaint_as_paper(with_blade, Truth(whole, 8), ids),
+        inpaint_as_paper(mesh, Truth(whole, 8), ids, obstacles=np.array([[n, n + 1, n + 2]])),
+    ):
+        result = next(result for result in repair.results if result.hole.n_edges > 3)
+        assert result.verdict.startswith("filled")
+        assert result.measures["crossings"] > 0
+        assert result.n_new_triangles > 0
+
+
 def test_every_stage_is_gone_through_in_the_order_of_the_paper() -> None:
     stages = Stages()
     inpaint_as_paper(punched(bumpy_plate(50, 2.0), (0, 0, 0), radius=0.2), None, OPTIONS, stages, learn=True)

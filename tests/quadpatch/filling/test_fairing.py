@@ -104,7 +104,7 @@ def test_the_membrane_on_equal_triangles_is_the_graph_laplacian() -> None:
 
 
 @given(seed=st.integers(0, 2**32 - 1), name=st.sampled_from(sorted(ENERGIES)), scale=st.sampled_from([1e-3, 1.0, 1e3]))
-@settings(max_examples=20)
+@settings(max_examples=20, deadline=None)
 def test_fairing_moves_turns_and_grows_with_the_mesh(seed: int, name: str, scale: float) -> None:
     rng = np.random.default_rng(seed)
     mesh = bumpy_plate(20, 2.0, seed=seed)
@@ -164,8 +164,7 @@ def with_sliver(mesh: TriangleMesh, triangle: int, height: float) -> TriangleMes
     return TriangleMesh(vertices, np.concatenate([np.delete(mesh.triangles, triangle, axis=0), parts]))
 
 
-# In edges: how far a sliver at the rim may move a fill. Cut off one by one, its cotangents moved these by 0.1, 2.5,
-# 1,900 and 69,000.
+# In edges: how far a sliver at the rim may move a fill. Cotangents cut off one by one move it by 2.5 to 69,000.
 WORST = {"membrane": 0.1, "plate": 0.3, "variation": 2.2, "blend": 2.2}
 
 
