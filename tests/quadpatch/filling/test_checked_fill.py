@@ -15,7 +15,7 @@ from tests.quadpatch.filling.handmade import as_holes
 from tests.quadpatch.shapes import joined, open_grid, plate_with_disc, punched, sphere
 
 # On a saddle, the fills of all energies and the flat one lie apart.
-SADDLE = open_grid(25, 2.0)
+SADDLE = open_grid(15, 2.0)
 SADDLE.vertices[:, 2] = SADDLE.vertices[:, 0] ** 2 - SADDLE.vertices[:, 1] ** 2 + 0.5 * SADDLE.vertices[:, 0] ** 3
 SADDLE = punched(SADDLE, (0, 0, 0), radius=0.7)
 HOLE = [min(all_loops(SADDLE), key=len)]
@@ -198,8 +198,8 @@ def test_no_loop_is_no_fault() -> None:
 @pytest.mark.parametrize("n_holes", [2, 9])
 def test_one_fill_that_runs_through_those_of_all_others_is_the_only_one_refused(n_holes: int) -> None:
     # A flat sheet with small holes; closing its outer border lays a second sheet over each of them.
-    sheet = open_grid(16)
-    cells = 15 * np.arange(2, 12, 4)[:, None] + np.arange(2, 12, 4)[None]
+    sheet = open_grid(10)
+    cells = 9 * np.arange(1, 9, 3)[:, None] + np.arange(1, 9, 3)[None]
     mesh = TriangleMesh(sheet.vertices, np.delete(sheet.triangles, cells.ravel()[:n_holes], axis=0))
     loops = sorted(boundary_loops(mesh.triangles).loops, key=len)[::-1]
     assert len(loops) == n_holes + 1

@@ -141,8 +141,8 @@ def test_any_number_of_islands_in_one_hole_becomes_one_sheet_with_one_border(pla
     assert (faces_per_edge(whole.triangles) == 1).sum() == 4 * 23
 
 
-@given(seed=st.integers(0, 2**32 - 1), n=st.integers(2, 12))
-@settings(max_examples=12, deadline=None)
+@given(seed=st.integers(0, 2**32 - 1), n=st.integers(2, 8))
+@settings(max_examples=6, deadline=None)
 def test_islands_anywhere_are_joined_without_a_fault(seed: int, n: int) -> None:
     rng = np.random.default_rng(seed)
     cells = rng.permutation(25)[:n]
@@ -152,10 +152,10 @@ def test_islands_anywhere_are_joined_without_a_fault(seed: int, n: int) -> None:
 
 
 def test_a_long_ring_is_divided_without_a_fault() -> None:
-    big, small = plate_with_disc(220), plate_with_disc(150)
+    big, small = plate_with_disc(80), plate_with_disc(60)
     disc = close_flat(small, [find_holes(small)[1].loop]).mesh
     mesh = joined(big, TriangleMesh(0.25 * disc.vertices, disc.triangles))
-    whole = filled_over(mesh, [next(hole for hole in find_holes(mesh) if hole.n_edges == 220 and not hole.is_border)])
+    whole = filled_over(mesh, [next(hole for hole in find_holes(mesh) if hole.n_edges == 80 and not hole.is_border)])
     assert euler_characteristic(whole.triangles) == 1
 
 
