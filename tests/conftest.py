@@ -42,6 +42,13 @@ hypothesis.settings.load_profile("tests")
 BACKENDS = ("sqlite-local", "postgres-s3")
 
 
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Keep a file's tests in one process of `--dist loadgroup`, and in one all that need the box: it starts once."""
+    for item in items:
+        needs_box = "box" in getattr(item, "fixturenames", ())
+        item.add_marker(pytest.mark.xdist_group("box" if needs_box else item.nodeid.partition("::")[0]))
+
+
 @pytest.fixture(scope="session")
 def backend() -> str:
     """What this run of the tests stands on; one of `BACKENDS`."""

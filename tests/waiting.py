@@ -15,7 +15,7 @@ import httpx
 T = TypeVar("T")
 
 GUARD_S = 300.0
-_PAUSE_S = 0.02
+_PAUSE_S = 0.05
 
 
 def wait_until(

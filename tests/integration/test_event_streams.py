@@ -57,7 +57,7 @@ class Work:
 
     def _work(self) -> None:
         step = 0
-        while not self._may_end.wait(0.01):
+        while not self._may_end.wait(0.02):
             step += 1
             self._attempts.report_progress(self._attempt, "fill", step % 1000 / 10)
         self._attempts.publish(self._attempt, JobResult(format="ply"))

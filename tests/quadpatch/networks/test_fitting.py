@@ -16,7 +16,7 @@ from tests.quadpatch.grounds import ground_of, surroundings_of
 from tests.quadpatch.networks.made import stirred
 from tests.quadpatch.shapes import relief
 
-STEPS = 45
+STEPS = 60
 # More than any machine takes.
 AMPLE_S = 1e6
 
