@@ -5,12 +5,10 @@ from collections import Counter
 import numpy as np
 import pytest
 
-from quadpatch.errors import ScaleError
 from quadpatch.filling.faults import find_faults
 from quadpatch.judge import HoleResult
 from quadpatch.mesh.boundary import boundary_loops
 from quadpatch.mesh.holes import find_holes
-from quadpatch.mesh.measures import LARGEST_COORDINATE, LEAST_SIZE
 from quadpatch.options import HoleOptions, RepairOptions
 from quadpatch.pipeline import Repair, inpaint
 from quadpatch.types import IntArray, TriangleMesh
@@ -107,14 +105,7 @@ def test_what_the_mesh_leaves_out_is_run_into_as_well() -> None:
     assert codes(repaired(mesh, obstacles=obstacle)) == {"crosses_surface": 1}
 
 
-@pytest.mark.parametrize("size", [1e-200, 0.1 * LEAST_SIZE, 2 * LARGEST_COORDINATE, 1e150, 1e300])
-def test_a_mesh_in_an_absurd_unit_is_refused_as_such(size: float) -> None:
-    with pytest.raises(ScaleError) as caught:
-        inpaint(TriangleMesh(size * BALL.vertices, BALL.triangles), None, RepairOptions())
-    assert caught.value.code == "scale_out_of_range"
-
-
-@pytest.mark.parametrize("size", [2 * LEAST_SIZE, 1e-12, 1e12, 0.5 * LARGEST_COORDINATE])
+@pytest.mark.parametrize("size", [1e-30, 1e-12, 1e12, 1e17])
 def test_every_other_unit_gives_the_same_repair(size: float) -> None:
     here, there = repaired(BALL), repaired(TriangleMesh(size * BALL.vertices, BALL.triangles))
     assert codes(there) == codes(here) == {"geometry": 1}
@@ -157,8 +148,8 @@ def band(n: int, n_half_turns: int) -> TriangleMesh:
 
 
 ODD = {
-    "a triangle": (mesh_of([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]), {"folds_over"}),
-    "two triangles": (open_grid(2), {"crosses_surface"}),
+    "a triangle": (mesh_of([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]), {"folds_over", "doubles_surface"}),
+    "two triangles": (open_grid(2), {"doubles_surface"}),
     "three points in one": (mesh_of([[1, 2, 3]] * 3, [[0, 1, 2]]), {"geometry", "folds_over"}),
     "a tetrahedron without a face": (
         mesh_of([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, 2, 1], [0, 1, 3], [0, 3, 2]]),
@@ -166,7 +157,7 @@ ODD = {
     ),
     "a Moebius strip": (band(12, 1), {"non_manifold_rim"}),
     "a band of two half turns": (band(24, 2), {"crosses_surface", "folds_over"}),
-    "a band": (band(24, 0), {"geometry", "crosses_surface"}),
+    "a band": (band(24, 0), {"geometry", "crosses_surface", "doubles_surface"}),
     "a tube": (cylinder(24, 12), {"geometry"}),
     "a fin at a rim": (
         TriangleMesh(
@@ -177,11 +168,11 @@ ODD = {
     ),
     "every third triangle of a sheet gone": (
         without(open_grid(8), np.arange(0, 98, 3)),
-        {"geometry", "crosses_surface", "folds_over"},
+        {"geometry", "crosses_surface", "folds_over", "doubles_surface"},
     ),
     "every second triangle of a sheet gone": (
         without(open_grid(6), np.arange(0, 50, 2)),
-        {"geometry", "crosses_surface", "folds_over"},
+        {"geometry", "crosses_surface", "folds_over", "doubles_surface"},
     ),
 }
 
