@@ -15,12 +15,12 @@ from typing import Any
 
 import numpy as np
 import onnx
-import onnxruntime as ort
 from rich.console import Console
 from rich.table import Table
 from threadpoolctl import threadpool_limits
 
 from quadpatch.inpainters.autoencoder import BATCH, THREADS
+from quadpatch.onnx_runtime import ort
 
 MATRIX_SIDE = 2048
 ROUNDS = 7

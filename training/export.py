@@ -13,12 +13,12 @@ from typing import Any
 
 import numpy as np
 import onnx
-import onnxruntime as ort
 import torch
 from torch import nn
 
 from quadpatch.files import write_whole
 from quadpatch.model_file import Card
+from quadpatch.onnx_runtime import ort
 from training.errors import ExportError
 from training.pixel_shuffle import with_pixel_shuffle
 

@@ -12,6 +12,10 @@ from typing import Any
 
 import numpy as np
 import onnx
+
+import quadpatch.onnx_runtime  # noqa: F401  first: it switches the telemetry off
+
+# isort: split
 from onnxruntime.quantization import CalibrationDataReader, QuantFormat, QuantType, quantize_static
 
 from training.export import INPUT

@@ -1,6 +1,6 @@
 """Completion of patches by a convolutional network (section 5 of the paper), run by onnxruntime.
 
-The one place that imports onnxruntime. A network file carries its facts in its ONNX metadata under `card`, a JSON
+A network file carries its facts in its ONNX metadata under `card`, a JSON
 object with `kind` = `autoencoder`, `patch_resolution` N and `recipe`:
 
 - `paper`: one channel of heights less the mean of the known bins, scaled so that `height_low`..`height_high` (in patch
@@ -16,11 +16,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import onnxruntime as ort
 
 from quadpatch.errors import ModelError
 from quadpatch.inpainters.corrections import CHANNELS, corrected, network_input
 from quadpatch.inpainters.inpainter import Surroundings
+from quadpatch.onnx_runtime import ort
 from quadpatch.types import BoolArray, FloatArray, Patches
 
 RECIPES = ("paper", "residual")
