@@ -19,6 +19,7 @@ from rq.exceptions import StopRequested
 from rq.serializers import JSONSerializer
 
 from jobkit.queue import TaskQueue
+from worker.entries import Entry
 
 # RQ waits for a task for 15 s less than this, and notices a connection that hangs 10 s after that.
 _TTL_S = 25
@@ -60,11 +61,12 @@ class Executor(SimpleWorker):  # type: ignore[misc]
 
     def __init__(self, queue: TaskQueue, queue_name: str, name: str, draining: threading.Event) -> None:
         super().__init__(
-            [Queue(queue_name, connection=queue.connection, serializer=JSONSerializer)],
+            [Queue(queue_name, connection=queue.connection, serializer=JSONSerializer, job_class=Entry)],
             # RQ refuses a name that it takes for alive, as that of a worker that could not say farewell.
             name=f"{name}-{secrets.token_hex(2)}",
             connection=queue.connection,
             serializer=JSONSerializer,
+            job_class=Entry,
             log_job_description=False,
             worker_ttl=_TTL_S,
         )
