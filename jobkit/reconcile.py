@@ -7,7 +7,7 @@ database and is not in the queue is put there again; twins are harmless, since o
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 
-from sqlalchemy import or_, select, update
+from sqlalchemy import exists, or_, select, update
 
 from jobkit.clock import shared_now
 from jobkit.database import Database
@@ -17,6 +17,8 @@ from jobkit.queue import TaskQueue, job_entry, mesh_entry
 from jobkit.schema import JobState, MeshProblem, MeshState
 from jobkit.tables import JobRow, MeshRow
 
+# Of jobs that something may still have to be done about.
+_OPEN_STATES = tuple(state.value for state in JobState if not state.is_terminal)
 # Between the pop and the start of the attempt an entry is in neither place.
 GRACE_S = 10.0
 
@@ -35,11 +37,16 @@ def reconcile(
 ) -> Reconciled:
     """End what is overdue and refill the queue; without `takes_leases`, leases that ran out are left alone for once.
 
+    Where no job and no analysis is open, one query says so, and nothing else is asked: an idle dispatcher looks every
+    second, for years.
+
     Raises
     ------
     QueueUnavailableError
         If Redis does not answer; leases have been taken back even so.
     """
+    if not _is_anything_open(database):
+        return Reconciled(0, 0, 0)
     moment = now or _shared_moment(database)
     ended = end_overdue(database, limits, moment, takes_leases=takes_leases)
     _give_up_analyses(database, moment)
@@ -76,6 +83,13 @@ def submit_analysis(database: Database, queue: TaskQueue, mesh_id: str) -> None:
     queue.enqueue_inspection(mesh_id, attempt + 1)
     with database.write() as session:
         session.execute(update(MeshRow).where(MeshRow.id == mesh_id).values(enqueued_at=shared_now(session)))
+
+
+def _is_anything_open(database: Database) -> bool:
+    job = exists().where(JobRow.state.in_(_OPEN_STATES))
+    mesh = exists().where(MeshRow.state == MeshState.ANALYSING.value)
+    with database.read() as session:
+        return bool(session.scalar(select(or_(job, mesh))))
 
 
 def _enqueue_jobs(database: Database, queue: TaskQueue, waiting: set[str], now: datetime) -> int:
