@@ -16,6 +16,7 @@ from jobkit.database import Database
 from jobkit.errors import SettingsError
 from jobkit.leadership import DISPATCHER, Leadership
 from jobkit.logs import set_up_logs
+from jobkit.privacy import hide_memory
 from jobkit.queue import TaskQueue
 from jobkit.readiness import ready_file
 from jobkit.settings import Settings, load_settings
@@ -27,6 +28,7 @@ _RENEWALS_PER_LEASE = 3
 
 def main() -> int:
     """Run one dispatcher; returns the exit code."""
+    hide_memory()
     try:
         settings = load_settings()
         store = open_store(settings.effective_object_store_url, settings.scratch_dir)

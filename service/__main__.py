@@ -9,6 +9,7 @@ from fastapi import FastAPI
 
 from jobkit.errors import SettingsError
 from jobkit.logs import set_up_logs
+from jobkit.privacy import hide_memory
 from jobkit.settings import Settings, load_settings, settings_table
 from jobkit.telemetry import open_telemetry
 from service.app import create_app
@@ -31,6 +32,7 @@ def main(arguments: list[str]) -> int:
     if arguments:
         sys.stderr.write(USAGE + "\n")
         return 2
+    hide_memory()
     try:
         settings = load_settings()
         check_exposure(settings)

@@ -13,11 +13,13 @@ from contextlib import ExitStack, closing
 from jobkit.database import Database
 from jobkit.errors import SettingsError
 from jobkit.logs import log_about, set_up_logs
+from jobkit.privacy import hide_memory
 from jobkit.queue import TaskQueue
 from jobkit.readiness import ready_file
 from jobkit.settings import Settings, load_settings
 from jobkit.store import ObjectStore, open_store
 from jobkit.telemetry import open_telemetry
+from worker.confinement import weaknesses
 from worker.context import Context, use_context, worker_name
 from worker.executor import execute
 from worker.folders import worker_folder
@@ -30,6 +32,7 @@ _EXIT_SETTINGS = 2
 
 def main() -> int:
     """Run one worker; returns the exit code."""
+    hide_memory()
     try:
         settings = load_settings()
         store = open_store(settings.effective_object_store_url, settings.scratch_dir)
@@ -37,6 +40,8 @@ def main() -> int:
         sys.stderr.write(f"worker: {error}\n")
         return _EXIT_SETTINGS
     set_up_logs(settings)
+    for weakness in weaknesses():
+        logging.warning("this kernel has %s", weakness)
     return _run(settings, store)
 
 

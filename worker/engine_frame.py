@@ -7,13 +7,14 @@ from collections.abc import Callable
 from pathlib import Path
 
 from quadpatch.errors import QuadpatchError
+from worker.confinement import confine
 from worker.engine_reports import Reporter
 from worker.failures import Failure, from_os_error, over_memory
 from worker.request import MESH_FOLDER, EngineRequest
 
 
 def run_framed(folder: Path, descriptor: int, task: Callable[[EngineRequest, Reporter], None]) -> None:
-    """Load the request in `folder`, do the task under its limits, and report how it went.
+    """Load the request in `folder`, do the task under its limits and shut in, and report how it went.
 
     Parameters
     ----------
@@ -26,11 +27,16 @@ def run_framed(folder: Path, descriptor: int, task: Callable[[EngineRequest, Rep
     request = EngineRequest.load(folder)
     try:
         request.limits.apply()
+        confine(folder, request)
         task(request, reporter)
     except QuadpatchError as error:
         reporter.failed(Failure(error.code, _without_paths(str(error), folder), reporter.stage))
     except MemoryError:
         reporter.failed(over_memory(request.limits.memory_mb, reporter.stage))
+    except PermissionError:
+        # Not the disk's refusal but that of `worker.confinement`: another attempt would meet it as well.
+        _print_traceback()
+        reporter.failed(Failure("engine_error", "the engine reached for what is closed to it", reporter.stage))
     except OSError as error:
         _print_traceback()
         reporter.failed(from_os_error(error, reporter.stage))

@@ -56,6 +56,6 @@ class Entry(Job):  # type: ignore[misc]
             raise NoSuchJobError("an entry of the queue can't be read") from error
         self._success_callback_name = self._failure_callback_name = self._stopped_callback_name = None
         self._success_callback = self._failure_callback = self._stopped_callback = None
-        self.webhooks = []
-        self._dependency_ids = []
+        self.webhooks: list[Any] = []
+        self._dependency_ids: list[str] = []
         self.retries_left = self.repeats_left = None

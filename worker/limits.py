@@ -10,6 +10,8 @@ _MIB = 1024 * 1024
 _DATA_SLACK_MB = 512
 _CPU_SLACK_S = 60
 _NICENESS = 5
+# Of all processes and threads of the user, whom many workers may share: it stops a flood, where seccomp stops each one.
+_MAX_PROCESSES = 8192
 
 
 @dataclass(frozen=True)
@@ -37,6 +39,7 @@ class EngineLimits:
         """Put the limits that the kernel keeps on this very process."""
         _lower(resource.RLIMIT_CORE, 0)
         _lower(resource.RLIMIT_DATA, (self.memory_mb + _DATA_SLACK_MB) * _MIB)
+        _lower(resource.RLIMIT_NPROC, _MAX_PROCESSES)
         _lower(resource.RLIMIT_FSIZE, self.file_mb * _MIB)
         # A backstop for a child whose parent hangs: wall-clock time is the parent's business.
         _lower(resource.RLIMIT_CPU, math.ceil(self.time_s * self.n_threads) + _CPU_SLACK_S)

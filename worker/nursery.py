@@ -104,7 +104,7 @@ def _redirect(folder: Path) -> None:
     """Send everything that native libraries print into the log of the request."""
     os.chdir(folder)
     os.umask(0o077)
-    os.environ["TMPDIR"] = str(folder)
+    os.environ["TMPDIR"] = os.environ["HOME"] = str(folder)
     try:
         log = os.open("engine.log", os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600)
     except OSError:

@@ -16,8 +16,22 @@ from worker.nursery import MESSAGE_BYTES
 # Loading the method takes about a second on an idle machine, more where all cores are busy.
 _START_TIMEOUT_S = 120.0
 
-# Settings hold passwords of database, queue and store. A process that reads strangers' files has no use for them.
-_SECRET_PREFIXES = ("QUADPATCH_", "AWS_", "OTEL_")
+# A process that reads strangers' files gets what Python and its libraries obey, and nothing that may hold a password.
+_KEPT_NAMES = ("PATH", "LANG", "LANGUAGE", "TZ", "VIRTUAL_ENV")
+_KEPT_PREFIXES = (
+    "LC_",
+    "LD_",
+    "PYTHON",
+    "MALLOC_",
+    "OMP_",
+    "KMP_",
+    "GOMP_",
+    "OPENBLAS_",
+    "MKL_",
+    "TBB_",
+    "TORCH_",
+    "ORT_",
+)
 
 
 class NurseryLostError(Exception):
@@ -131,7 +145,7 @@ class Nursery:
                 [sys.executable, "-m", "worker.nursery", str(there.fileno()), str(os.getpid()), self._engine],
                 pass_fds=(there.fileno(),),
                 stdin=subprocess.DEVNULL,
-                env={**_without_secrets(os.environ), **thread_environment(self._n_threads)},
+                env={**_what_libraries_obey(os.environ), **thread_environment(self._n_threads)},
                 start_new_session=True,
             )
         self._connection = here
@@ -160,5 +174,7 @@ class Nursery:
         return answer
 
 
-def _without_secrets(environment: Mapping[str, str]) -> dict[str, str]:
-    return {name: value for name, value in environment.items() if not name.startswith(_SECRET_PREFIXES)}
+def _what_libraries_obey(environment: Mapping[str, str]) -> dict[str, str]:
+    return {
+        name: value for name, value in environment.items() if name in _KEPT_NAMES or name.startswith(_KEPT_PREFIXES)
+    }

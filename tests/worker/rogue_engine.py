@@ -8,6 +8,8 @@ import subprocess
 import time
 from pathlib import Path
 
+from reaching_out import ATTEMPTS
+
 from quadpatch.errors import ReadError
 from worker.engine_frame import run_framed
 from worker.engine_reports import Reporter
@@ -26,13 +28,18 @@ def run_request(folder: Path, descriptor: int) -> None:
             json.dumps({"cwd": os.getcwd(), "pid": os.getpid(), "names": list(os.environ)})
         )
 
+    if EngineRequest.load(folder).options["deed"] == "start_a_grandchild":
+        grandchild = subprocess.Popen(["sleep", "600"])
+        (folder / "grandchild").write_text(str(grandchild.pid))
     run_framed(folder, descriptor, do_the_deed)
 
 
 class Deeds:
     @staticmethod
     def behave(folder: Path) -> None:
-        os.system("echo this goes to the log")
+        libc = ctypes.CDLL(None)
+        libc.puts(b"this goes to the log")
+        libc.fflush(None)
 
     @staticmethod
     def hang_in_native_code(folder: Path) -> None:
@@ -71,8 +78,12 @@ class Deeds:
 
     @staticmethod
     def start_a_grandchild(folder: Path) -> None:
-        grandchild = subprocess.Popen(["sleep", "600"])
-        (folder.parent / "grandchild").write_text(str(grandchild.pid))
+        """Done before the engine is shut in, as on a kernel that can't do that."""
+
+    @staticmethod
+    def reach_out(folder: Path) -> None:
+        reached = {name: attempt(folder) for name, attempt in ATTEMPTS.items()}
+        (folder / "reached.json").write_text(json.dumps(reached))
 
     @staticmethod
     def ignore_signals_and_hang(folder: Path) -> None:

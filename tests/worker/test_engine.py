@@ -18,8 +18,8 @@ LIMITS = EngineLimits(time_s=300.0, memory_mb=4096, n_threads=1)
 def nursery(unlearned_models: Path) -> Iterator[Nursery]:
     """Of a worker that was installed without torch."""
     with pytest.MonkeyPatch.context() as environment:
-        environment.setenv("PYTHONPATH", str(Path(__file__).parent))
-        environment.setenv("TEST_MODELS", str(unlearned_models))
+        # What it names is a library, which engines may read.
+        environment.setenv("PYTHONPATH", f"{Path(__file__).parent}:{unlearned_models}")
         with Nursery(n_threads=1, engine="engine_without_torch") as nursery:
             yield nursery
 

@@ -1,0 +1,50 @@
+"""Letter F: an engine that was taken over reaches its folder, its mesh and its libraries, and nothing else."""
+
+import json
+import os
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from tests.waiting import GUARD_S
+from tests.worker import reaching_out
+from worker.confinement import weaknesses
+from worker.limits import EngineLimits
+from worker.nursing import Nursery
+from worker.request import EngineRequest
+from worker.watch import Observer, run_engine
+
+LIMITS = EngineLimits(time_s=GUARD_S, memory_mb=1024, n_threads=1)
+
+
+@pytest.fixture(scope="module")
+def reached(tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[str, bool]]:
+    """What such an engine got through with."""
+    if weaknesses():
+        pytest.skip(f"this kernel has {', '.join(weaknesses())}")
+    outside = tmp_path_factory.mktemp("outside")
+    folder = outside / "request"
+    folder.mkdir()
+    (outside / "secret").write_text("hunter2")
+    (outside / "object").write_text("a mesh")
+    (folder / "source.ply").symlink_to(outside / "object")
+    (folder / "worker.pid").write_text(str(os.getpid()))
+    request = EngineRequest("inspect", "source.ply", LIMITS, options={"deed": "reach_out"})
+    with pytest.MonkeyPatch.context() as environment:
+        environment.setenv("PYTHONPATH", str(Path(reaching_out.__file__).parent))
+        with Nursery(n_threads=1, engine="rogue_engine") as nursery:
+            run_engine(nursery, request, folder, Observer(lambda stage, fraction: None, lambda: None))
+    yield json.loads((folder / "reached.json").read_text())
+    assert (outside / "secret").read_text() == "hunter2"
+
+
+@pytest.mark.parametrize("attempt", reaching_out.FORBIDDEN)
+def test_an_engine_cannot(reached: dict[str, bool], attempt: str) -> None:
+    assert not reached[attempt]
+
+
+@pytest.mark.parametrize("attempt", reaching_out.ALLOWED)
+def test_an_engine_can_still(reached: dict[str, bool], attempt: str) -> None:
+    """Without this the test above would pass for an engine that can do nothing at all."""
+    assert reached[attempt]

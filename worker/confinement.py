@@ -1,0 +1,83 @@
+"""Shuts an engine child in: it reads a stranger's mesh with native code, and may be taken over by it.
+
+From then on it reaches the folder of its request, the mesh, the model and the libraries, and nothing else: no other
+file, no socket, no other process and nothing of theirs in `/proc`. Landlock and seccomp do it, where the kernel has
+them; `weaknesses` says what is missing.
+"""
+
+import os
+import sys
+import sysconfig
+from pathlib import Path
+
+import quadpatch
+from worker.landlock import landlock_version, restrict_files
+from worker.request import EngineRequest
+from worker.seccomp import has_seccomp, restrict_calls
+
+_SYSTEM = (
+    "/usr",
+    "/lib",
+    "/lib64",
+    "/etc/ld.so.cache",
+    "/etc/localtime",
+    "/etc/fonts",
+    "/etc/nsswitch.conf",
+    "/etc/passwd",
+)
+# What numerical libraries ask about the machine before they start their threads.
+_MACHINE = (
+    "/proc/self",
+    "/proc/cpuinfo",
+    "/proc/meminfo",
+    "/proc/stat",
+    "/sys/devices",
+    "/sys/fs/cgroup",
+)
+_DEVICES = ("/dev/urandom", "/dev/random", "/dev/zero")
+_WRITABLE_DEVICES = ("/dev/null", "/dev/full")
+
+
+def confine(folder: Path, request: EngineRequest) -> None:
+    """Shut this very process in, before it opens the mesh.
+
+    Parameters
+    ----------
+    folder : Path
+        Of the request; the one place where it may write.
+    request : EngineRequest
+    """
+    restrict_files(
+        [*_library_folders(), *map(Path, (*_SYSTEM, *_MACHINE, *_DEVICES)), *_inputs(folder, request)],
+        [folder, *map(Path, _WRITABLE_DEVICES)],
+    )
+    restrict_calls()
+
+
+def weaknesses() -> list[str]:
+    """Say in words what this kernel can't do to shut engines in."""
+    found = [] if landlock_version() else ["no Landlock: engines can read the files of the worker's user"]
+    return found if has_seccomp() else [*found, "no seccomp filters: engines can open sockets and start processes"]
+
+
+def _library_folders() -> list[Path]:
+    """Return where Python, its packages and the method lie: never a whole working folder, which may hold the data."""
+    places = [
+        sys.prefix,
+        sys.base_prefix,
+        *sysconfig.get_paths().values(),
+        *os.environ.get("LD_LIBRARY_PATH", "").split(":"),
+        *os.environ.get("PYTHONPATH", "").split(":"),
+    ]
+    packages = [path for path in sys.path if Path(path).name in ("site-packages", "dist-packages")]
+    own = [Path(quadpatch.__file__).parent, Path(__file__).parent]
+    return [
+        *own,
+        *(Path(place) for place in (*places, *packages) if Path(place).is_absolute() and Path(place) != Path("/")),
+    ]
+
+
+def _inputs(folder: Path, request: EngineRequest) -> list[Path]:
+    """Return the files outside the folder that the request names: the mesh, which may be linked, and the model."""
+    model = [Path(request.model)] if os.path.isabs(request.model) else []
+    return [(folder / request.source).resolve(), *model]
