@@ -25,6 +25,10 @@ ADDRESS_FILE = Path("run/address")
 _LOOPBACK = "127.0.0.1"
 # Handing back a job takes a worker some seconds.
 _WORKER_STOP_S = 20.0
+# Beginnings of variables that may hold secrets, and which process has no use for them.
+_NOT_FOR_VALKEY = ("QUADPATCH_", "AWS_", "OTEL_")
+_NOT_FOR_DISPATCHER = ("QUADPATCH_API_KEYS", "OTEL_")
+_NOT_FOR_WORKERS = ("QUADPATCH_API_KEYS",)
 
 
 @dataclass(frozen=True)
@@ -76,7 +80,7 @@ def programs(box: Box) -> list[Program]:
     threads = {**shared, **thread_environment(n_threads)}
     workers = [_program(f"worker-{number}", box, threads) for number in range(1, box.n_workers + 1)]
     return [
-        Program("valkey", valkey.command, ready=lambda: answers(valkey.socket_path)),
+        Program("valkey", valkey.command, ready=lambda: answers(valkey.socket_path), withheld=_NOT_FOR_VALKEY),
         _program("dispatcher", box, shared),
         Program("api", (sys.executable, "-m", "service"), shared, ready=ready_check(f"{box.url}/readyz")),
         *workers,
@@ -95,6 +99,7 @@ def _program(name: str, box: Box, environment: dict[str, str]) -> Program:
         ready=ready_file.exists,
         stop_timeout_s=_WORKER_STOP_S,
         is_alongside=True,
+        withheld=_NOT_FOR_DISPATCHER if name == "dispatcher" else _NOT_FOR_WORKERS,
     )
 
 
@@ -144,7 +149,7 @@ def owned_folder(data: Path) -> Iterator[None]:
         If another box uses it, or it can't be made.
     """
     try:
-        data.mkdir(parents=True, exist_ok=True)
+        _make_private(data)
         descriptor = os.open(data / LOCK_NAME, os.O_RDWR | os.O_CREAT, 0o600)
     except OSError as error:
         raise StartError(f"the data folder {data} can't be used: {error.strerror}") from error
@@ -159,6 +164,13 @@ def owned_folder(data: Path) -> Iterator[None]:
         os.truncate(descriptor, 0)
         os.write(descriptor, str(os.getpid()).encode())
         yield
+
+
+def _make_private(data: Path) -> None:
+    """Make the folder for this user alone; a folder that holds anything else than a box keeps its mode."""
+    data.mkdir(mode=0o700, parents=True, exist_ok=True)
+    if (data / LOCK_NAME).exists() or not any(data.iterdir()):
+        data.chmod(0o700)
 
 
 def _n_cores() -> int:

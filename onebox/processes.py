@@ -4,6 +4,7 @@ It has one thread on purpose. Children are tied to the thread that forks them (s
 straight into its own log file, so nothing is lost when the supervisor itself is killed.
 """
 
+import contextlib
 import os
 import signal
 import subprocess
@@ -13,7 +14,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from onebox.errors import StartError
-from onebox.logs import log_tail
+from onebox.logs import log_tail, start_anew
 from worker.leash import leash
 
 _TICK_S = 0.1
@@ -46,6 +47,8 @@ class Program:
         Patience between SIGTERM and SIGKILL.
     is_alongside : bool
         Start and stop it side by side with the program before it.
+    withheld : tuple of str
+        Beginnings of the names of variables that it does not get: secrets that it has no use for.
     """
 
     name: str
@@ -54,6 +57,7 @@ class Program:
     ready: Callable[[], bool] = always_ready
     stop_timeout_s: float = 10.0
     is_alongside: bool = False
+    withheld: tuple[str, ...] = ()
 
 
 @dataclass
@@ -131,7 +135,7 @@ class Supervisor:
     def _launch(self, child: _Child) -> None:
         path = self.log_path(child.program.name)
         if path.exists() and path.stat().st_size > _LOG_LIMIT_BYTES:
-            path.replace(path.with_suffix(".log.1"))
+            start_anew(path)
         with path.open("ab") as log:
             child.log_start = log.tell()
             try:
@@ -140,7 +144,7 @@ class Supervisor:
                     stdin=subprocess.DEVNULL,
                     stdout=log,
                     stderr=subprocess.STDOUT,
-                    env={**os.environ, **child.program.environment},
+                    env=_environment(child.program),
                     preexec_fn=leash(os.getpid()),  # noqa: PLW1509 - there is one thread only
                     start_new_session=True,  # Ctrl-C reaches the supervisor alone, which ends them in order
                 )
@@ -169,7 +173,10 @@ class Supervisor:
             if time.monotonic() >= child.restart_at:
                 self._launch(child)
             return
-        if child.process is None or child.process.poll() is None:
+        if child.process is None:
+            return
+        if child.process.poll() is None:
+            self._bound_log(child)
             return
         if time.monotonic() - child.started_at > _HEALTHY_AFTER_S:
             child.delay_s = _FIRST_DELAY_S
@@ -177,6 +184,14 @@ class Supervisor:
         self._say(f"{child.program.name} ended ({ending}); starting it again in {child.delay_s:g} s")
         child.restart_at = time.monotonic() + child.delay_s
         child.delay_s = min(2 * child.delay_s, _LONGEST_DELAY_S)
+
+    def _bound_log(self, child: _Child) -> None:
+        path = self.log_path(child.program.name)
+        # A full disk, or a file that was taken away, is no reason to leave the programs alone.
+        with contextlib.suppress(OSError):
+            if path.stat().st_size > _LOG_LIMIT_BYTES:
+                start_anew(path)
+                child.log_start = 0
 
     def _reap(self, child: _Child) -> None:
         if child.process is None:
@@ -187,6 +202,11 @@ class Supervisor:
             self._say(f"{child.program.name} did not stop within {child.program.stop_timeout_s:.0f} s and is killed")
             child.process.kill()
             child.process.wait()
+
+
+def _environment(program: Program) -> dict[str, str]:
+    inherited = {name: value for name, value in os.environ.items() if not name.startswith(program.withheld)}
+    return {**inherited, **program.environment}
 
 
 def _groups(children: Sequence[_Child]) -> list[list[_Child]]:
