@@ -33,6 +33,7 @@
     ├── OverLimitError              over_service_limit    more time or memory than the service grants
     ├── TooLargeError               body_too_large        more bytes than the limit
     ├── UnusableModelError          unusable_model        the artifact is no model
+    ├── ObjectDamagedError          object_damaged        the bytes under a key are not those that were stored
     ├── QueueUnavailableError       queue_unavailable     Redis or Valkey does not answer
     ├── DatabaseUnavailableError    database_unavailable  the database does not answer, or is locked for too long
     ├── StoreUnavailableError       store_unavailable     the object store can't be written
@@ -86,6 +87,12 @@ class ObjectNotFoundError(NotFoundError):
     """The store holds nothing under that key."""
 
     code = "object_not_found"
+
+
+class ObjectDamagedError(JobkitError):
+    """The bytes under a key are not those that were stored."""
+
+    code = "object_damaged"
 
 
 class WebhookNotFoundError(NotFoundError):

@@ -21,6 +21,8 @@ from jobkit.tables import JobRow, MeshRow
 
 # Code of the problem of a mesh whose bytes are gone from the store.
 MESH_MISSING = "mesh_missing"
+# The same of one whose bytes have changed there.
+MESH_DAMAGED = "mesh_damaged"
 # Analyses before a mesh is given up.
 MAX_ANALYSES = 3
 
@@ -144,7 +146,7 @@ class Meshes:
                 row = MeshRow(id=stored.sha256, key=stored.key, size_bytes=stored.size_bytes, created_at=now, attempt=0)
                 session.add(row)
                 restart(row, filename, mesh_format)
-            elif is_missing(row):
+            elif is_missing(row) or _is_damaged(row):
                 restart(row, filename or row.filename, row.format)
             elif row.state == MeshState.REJECTED and mesh_format not in (None, row.format):
                 restart(row, filename, mesh_format)
@@ -186,6 +188,10 @@ class Meshes:
 def is_missing(row: MeshRow) -> bool:
     """Tell whether a sweep found that the bytes of the mesh are gone."""
     return row.problem is not None and row.problem.get("code") == MESH_MISSING
+
+
+def _is_damaged(row: MeshRow) -> bool:
+    return row.problem is not None and row.problem.get("code") == MESH_DAMAGED
 
 
 def restart(row: MeshRow, filename: str | None, mesh_format: str | None) -> None:

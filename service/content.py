@@ -1,6 +1,7 @@
-"""Stored bytes over HTTP: ranges (RFC 9110), strong entity tags, file names.
+"""Stored bytes over HTTP: ranges (RFC 9110), strong entity tags, digests (RFC 9530), file names.
 
-What lies in the store under one key never changes, so its sha256 is its entity tag.
+What lies in the store under one key never changes, so its sha256 is its entity tag. Bytes that are damaged
+there are never sent whole: the answer breaks off before its end.
 """
 
 import re
@@ -12,6 +13,7 @@ from urllib.parse import quote
 from starlette.requests import Request
 from starlette.responses import Response, StreamingResponse
 
+from jobkit.digests import digest_field, verified_chunks
 from jobkit.store import ObjectStore
 from service.problems import ProblemError
 
@@ -52,6 +54,7 @@ def content_response(request: Request, store: ObjectStore, content: Content) -> 
     """
     headers = {
         "ETag": f'"{content.sha256}"',
+        "Repr-Digest": digest_field(content.sha256),
         "Accept-Ranges": "bytes",
         "Cache-Control": "private, max-age=31536000, immutable",
         "Content-Disposition": content_disposition(content.filename),
@@ -61,7 +64,7 @@ def content_response(request: Request, store: ObjectStore, content: Content) -> 
     span = _asked_range(request, content)
     if span is None:
         headers["Content-Length"] = str(content.size_bytes)
-        chunks = store.read(content.key)
+        chunks = verified_chunks(store.read(content.key), content.sha256)
         return StreamingResponse(chunks, HTTPStatus.OK, headers, content.media_type)
     start, length = span
     headers["Content-Range"] = f"bytes {start}-{start + length - 1}/{content.size_bytes}"

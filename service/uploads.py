@@ -11,6 +11,7 @@ from starlette.concurrency import run_in_threadpool
 
 from jobkit.errors import TooLargeError
 from jobkit.store import ObjectStore, ObjectWriter, StoredObject
+from service.digests import CheckedBody, refuse_coding
 from service.multipart import PartData, PartStart, malformed_multipart, read_parts
 from service.problems import ProblemError, invalid_request
 
@@ -63,9 +64,12 @@ async def receive_upload(request: Request, store: ObjectStore, rules: UploadRule
     TooLargeError
         If the file is larger than the limit; at once where the client has stated its size.
     ProblemError
-        415 for a body of another type, 400 for an empty file or a broken multipart body, 422 for missing or unknown
+        415 for a body of another type or with a coding, 400 for an empty file, a broken multipart body or a digest that
+        does not fit, 422 for missing or unknown
         parts.
     """
+    refuse_coding(request)
+    body = CheckedBody(request)
     kind, _ = parse_options_header(request.headers.get("content-type", ""))
     is_multipart = kind == b"multipart/form-data"
     stated = request.headers.get("content-length", "")
@@ -73,7 +77,7 @@ async def receive_upload(request: Request, store: ObjectStore, rules: UploadRule
     if stated.isdecimal() and int(stated) > most:
         raise TooLargeError(f"the body has {stated} bytes; the limit is {rules.max_bytes}")
     if is_multipart:
-        return await _receive_multipart(request, store, rules)
+        return await _receive_multipart(request, body, store, rules)
     media_type = kind.decode("latin-1")
     if not rules.allows_raw or not (media_type in _RAW_TYPES or media_type.startswith("model/")):
         accepted = "multipart/form-data" + (", application/octet-stream or model/*" if rules.allows_raw else "")
@@ -82,27 +86,30 @@ async def receive_upload(request: Request, store: ObjectStore, rules: UploadRule
             "unsupported_media_type",
             f"the body must be {accepted}; it is {media_type or 'of no stated type'}",
         )
-    return await _receive_raw(request, store, rules, media_type)
+    return await _receive_raw(request, body, store, rules)
 
 
-async def _receive_raw(request: Request, store: ObjectStore, rules: UploadRules, media_type: str) -> Upload:
+async def _receive_raw(request: Request, body: CheckedBody, store: ObjectStore, rules: UploadRules) -> Upload:
     is_empty = True
     with store.writer(rules.prefix, rules.max_bytes) as writer:
-        async for chunk in request.stream():
+        async for chunk in body.stream():
             is_empty = is_empty and not chunk
             await run_in_threadpool(writer.write, chunk)
         if is_empty:
             raise _empty_file()
+        body.check()
         stored = await run_in_threadpool(writer.commit)
     _, options = parse_options_header(request.headers.get("content-disposition", ""))
     filename = options.get(b"filename")
-    return Upload(stored, None if filename is None else unquote(filename.decode("utf-8", "replace")), media_type)
+    media_type, _ = parse_options_header(request.headers.get("content-type", ""))
+    name = None if filename is None else unquote(filename.decode("utf-8", "replace"))
+    return Upload(stored, name, media_type.decode("latin-1"))
 
 
-async def _receive_multipart(request: Request, store: ObjectStore, rules: UploadRules) -> Upload:
+async def _receive_multipart(request: Request, body: CheckedBody, store: ObjectStore, rules: UploadRules) -> Upload:
     with store.writer(rules.prefix, rules.max_bytes) as writer:
         sorter = _PartSorter(rules, writer)
-        async for event in read_parts(request.headers["content-type"], request.stream()):
+        async for event in read_parts(request.headers["content-type"], body.stream()):
             if isinstance(event, PartStart):
                 sorter.start(event)
             elif isinstance(event, PartData):
@@ -111,6 +118,7 @@ async def _receive_multipart(request: Request, store: ObjectStore, rules: Upload
             raise _part_error(rules.file_part, "Field required", "missing")
         if sorter.is_empty:
             raise _empty_file()
+        body.check()
         stored = await run_in_threadpool(writer.commit)
     return Upload(stored, sorter.filename, "", {name: bytes(value) for name, value in sorter.fields.items()})
 

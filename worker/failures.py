@@ -17,6 +17,7 @@ Codes made here, besides those of `quadpatch.errors`, which pass through:
     disk_error                  the disk of the worker can't be used; the attempt is not counted
     store_unavailable           the object store can't be read or written; the attempt is not counted
     mesh_missing                the mesh is gone from the store
+    mesh_damaged                the bytes of the mesh in the store are not those that were uploaded
     model_missing               the model is gone from the registry or the store
     model_damaged               the bytes of the model are not those that were published
     result_too_large            a file of the result is over the limit

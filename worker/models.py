@@ -5,6 +5,7 @@ import os
 import tempfile
 from pathlib import Path
 
+from jobkit.digests import sha256_of
 from jobkit.errors import NotFoundError
 from jobkit.registry import Registry
 from jobkit.schema import ResolvedModel
@@ -39,7 +40,8 @@ def model_argument(model: ResolvedModel, registry: Registry, store: ObjectStore,
     try:
         artifact = registry.artifact(model.name, model.version)
         path = cache / f"{artifact.sha256}.{artifact.format}"
-        if not path.exists():
+        # A disk may lose bits in the cache as well.
+        if not path.exists() or sha256_of(path) != artifact.sha256:
             _fetch(store, artifact.key, artifact.sha256, path)
     except NotFoundError as error:
         message = f"model {model.name}@{model.version} is gone from the registry or the store"

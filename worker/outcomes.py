@@ -6,8 +6,9 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TypeVar
 
-from jobkit.errors import NotFoundError, StoreUnavailableError
-from jobkit.meshes import MeshSource
+from jobkit.digests import verified_file
+from jobkit.errors import NotFoundError, ObjectDamagedError, StoreUnavailableError
+from jobkit.meshes import MESH_DAMAGED, MeshSource
 from worker.context import Context
 from worker.failures import (
     EngineFailedError,
@@ -60,13 +61,16 @@ def folder_with_mesh(context: Context, source: MeshSource) -> Iterator[Path]:
     Raises
     ------
     EngineFailedError
-        If the mesh is gone from the store.
+        If the mesh is gone from the store, or its bytes are not those that were uploaded.
     """
     with request_folder(context.work_folder) as folder:
         try:
-            with context.store.local_file(source.key) as path:
+            with verified_file(context.store, source.key, source.mesh_id) as path:
                 (folder / MESH_FOLDER).mkdir()
                 (folder / source_name(source)).symlink_to(path)
                 yield folder
         except NotFoundError as error:
             raise EngineFailedError(Failure("mesh_missing", "the mesh is gone from the store")) from error
+        except ObjectDamagedError as error:
+            message = "the bytes of the mesh in the store are not those that were uploaded; upload it again"
+            raise EngineFailedError(Failure(MESH_DAMAGED, message)) from error

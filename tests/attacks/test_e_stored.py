@@ -1,0 +1,158 @@
+"""Letter E: what is stored is what was sent; damage in the store reaches no job and no client as if it were whole."""
+
+import base64
+import gzip
+import hashlib
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+from starlette.testclient import TestClient
+
+from jobkit.database import Database
+from jobkit.digests import verified_chunks
+from jobkit.errors import ObjectDamagedError
+from jobkit.jobs import Jobs, NewJob
+from jobkit.meshes import MESH_DAMAGED, Meshes
+from jobkit.schema import JobSpec, JobState, MeshState, ResolvedModel
+from jobkit.settings import Settings
+from jobkit.store import CHUNK_BYTES, ObjectStore, StoredObject
+from service.app import create_app
+from tests.integration.conftest import ply_bytes, punched_relief
+from tests.worker.test_repairs import working
+from worker.jobs import inspect_mesh, run_job
+
+DATA = b"ply\nformat binary_little_endian 1.0\n"
+BOUNDARY = "frontier"
+
+
+@pytest.fixture
+def client(settings: Settings) -> Iterator[TestClient]:
+    with TestClient(create_app(settings), base_url="http://127.0.0.1", raise_server_exceptions=False) as client:
+        yield client
+
+
+@pytest.fixture
+def damage(store: ObjectStore, tmp_path: Path) -> Callable[[str], None]:
+    """Flip four bytes in the middle of an object, as a disk may."""
+
+    def flip(key: str) -> None:
+        data = bytearray(b"".join(store.read(key)))
+        for place in range(len(data) // 2, len(data) // 2 + 4):
+            data[place] ^= 0x10
+        path = tmp_path / "damaged"
+        path.write_bytes(data)
+        store.put_file(key, path)
+
+    return flip
+
+
+def stored_mesh(store: ObjectStore) -> StoredObject:
+    with store.writer("meshes") as writer:
+        writer.write(ply_bytes(*punched_relief(20, 1)))
+        return writer.commit()
+
+
+def digest(data: bytes, algorithm: str = "sha256") -> str:
+    return f"sha-{algorithm[3:]}=:{base64.b64encode(hashlib.new(algorithm, data).digest()).decode()}:"
+
+
+def test_a_job_on_a_damaged_mesh_fails_and_says_so(
+    settings: Settings, database: Database, store: ObjectStore, damage: Callable[[str], None]
+) -> None:
+    stored = stored_mesh(store)
+    mesh = Meshes(database).add(stored, "scan.ply", "ply")[0]
+    spec = JobSpec.model_validate({"mesh_id": mesh.id, "method": {"method": "smooth"}, "output": {"preview": False}})
+    job = Jobs(database).create(NewJob(spec, ResolvedModel(requested="smooth", kind="none"), 3))[0]
+    damage(stored.key)
+    with working(settings, database, store) as context:
+        run_job(job.id)
+        ended = context.jobs.get(job.id)
+    assert ended.state is JobState.FAILED
+    assert ended.error is not None
+    assert (ended.error.code, ended.error.retryable) == (MESH_DAMAGED, False)
+
+
+def test_a_damaged_mesh_is_analysed_again_once_its_bytes_come_back(
+    settings: Settings, database: Database, store: ObjectStore, damage: Callable[[str], None]
+) -> None:
+    stored, meshes = stored_mesh(store), Meshes(database)
+    mesh = meshes.add(stored, "scan.ply", "ply")[0]
+    damage(stored.key)
+    with working(settings, database, store):
+        inspect_mesh(mesh.id)
+        rejected = meshes.get(mesh.id)
+        assert rejected.state is MeshState.REJECTED
+        assert rejected.problem is not None
+        assert rejected.problem.code == MESH_DAMAGED
+        meshes.add(stored_mesh(store), "scan.ply", "ply")
+        inspect_mesh(mesh.id)
+        assert meshes.get(mesh.id).state is MeshState.READY
+
+
+@pytest.mark.parametrize("length", [0, 1, CHUNK_BYTES, 3 * CHUNK_BYTES + 1])
+def test_the_last_chunk_comes_only_if_all_are_right(length: int) -> None:
+    data = bytes(length)
+    chunks = [data[i : i + CHUNK_BYTES] for i in range(0, length, CHUNK_BYTES)]
+    assert b"".join(verified_chunks(chunks, hashlib.sha256(data).hexdigest())) == data
+    received = bytearray()
+    with pytest.raises(ObjectDamagedError):
+        received.extend(byte for chunk in verified_chunks(chunks, "0" * 64) for byte in chunk)
+    assert len(received) <= max(0, length - 1)
+
+
+def test_content_states_its_digest_and_damaged_content_is_not_sent_whole(
+    client: TestClient, damage: Callable[[str], None]
+) -> None:
+    mesh_id = client.post("/v1/meshes?filename=a.ply", content=DATA).json()["id"]
+    path = f"/v1/meshes/{mesh_id}/content"
+    answer = client.get(path)
+    assert answer.content == DATA
+    assert answer.headers["repr-digest"] == digest(DATA)
+    part = client.get(path, headers={"Range": "bytes=1-2"})
+    assert (part.status_code, part.headers["repr-digest"]) == (206, digest(DATA))
+    damage(f"meshes/{mesh_id[:2]}/{mesh_id}")
+    assert len(client.get(path).content) < len(DATA)
+
+
+def form(data: bytes) -> tuple[bytes, str]:
+    head = f'--{BOUNDARY}\r\nContent-Disposition: form-data; name="file"; filename="a.ply"\r\n\r\n'
+    return head.encode() + data + f"\r\n--{BOUNDARY}--\r\n".encode(), f"multipart/form-data; boundary={BOUNDARY}"
+
+
+@pytest.mark.parametrize("header", ["Content-Digest", "Repr-Digest"])
+@pytest.mark.parametrize("algorithm", ["sha256", "sha512"])
+@pytest.mark.parametrize("is_form", [False, True])
+def test_a_stated_digest_is_held_against_what_arrived(
+    client: TestClient, store: ObjectStore, header: str, algorithm: str, is_form: bool
+) -> None:
+    body, media_type = form(DATA) if is_form else (DATA, "model/ply")
+    headers = {"Content-Type": media_type}
+    wrong = client.post("/v1/meshes", content=body, headers={**headers, header: digest(body + b"x", algorithm)})
+    assert (wrong.status_code, wrong.json()["code"]) == (400, "digest_mismatch")
+    assert list(store.keys("meshes")) == []
+    right = client.post(
+        "/v1/meshes", content=body, headers={**headers, header: "md5=:AAAA:, " + digest(body, algorithm)}
+    )
+    assert right.status_code == 201
+
+
+@pytest.mark.parametrize("value", ["sha-256=abc", "sha-256", ":", "sha-256=:a:", 'sha-256="x"', "sha-256=:$$$$:"])
+def test_a_digest_that_cannot_be_read_is_refused(client: TestClient, value: str) -> None:
+    answer = client.post("/v1/meshes", content=DATA, headers={"Content-Digest": value})
+    assert (answer.status_code, answer.json()["code"]) == (400, "malformed_digest")
+
+
+@pytest.mark.parametrize("coding", ["gzip", "GZIP", "br", "deflate", "gzip, gzip", "zstd", "identity, gzip"])
+@pytest.mark.parametrize("path", ["/v1/meshes", "/v1/models/ripples/versions"])
+def test_a_coded_body_is_refused_and_never_stored(
+    client: TestClient, store: ObjectStore, coding: str, path: str
+) -> None:
+    answer = client.post(path, content=gzip.compress(DATA), headers={"Content-Encoding": coding})
+    assert answer.status_code == 415, answer.text
+    assert (answer.json()["code"], answer.headers["accept-encoding"]) == ("unsupported_encoding", "identity")
+    assert list(store.keys("meshes")) == []
+
+
+def test_a_body_whose_coding_is_named_identity_is_taken(client: TestClient) -> None:
+    assert client.post("/v1/meshes", content=DATA, headers={"Content-Encoding": "identity"}).status_code == 201
