@@ -4,13 +4,13 @@ import hashlib
 import hmac
 import ipaddress
 from http import HTTPStatus
-from urllib.parse import urlsplit
 
 from starlette.requests import Request
 from starlette.types import ASGIApp, Receive, Scope, Send
 
 from jobkit.errors import SettingsError
 from jobkit.settings import Settings
+from service.authority import Authority, parse_origin, plain_host, requested_authority
 from service.problems import ProblemError, problem_response
 
 PUBLIC_PATHS = frozenset({"/", "/healthz", "/readyz", "/openapi.yaml", "/openapi.json"})
@@ -64,7 +64,7 @@ class AuthMiddleware:
         self._app = app
         self._keys = KeyRing(settings.key_list) if settings.key_list else None
         self._public_paths = public_paths(settings)
-        self._own_names = _LOCAL_NAMES | {settings.host}
+        self._own_names = _LOCAL_NAMES | {plain_host(settings.host)}
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Pass the request on, or answer it with 401 or 403."""
@@ -80,10 +80,11 @@ class AuthMiddleware:
         await self._app(scope, receive, send)
 
     def _principal(self, request: Request) -> str:
+        authority = requested_authority(request.scope)
         if self._keys is None:
-            self._refuse_strange_pages(request)
+            self._refuse_strange_pages(request, authority)
             return LOCAL_PRINCIPAL
-        if request.url.path in self._public_paths:
+        if request.scope["path"] in self._public_paths:
             return "anonymous"
         principal = self._keys.principal(presented_key(request))
         if principal is None:
@@ -95,17 +96,17 @@ class AuthMiddleware:
             )
         return principal
 
-    def _refuse_strange_pages(self, request: Request) -> None:
+    def _refuse_strange_pages(self, request: Request, authority: Authority | None) -> None:
         # A page from elsewhere can make the user's browser call this machine. Its name then stands in Origin, or,
-        # when it has bent its own name to 127.0.0.1, in Host.
-        if request.url.hostname not in self._own_names:
+        # when its own name was made to mean 127.0.0.1, in Host.
+        if authority is None or authority.host not in self._own_names:
             raise ProblemError(
                 HTTPStatus.FORBIDDEN, "foreign_host", "without API keys this service answers to its local names only"
             )
         origin = request.headers.get("origin")
-        if request.method not in _SAFE_METHODS and origin is not None and urlsplit(origin).netloc != request.url.netloc:
+        if request.method not in _SAFE_METHODS and origin is not None and parse_origin(origin) != authority:
             raise ProblemError(
-                HTTPStatus.FORBIDDEN, "foreign_origin", f"pages of {origin} may not change anything here"
+                HTTPStatus.FORBIDDEN, "foreign_origin", "pages of another origin may not change anything here"
             )
 
 

@@ -53,7 +53,7 @@ class FrameMiddleware:
             try:
                 await self._app(scope, receive, send_with_headers)
             except Exception:
-                _logger.exception("%s %s failed", request.method, request.url.path)
+                _logger.exception("%s %s failed", request.method, scope["path"])
                 if has_started:
                     raise  # the connection breaks, so that the client sees that the body is not whole
                 await problem_response(request, internal_error())(scope, receive, send_with_headers)

@@ -45,13 +45,13 @@ def install_handlers(app: FastAPI, routes: Sequence[BaseRoute]) -> None:
 
     @app.exception_handler(HTTPException)
     async def on_http_error(request: Request, error: HTTPException) -> Response:
-        status = HTTPStatus(error.status_code)
+        status, path = HTTPStatus(error.status_code), request.scope["path"]
         headers = dict(error.headers or {})
         if status == HTTPStatus.METHOD_NOT_ALLOWED:
-            headers["Allow"] = ", ".join(allowed_methods(routes, request.url.path))
+            headers["Allow"] = ", ".join(allowed_methods(routes, path))
         details = {
-            HTTPStatus.NOT_FOUND: f"there is nothing at {request.url.path}",
-            HTTPStatus.METHOD_NOT_ALLOWED: f"{request.method} is not possible at {request.url.path}",
+            HTTPStatus.NOT_FOUND: f"there is nothing at {path}",
+            HTTPStatus.METHOD_NOT_ALLOWED: f"{request.method} is not possible at {path}",
         }
         detail = details.get(status, str(error.detail))
         return problem_response(request, ProblemError(status, _CODES.get(status, "http_error"), detail, headers))

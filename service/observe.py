@@ -44,7 +44,7 @@ class ObserveMiddleware:
             return
         request = Request(scope)
         method = request.method if request.method in _METHODS else "other"
-        if request.url.path in _UNTRACED:
+        if scope["path"] in _UNTRACED:
             await self._observed(method, Span(), scope, receive, send)
             return
         parent = request.headers.get("traceparent")
