@@ -14,7 +14,7 @@ from contextlib import closing
 from datetime import timedelta
 
 from dispatcher.outbox import Claim, claim_due, is_anything_due, note_answer
-from dispatcher.sending import Sender
+from dispatcher.sending import Answer, Sender
 from jobkit.clock import utc_now
 from jobkit.database import Database
 from jobkit.deliveries import Deliveries
@@ -94,6 +94,10 @@ class _Round:
                 _log.warning("delivery %s: %s", claim.delivery_id, error, exc_info=error)
 
     async def _send(self, claim: Claim) -> None:
-        answer = await self._sender.send(claim.outgoing)
+        try:
+            answer = await self._sender.send(claim.outgoing)
+        except Exception as error:  # noqa: BLE001 - a try that is not noted as one is made again for ever
+            _log.exception("delivery %s can't be sent", claim.delivery_id)
+            answer = Answer(None, f"it can't be sent ({type(error).__name__})", None, 0)
         await asyncio.to_thread(note_answer, self._database, claim, answer, random.random())
         self.outcomes["delivered" if answer.is_delivered else "failed"] += 1

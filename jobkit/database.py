@@ -10,6 +10,8 @@ the WHERE of the UPDATE, or the row is locked while it is read (`with_for_update
 """
 
 import fcntl
+import json
+import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -25,6 +27,7 @@ from sqlalchemy.exc import TimeoutError as PoolTimeoutError
 from sqlalchemy.orm import Session
 
 from jobkit.errors import DatabaseUnavailableError, SettingsError
+from jobkit.text import encodable
 
 BUSY_TIMEOUT_MS = 20_000
 # Any number will do, as long as all processes of this project take the same one.
@@ -32,6 +35,8 @@ _MIGRATION_LOCK = 0x51554144
 _SUPPORTED = ("sqlite", "postgresql")
 # PostgreSQL sorts two outages under internal errors: a standby that takes no writes, a transaction that idled away.
 _OUTAGES = ("25006", "25P03")
+# How JSON writes half of a surrogate pair, and characters beyond the first 65,536, which are pairs of them.
+_SURROGATE = re.compile(r"\\u[dD][89a-fA-F]")
 # More threads than connections wait for each other here, which is cheaper than in the server.
 _POOL = {"pool_pre_ping": True, "pool_size": 10, "max_overflow": 10, "pool_timeout": 10.0}
 _POSTGRES_PARAMETERS = {
@@ -124,6 +129,22 @@ class Database:
                     cursor.close()
 
 
+def write_json(value: Any) -> str:
+    """Write the value of a JSON column."""
+    text = json.dumps(value)
+    return json.dumps(encodable(value)) if _SURROGATE.search(text) else text
+
+
+def read_json_column(text: str | bytes) -> Any:
+    """Read the value of a JSON column. Rows of earlier versions may hold what has no encoding: it is replaced."""
+    text = text.decode() if isinstance(text, bytes) else text
+    value = json.loads(text)
+    return encodable(value) if _SURROGATE.search(text) else value
+
+
+_JSON = {"json_serializer": write_json, "json_deserializer": read_json_column}
+
+
 def migration_config() -> Config:
     """Return Alembic's configuration without a file."""
     config = Config()
@@ -166,11 +187,11 @@ def _make_engine(url: str) -> Engine:
     if parsed.get_backend_name() not in _SUPPORTED:
         raise SettingsError(f"database {parsed.get_backend_name()!r} is not supported; use {' or '.join(_SUPPORTED)}")
     if parsed.get_backend_name() != "sqlite":
-        return create_engine(parsed.set(query={**_POSTGRES_PARAMETERS, **parsed.query}), **_POOL)
+        return create_engine(parsed.set(query={**_POSTGRES_PARAMETERS, **parsed.query}), **_POOL, **_JSON)
     if not parsed.database or parsed.database == ":memory:":
         raise SettingsError("SQLite needs a file: processes can't share a database in memory")
     Path(parsed.database).parent.mkdir(parents=True, exist_ok=True)
-    engine = create_engine(parsed)
+    engine = create_engine(parsed, **_JSON)
     event.listen(engine, "connect", _set_up_sqlite)
     event.listen(engine, "begin", _begin_sqlite)
     return engine

@@ -10,6 +10,7 @@ from jobkit.clock import utc_now
 from jobkit.database import Database
 from jobkit.errors import DeliveryNotFoundError, DeliveryPendingError, WebhookDisabledError
 from jobkit.outbox import new_delivery
+from jobkit.readable import readable
 from jobkit.schema import (
     Delivery,
     DeliveryDetail,
@@ -59,9 +60,8 @@ class Deliveries:
             existing_webhook(session, webhook_id)
             rows = list(session.scalars(query))
         next_cursor = rows[limit - 1].id if len(rows) > limit else None
-        return DeliveryPage(
-            items=[Delivery.model_validate(_wire(row)) for row in rows[:limit]], next_cursor=next_cursor
-        )
+        items = list(readable(rows[:limit], lambda row: Delivery.model_validate(_wire(row))))
+        return DeliveryPage(items=items, next_cursor=next_cursor)
 
     def get(self, webhook_id: str, delivery_id: str) -> DeliveryDetail:
         """Return a delivery with its tries; raise WebhookNotFoundError or DeliveryNotFoundError."""

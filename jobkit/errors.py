@@ -40,17 +40,31 @@
     └── StaleAttemptError           stale_attempt         the job has moved on; this attempt may write no more
 """
 
+from jobkit.text import printable
+
 
 class JobkitError(Exception):
-    """Base of all errors of the contract; `code` is stable and meant for programs."""
+    """Base of all errors of the contract; `code` is stable and meant for programs.
+
+    Parameters
+    ----------
+    message : str
+        For people, in one line; words of others may stand in it as they are.
+    """
 
     code = "jobkit_error"
 
+    def __init__(self, message: str = "") -> None:
+        super().__init__(printable(message))
+
 
 class SettingsError(JobkitError):
-    """A setting is wrong, or its name is."""
+    """A setting is wrong, or its name is; its message, for the operator alone, is never cut."""
 
     code = "invalid_settings"
+
+    def __init__(self, message: str = "") -> None:
+        Exception.__init__(self, message)
 
 
 class NotFoundError(JobkitError):

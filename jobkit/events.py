@@ -1,15 +1,20 @@
 """The event log of a job: append with the change itself, read from anywhere."""
 
+import logging
 from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import datetime
 from typing import Any
 
-from sqlalchemy import select
+from pydantic import ValidationError
+from sqlalchemy import Row, select
 from sqlalchemy.orm import Session
 
+from jobkit.readable import readable
 from jobkit.schema import Event, EventType, JobState
 from jobkit.tables import EventRow, JobRow
+
+_log = logging.getLogger("quadpatch.rows")
 
 
 def append_event(session: Session, job_id: str, kind: EventType, at: datetime, data: dict[str, Any]) -> None:
@@ -29,7 +34,16 @@ def read_events(session: Session, job_id: str, after: int, limit: int) -> list[E
         .order_by(EventRow.sequence)
         .limit(limit)
     )
-    return [Event.model_validate(row, from_attributes=True) for row in rows]
+    return list(readable(rows, _to_event))
+
+
+def _to_event(row: EventRow) -> Event:
+    """Return the row as clients see it; where its data can't be read, they get its number and type all the same."""
+    try:
+        return Event.model_validate(row, from_attributes=True)
+    except ValidationError:
+        _log.error("the data of event %d of job %s can't be read", row.sequence, row.job_id)
+        return Event.model_validate({"sequence": row.sequence, "type": row.type, "at": row.at, "attempt": row.attempt})
 
 
 @dataclass(frozen=True)
@@ -65,9 +79,10 @@ def read_news(session: Session, watched: Mapping[str, int], limit: int) -> dict[
         For each job that is still there.
     """
     rows = session.execute(select(JobRow.id, JobRow.revision, JobRow.state).where(JobRow.id.in_(watched))).all()
-    news = {}
-    for job_id, revision, state in rows:
-        has_changed = revision > watched[job_id]
-        events = read_events(session, job_id, watched[job_id], limit) if has_changed else []
-        news[job_id] = News(events, JobState(state).is_terminal and len(events) < limit)
-    return news
+
+    def look(row: Row[str, int, str]) -> tuple[str, News]:
+        job_id, revision, state = row
+        events = read_events(session, job_id, watched[job_id], limit) if revision > watched[job_id] else []
+        return job_id, News(events, JobState(state).is_terminal and len(events) < limit)
+
+    return dict(readable(rows, look))

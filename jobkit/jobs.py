@@ -13,6 +13,7 @@ from jobkit.errors import IdempotencyError, JobFinishedError, JobNotFoundError, 
 from jobkit.events import append_event, read_events
 from jobkit.ids import new_job_id
 from jobkit.job_rows import existing_job, to_job
+from jobkit.readable import readable
 from jobkit.schema import EventPage, Job, JobPage, JobSpec, JobState, ResolvedModel
 from jobkit.tables import IdempotencyRow, JobRow, MeshRow
 from jobkit.transitions import Move, make_move
@@ -119,17 +120,22 @@ class Jobs:
         return found[job_id]
 
     def glances(self, job_ids: Collection[str]) -> dict[str, Glance]:
-        """Return the same for many jobs; those that are not there are left out."""
+        """Return the same for many jobs; those that are not there, or can't be read, are left out."""
         with self._database.read() as session:
             rows = session.execute(_GLANCES, {"ids": list(job_ids)}).all()
-        return {job_id: Glance(revision, JobState(state), is_pinned) for job_id, revision, state, is_pinned in rows}
+        return dict(readable(rows, lambda row: (row.id, Glance(row.revision, JobState(row.state), row.pinned))))
+
+    def unfinished(self, job_ids: Collection[str]) -> set[str]:
+        """Return those of the jobs that have not ended."""
+        return {job_id for job_id, glance in self.glances(job_ids).items() if not glance.state.is_terminal}
 
     def get_many(self, job_ids: Collection[str]) -> dict[str, Job]:
-        """Return jobs by their ids; those that are not there are left out."""
+        """Return jobs by their ids; those that are not there, or can't be read, are left out."""
         if not job_ids:
             return {}
         with self._database.read() as session:
-            return {row.id: self._show(row) for row in session.scalars(select(JobRow).where(JobRow.id.in_(job_ids)))}
+            rows = session.scalars(select(JobRow).where(JobRow.id.in_(job_ids)))
+            return {job.id: job for job in readable(rows, self._show)}
 
     def page(self, limit: int, cursor: str | None = None, state: JobState | None = None) -> JobPage:
         """Return jobs, newest first.
@@ -151,7 +157,7 @@ class Jobs:
         with self._database.read() as session:
             rows = list(session.scalars(query))
         next_cursor = rows[limit - 1].id if len(rows) > limit else None
-        return JobPage(items=[self._show(row) for row in rows[:limit]], next_cursor=next_cursor)
+        return JobPage(items=list(readable(rows[:limit], self._show)), next_cursor=next_cursor)
 
     def request_cancel(self, job_id: str) -> Job:
         """Cancel a queued job at once, ask a running one to stop; a second call changes nothing.

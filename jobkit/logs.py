@@ -15,9 +15,12 @@ from types import MappingProxyType
 from typing import TextIO
 
 from jobkit.settings import Settings
+from jobkit.text import printable
 
 # In the order in which they stand in a line.
 FIELDS = ("request_id", "job_id", "mesh_id", "attempt", "worker")
+_LONGEST_MESSAGE = 4000
+_LONGEST_TRACEBACK = 20_000
 _TEXT = "%(asctime)s %(levelname)s %(name)s: %(message)s"
 _NOTHING: Mapping[str, object] = MappingProxyType({})
 _SUBJECT: ContextVar[Mapping[str, object]] = ContextVar("subject of log lines", default=_NOTHING)
@@ -74,14 +77,15 @@ class JsonFormatter(logging.Formatter):
             "time": datetime.fromtimestamp(record.created, UTC).isoformat(timespec="milliseconds"),
             "level": record.levelname.lower(),
             "logger": record.name,
-            "message": record.getMessage(),
+            "message": _cut(record.getMessage(), _LONGEST_MESSAGE),
             **_subject_of(record),
         }
         if record.exc_info:
-            values["traceback"] = self.formatException(record.exc_info)
+            values["traceback"] = _cut(self.formatException(record.exc_info), _LONGEST_TRACEBACK)
         if record.stack_info:
             values["stack"] = self.formatStack(record.stack_info)
-        return json.dumps(values, ensure_ascii=False, default=str)
+        # In ASCII: no encoding of a terminal or a file refuses it, and no control character reaches either.
+        return json.dumps(values, default=str)
 
 
 class TextFormatter(logging.Formatter):
@@ -93,7 +97,18 @@ class TextFormatter(logging.Formatter):
     def formatMessage(self, record: logging.LogRecord) -> str:  # noqa: N802 - the name is logging's
         """Write the line before a traceback."""
         about = " ".join(f"{name}={value}" for name, value in _subject_of(record).items())
+        record.message = printable(record.message.rstrip("\n"), _LONGEST_MESSAGE)
         return super().formatMessage(record) + (f" [{about}]" if about else "")
+
+    def formatException(self, ei: object) -> str:  # noqa: N802 - the name is logging's
+        """Write a traceback, indented: words of a file in it can't pass for lines of the log."""
+        lines = super().formatException(ei).split("\n")  # type: ignore[arg-type]
+        return "\n".join(f"    {printable(line, _LONGEST_MESSAGE)}" for line in lines)
+
+
+def _cut(text: str, longest: int) -> str:
+    """Leave out the middle: what was raised stands at the end."""
+    return text if len(text) <= longest else f"{text[: longest // 2]}…{text[-longest // 2 :]}"
 
 
 def _add_subject(record: logging.LogRecord) -> bool:

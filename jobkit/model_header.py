@@ -4,7 +4,6 @@ A safetensors file is 8 bytes of length (little endian), a JSON header of that l
 header is read. A network is only recognised here: whoever runs it checks it in depth.
 """
 
-import json
 import math
 from pathlib import Path
 from typing import Any, Literal, TypeGuard
@@ -13,6 +12,7 @@ from pydantic import ValidationError
 
 from jobkit.errors import UnusableModelError
 from jobkit.schema import ModelCard
+from jobkit.strict_json import StrictJsonError, read_json
 
 MAX_HEADER_BYTES = 1 << 20
 MAX_DICTIONARY_BYTES = 256 << 20
@@ -89,16 +89,12 @@ def to_wire_card(card: Card) -> ModelCard:
 
 def _json_object(data: bytes, what: str) -> dict[str, Any]:
     try:
-        value = json.loads(data, parse_constant=_refuse_constant)
-    except (ValueError, RecursionError) as error:
+        value = read_json(data)
+    except StrictJsonError as error:
         raise UnusableModelError(f"{what} is no JSON: {error}") from error
     if not isinstance(value, dict):
         raise UnusableModelError(f"{what} is no JSON object")
     return value
-
-
-def _refuse_constant(name: str) -> float:
-    raise ValueError(f"{name} is no number of JSON")
 
 
 def _check_atoms(tensors: dict[str, Any], card: Card, n_data_bytes: int) -> None:

@@ -5,9 +5,10 @@ stands under the key `card` in field 14, `metadata_props`, of which every entry 
 field, the graph, is skipped by its length.
 """
 
-import json
 from pathlib import Path
 from typing import Any, BinaryIO
+
+from jobkit.strict_json import read_json
 
 _METADATA_PROPS = 14
 _VARINT, _EIGHT_BYTES, _LENGTH, _FOUR_BYTES = 0, 1, 2, 5
@@ -28,7 +29,7 @@ def read_network_card(path: Path) -> dict[str, Any] | None:
     with path.open("rb") as file:
         try:
             return _find_card(file, path.stat().st_size)
-        except (ValueError, RecursionError):
+        except ValueError:
             return None
 
 
@@ -48,13 +49,9 @@ def _find_card(file: BinaryIO, size: int) -> dict[str, Any] | None:
             continue
         key, value = _entry(file.read(length))
         if key == b"card":
-            card = json.loads(value, parse_constant=_refuse_constant)
+            card = read_json(value)
             return card if isinstance(card, dict) else None
     return None
-
-
-def _refuse_constant(name: str) -> float:
-    raise ValueError(f"{name} is no number of JSON")
 
 
 def _entry(data: bytes) -> tuple[bytes, bytes]:

@@ -13,7 +13,8 @@ from sqlalchemy.orm import Session
 from jobkit.clock import shared_now
 from jobkit.ids import new_message_id
 from jobkit.job_rows import existing_job, to_job
-from jobkit.schema import DeliveryState, EventType, Message, WebhookEvent
+from jobkit.readable import readable
+from jobkit.schema import DeliveryState, EventType, Job, Message, WebhookEvent
 from jobkit.tables import DeliveryRow, WebhookRow
 
 EVENTS: Mapping[EventType, WebhookEvent] = MappingProxyType(
@@ -42,10 +43,14 @@ def write_messages(session: Session, job_id: str, change: EventType, at: datetim
     wanted_by = [webhook_id for webhook_id, events in session.execute(query) if event in events]
     if not wanted_by:
         return
-    job = to_job(existing_job(session, job_id))
+    for job in readable([existing_job(session, job_id)], to_job):
+        _leave(session, wanted_by, event, job, at)
+
+
+def _leave(session: Session, wanted_by: list[str], event: WebhookEvent, job: Job, at: datetime) -> None:
     message = Message(type=event, timestamp=at, data={"job": job.model_dump(mode="json", exclude=set(UNTOLD))})
     for webhook_id in wanted_by:
-        session.add(new_delivery(session, webhook_id, message, job_id))
+        session.add(new_delivery(session, webhook_id, message, job.id))
 
 
 def new_delivery(session: Session, webhook_id: str, message: Message, job_id: str | None = None) -> DeliveryRow:

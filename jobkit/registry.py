@@ -17,6 +17,7 @@ from jobkit.database import Database
 from jobkit.errors import ModelNotFoundError, NameTakenError
 from jobkit.model_header import Card, artifact_format, read_dictionary_card, to_wire_card
 from jobkit.network_header import read_network_card
+from jobkit.readable import readable
 from jobkit.removals import assure
 from jobkit.schema import SELF, Alias, Model, ModelKind, ModelLinks, ModelList, ModelVersion
 from jobkit.store import CHUNK_BYTES, ObjectStore, StoredObject
@@ -125,7 +126,8 @@ class Registry:
             names = session.scalars(select(ModelRow.name).distinct().order_by(ModelRow.name)).all()
             aliases = session.scalars(select(AliasRow).order_by(AliasRow.alias))
             return ModelList(
-                models=[_to_model(session, name) for name in names], aliases=[_to_alias(row) for row in aliases]
+                models=list(readable(names, lambda name: _to_model(session, name))),
+                aliases=[_to_alias(row) for row in aliases],
             )
 
     def has_kind(self, kind: ModelKind) -> bool:
@@ -205,7 +207,8 @@ def _to_model(session: Session, name: str) -> Model:
     rows = session.scalars(select(ModelRow).where(ModelRow.name == name).order_by(ModelRow.version.desc())).all()
     if not rows:
         raise ModelNotFoundError(f"there is no model {name!r}")
-    return Model(name=name, latest=rows[0].version, versions=[_to_version(session, row) for row in rows])
+    versions = list(readable(rows, lambda row: _to_version(session, row)))
+    return Model(name=name, latest=rows[0].version, versions=versions)
 
 
 def _to_version(session: Session, row: ModelRow) -> ModelVersion:

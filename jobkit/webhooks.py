@@ -13,6 +13,7 @@ from jobkit.clock import utc_now
 from jobkit.database import Database
 from jobkit.errors import TooManyWebhooksError, WebhookNotFoundError
 from jobkit.ids import new_webhook_id
+from jobkit.readable import readable
 from jobkit.schema import (
     DeliveryState,
     NewWebhook,
@@ -76,7 +77,7 @@ class Webhooks:
         """Return all subscriptions, oldest first."""
         with self._database.read() as session:
             rows = session.scalars(select(WebhookRow).order_by(WebhookRow.id))
-            return WebhookList(items=[to_webhook(row) for row in rows])
+            return WebhookList(items=list(readable(rows, to_webhook)))
 
     def get(self, webhook_id: str) -> Webhook:
         """Return a subscription; raise WebhookNotFoundError."""

@@ -24,7 +24,7 @@ def json_ready(value: Any) -> Any:
         infinity: both become None.
     """
     if isinstance(value, Mapping):
-        return {str(name): json_ready(item) for name, item in value.items()}
+        return {printable(str(name)): json_ready(item) for name, item in value.items()}
     if isinstance(value, np.ndarray | np.generic):
         return json_ready(value.tolist())
     if isinstance(value, list | tuple):

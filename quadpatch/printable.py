@@ -1,6 +1,6 @@
 """Text that is safe to print: words of a hostile file end up in messages, logs, terminals and answers over HTTP."""
 
-LONGEST = 2000
+LONGEST = 500
 
 
 def printable(text: str) -> str:

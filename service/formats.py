@@ -17,7 +17,6 @@ _BY_MEDIA_TYPE: Mapping[str, Format] = {
     "model/gltf+json": "gltf",
     "model/3mf": "3mf",
 }
-_CONTROL = re.compile(r"[\x00-\x1f\x7f]")
 MAX_FILENAME = 255
 
 
@@ -31,7 +30,7 @@ def stated_format(given: Format | None, filename: str | None, media_type: str) -
 
 
 def clean_filename(filename: str | None) -> str | None:
-    """Return the last step of a sender's path without control characters, None where nothing is left of it."""
+    """Return the printable characters in the last step of a sender's path, None where there are none."""
     last = re.split(r"[/\\]", filename or "")[-1]
-    name = _CONTROL.sub("", last).encode("utf-8", "ignore").decode("utf-8").strip()
+    name = "".join(character for character in last if character.isprintable()).strip()
     return name[-MAX_FILENAME:] or None

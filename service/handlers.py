@@ -11,7 +11,7 @@ from starlette.responses import Response
 from starlette.routing import BaseRoute, Route
 
 from jobkit.errors import JobkitError
-from service.problems import ProblemError, invalid_request, problem_response, to_problem_error
+from service.problems import ProblemError, invalid_request, malformed_json, problem_response, to_problem_error
 
 _CODES = {
     HTTPStatus.BAD_REQUEST: "malformed_body",
@@ -55,11 +55,6 @@ def install_handlers(app: FastAPI, routes: Sequence[BaseRoute]) -> None:
         }
         detail = details.get(status, str(error.detail))
         return problem_response(request, ProblemError(status, _CODES.get(status, "http_error"), detail, headers))
-
-
-def malformed_json(reason: str) -> ProblemError:
-    """Return the answer to a body that is no JSON."""
-    return ProblemError(HTTPStatus.BAD_REQUEST, "malformed_json", f"the body is no JSON: {reason}")
 
 
 def allowed_methods(routes: Sequence[BaseRoute], path: str) -> list[str]:

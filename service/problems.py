@@ -12,6 +12,7 @@ from starlette.responses import JSONResponse
 
 from jobkit import errors
 from jobkit.schema import PROBLEM_MEDIA_TYPE, FieldError, Problem
+from jobkit.text import printable
 
 # The narrowest class decides; classes that are not here are faults of this service.
 STATUS_BY_ERROR: Mapping[type[errors.JobkitError], HTTPStatus] = {
@@ -35,6 +36,8 @@ _RETRY_LATER = (
     errors.StoreUnavailableError,
 )
 RETRY_AFTER_S = "2"
+# A body of a megabyte may hold a hundred thousand wrong fields; its sender mends some and asks again.
+MOST_FIELD_ERRORS = 50
 
 
 class ProblemError(Exception):
@@ -60,7 +63,7 @@ class ProblemError(Exception):
         field_errors: Sequence[FieldError] = (),
     ) -> None:
         super().__init__(detail)
-        self.status, self.code, self.detail = status, code, detail
+        self.status, self.code, self.detail = status, code, printable(detail)
         self.headers, self.field_errors = dict(headers or {}), list(field_errors)
 
 
@@ -97,7 +100,7 @@ def problem_response(request: Request, error: ProblemError) -> JSONResponse:
 
 
 def invalid_request(details: Sequence[Mapping[str, Any]], root: str | None = None) -> ProblemError:
-    """Turn pydantic's errors into a problem with one entry per field.
+    """Turn pydantic's errors into a problem with one entry per field, for the first `MOST_FIELD_ERRORS`.
 
     Parameters
     ----------
@@ -106,11 +109,16 @@ def invalid_request(details: Sequence[Mapping[str, Any]], root: str | None = Non
     root : str, optional
         What the locations are relative to; None: they start with `body`, `query`, `path` or `header`.
     """
-    fields = [_field_error(detail, root) for detail in details]
+    fields = [_field_error(detail, root) for detail in details[:MOST_FIELD_ERRORS]]
     places = ", ".join(dict.fromkeys(f"{field.location} {field.pointer}".strip() for field in fields))
     return ProblemError(
         HTTPStatus.UNPROCESSABLE_ENTITY, "invalid_request", f"the request is not valid: {places}", None, fields
     )
+
+
+def malformed_json(reason: str) -> ProblemError:
+    """Return the answer to a body that is no JSON."""
+    return ProblemError(HTTPStatus.BAD_REQUEST, "malformed_json", f"the body is no JSON: {reason}")
 
 
 def _field_error(detail: Mapping[str, Any], root: str | None) -> FieldError:
@@ -120,4 +128,5 @@ def _field_error(detail: Mapping[str, Any], root: str | None) -> FieldError:
     if where[:1] == ["method"]:
         where[1:2] = []  # the tag of the union, which stands in no document
     pointer = "".join("/" + step.replace("~", "~0").replace("/", "~1") for step in where) if is_body else where[-1]
-    return FieldError(location=location, pointer=pointer, message=str(detail["msg"]), code=str(detail["type"]))
+    message = printable(str(detail["msg"]))
+    return FieldError(location=location, pointer=printable(pointer), message=message, code=str(detail["type"]))

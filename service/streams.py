@@ -163,7 +163,10 @@ class EventStreams:
             except TimeoutError:
                 pass
             self._wake.clear()
-            await self._look()
+            try:
+                await self._look()
+            except Exception:
+                _logger.exception("a look for new events failed")
 
     async def _look(self) -> None:
         streams = [stream for stream in self._streams if stream.has_room]

@@ -9,7 +9,8 @@ from fastapi.dependencies.models import Dependant
 from fastapi.routing import APIRoute
 
 from jobkit.errors import TooLargeError
-from service.problems import ProblemError, invalid_request
+from jobkit.strict_json import StrictJsonError, read_json
+from service.problems import ProblemError, invalid_request, malformed_json
 
 Handler = Callable[[Request], Coroutine[Any, Any, Response]]
 
@@ -41,9 +42,9 @@ def _query_names(dependant: Dependant) -> set[str]:
 
 
 class _BoundedRequest(Request):
-    """A request whose body is read once, up to a limit."""
+    """A request whose JSON body is read once, up to a limit, and strictly."""
 
-    async def read_up_to(self, max_bytes: int) -> None:
+    async def read_json(self, max_bytes: int) -> None:
         chunks, size = [], 0
         async for chunk in self.stream():
             size += len(chunk)
@@ -51,6 +52,10 @@ class _BoundedRequest(Request):
                 raise TooLargeError(f"the body has more than {max_bytes} bytes, which is the limit")
             chunks.append(chunk)
         self._body = b"".join(chunks)
+        try:
+            self._json = read_json(self._body) if self._body else None
+        except StrictJsonError as error:
+            raise malformed_json(str(error)) from error
 
 
 async def _with_json_body(request: Request) -> Request:
@@ -62,5 +67,5 @@ async def _with_json_body(request: Request) -> Request:
             f"the body must be application/json; it is {kind or 'of no stated type'}",
         )
     bounded = _BoundedRequest(request.scope, request.receive)
-    await bounded.read_up_to(request.app.state.max_json_bytes)
+    await bounded.read_json(request.app.state.max_json_bytes)
     return bounded

@@ -27,6 +27,9 @@ import enum
 import errno
 from dataclasses import dataclass
 
+from jobkit.text import printable
+
+_LONGEST_CODE = 64
 # A full disk or a store that is away comes back by itself or by somebody's hand; asking every moment helps neither.
 OUTAGE_DELAY_S = 10.0
 _BROKEN_DISK = (errno.EIO, errno.EROFS, errno.EACCES, errno.EPERM, errno.ESTALE, errno.EMFILE, errno.ENFILE)
@@ -63,6 +66,11 @@ class Failure:
     stage: str | None = None
     retryable: bool = False
     is_outside: bool = False
+
+    def __post_init__(self) -> None:
+        """Make the words of an engine, which may be those of a file, safe to print."""
+        object.__setattr__(self, "code", printable(self.code, _LONGEST_CODE))
+        object.__setattr__(self, "message", printable(self.message))
 
 
 class EngineFailedError(Exception):

@@ -14,6 +14,7 @@ from typing import Any
 
 import psutil
 
+from jobkit.text import printable
 from worker.failures import EngineFailedError, EngineStoppedError, Failure, StopReason, crashed, over_memory, over_time
 from worker.limits import EngineLimits
 from worker.nursing import EngineChild, Nursery, NurseryLostError
@@ -23,6 +24,8 @@ _TICK_S = 0.1
 _CHUNK_BYTES = 65536
 # A report is some hundred bytes; a child that sends endless lines is out of its mind.
 _LINE_LIMIT_BYTES = 1 << 20
+_LONGEST_STAGE = 64
+_MOST_LAST_LINES = 40
 _LOG_TAIL_BYTES = 8000
 _FULL_MEMORY = 0.9
 # The child closes its pipe in its last breath; the kernel then frees its memory, which takes a while for gigabytes.
@@ -167,7 +170,7 @@ class _Watch:
 
     def _take(self, report: dict[str, Any]) -> None:
         if "stage" in report:
-            self.stage = str(report["stage"])
+            self.stage = printable(str(report["stage"]), _LONGEST_STAGE)
             self._observer.on_progress(self.stage, float(report["fraction"]))
         elif "delivered" in report:
             self.is_delivered = True
@@ -212,8 +215,8 @@ def _diagnose(status: int | None, watch: _Watch, limits: EngineLimits, log: Path
 def log_last_words(log: Path) -> None:
     """Take over the end of an engine's log into that of the worker."""
     words = _tail(log).decode(errors="replace").strip()
-    if words:
-        _log.warning("the engine's last words:\n%s", words)
+    for line in words.splitlines()[-_MOST_LAST_LINES:]:
+        _log.warning("the engine's last words: %s", line)
 
 
 def _tail(log: Path) -> bytes:

@@ -1,6 +1,5 @@
 """Models: versions, cards, aliases, artifacts."""
 
-import json
 from http import HTTPStatus
 from typing import Annotated, Any
 
@@ -12,6 +11,7 @@ from jobkit.model_header import Card
 from jobkit.registry import MODEL_PREFIX
 from jobkit.schema import Alias, AliasTarget, Model, ModelList, ModelVersion
 from jobkit.schema.base import NAME_PATTERN
+from jobkit.strict_json import StrictJsonError, read_json
 from service.content import OCTETS, Content, content_response
 from service.problems import invalid_request
 from service.routes.common import (
@@ -141,8 +141,8 @@ def _read_card(text: bytes | None) -> Card | None:
     if text is None:
         return None
     try:
-        card = json.loads(text)
-    except (ValueError, RecursionError) as error:
+        card = read_json(text)
+    except StrictJsonError as error:
         raise _card_error(f"not JSON: {error}") from error
     if not isinstance(card, dict):
         raise _card_error("not a JSON object")

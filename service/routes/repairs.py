@@ -8,6 +8,7 @@ from starlette.concurrency import run_in_threadpool
 from starlette.responses import Response
 
 from jobkit.schema import JobSpec, RepairSpec
+from jobkit.strict_json import StrictJsonError, read_json
 from service.formats import clean_filename
 from service.problems import invalid_request
 from service.routes.common import FILE, IdempotencyKey, problems
@@ -75,7 +76,10 @@ async def repair(
 
 def _read_spec(text: bytes) -> RepairSpec:
     try:
+        read_json(text)
         return RepairSpec.model_validate_json(text)
+    except StrictJsonError as error:
+        raise invalid_request([{"loc": ("body", "spec"), "msg": str(error), "type": "json_invalid"}]) from error
     except ValidationError as error:
         details = error.errors(include_input=False, include_url=False)
         raise invalid_request([{**detail, "loc": ("body", "spec", *detail["loc"])} for detail in details]) from error
