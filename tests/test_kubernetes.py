@@ -46,7 +46,7 @@ def container(name: str) -> Manifest:
 def selectors(kind: str) -> Iterator[tuple[str, Manifest]]:
     for manifest in ALL:
         if manifest["kind"] == kind:
-            selector = manifest["spec"].get("selector") or manifest["spec"].get("podSelector")
+            selector = manifest["spec"]["selector"]
             yield manifest["metadata"]["name"], selector.get("matchLabels", selector)
 
 
@@ -56,7 +56,7 @@ def mebibytes(text: str) -> int:
 
 
 def test_every_file_is_listed_or_is_the_example() -> None:
-    listed = {*KUSTOMIZATION["resources"], "kustomization.yaml", "secrets.example.yaml"}
+    listed = {*KUSTOMIZATION["resources"], "kustomization.yaml", "secrets.example.yaml", "addresses.example.yaml"}
     assert {path.name for path in FOLDER.iterdir()} == listed
 
 
@@ -116,6 +116,7 @@ def test_pods_are_confined_and_say_how_they_are(name: str) -> None:
     assert spec["securityContext"]["runAsNonRoot"]
     assert spec["securityContext"]["seccompProfile"] == {"type": "RuntimeDefault"}
     assert spec["automountServiceAccountToken"] is False
+    assert spec["enableServiceLinks"] is False
     assert spec["terminationGracePeriodSeconds"] >= 30
     assert only["securityContext"] == {
         "allowPrivilegeEscalation": False,
@@ -167,7 +168,7 @@ def test_a_worker_has_room_for_the_largest_repair_it_allows() -> None:
 
 def test_selectors_find_pods() -> None:
     labels = [m["spec"]["template"]["metadata"]["labels"] for m in WORKLOADS.values()]
-    for kind in ("Service", "Deployment", "StatefulSet", "PodDisruptionBudget", "NetworkPolicy"):
+    for kind in ("Service", "Deployment", "StatefulSet", "PodDisruptionBudget"):
         for name, selector in selectors(kind):
             assert any(selector.items() <= label.items() for label in labels), (kind, name)
     services = [m["metadata"]["labels"] for m in ALL if m["kind"] == "Service" and "labels" in m["metadata"]]
