@@ -1,6 +1,7 @@
 # One image for every role; the command decides: `python -m service` (the API, default), `python -m dispatcher` or
 # `python -m worker`.
-# 3.11 is the Python that constraints.txt was resolved and tested with.
+# 3.11 is the Python that the locks were made for. For a build that can be repeated name the image by digest:
+# --build-arg PYTHON_IMAGE=python:3.11-slim-bookworm@sha256:..., see docs/operations.md.
 ARG PYTHON_IMAGE=python:3.11-slim-bookworm
 
 FROM ${PYTHON_IMAGE} AS build
@@ -9,12 +10,13 @@ RUN python -m venv /opt/quadpatch
 WORKDIR /source
 # "service networks" adds torch, with which workers can fit a network to the mesh itself; "service telemetry" adds traces.
 ARG EXTRAS=service
-# The libraries first: they change less often than the source, and their layer is the large one.
-COPY pyproject.toml constraints.txt ./
-RUN python -c "import tomllib; p = tomllib.load(open('pyproject.toml', 'rb'))['project']; extras = p['optional-dependencies']; print(*p['dependencies'], *(d for e in '${EXTRAS}'.split() for d in extras[e]), sep='\n')" > requirements.txt \
-    && /opt/quadpatch/bin/python -m pip install --only-binary :all: --constraint constraints.txt --requirement requirements.txt
+# The libraries first: they change less often than the source, and their layer is the large one. Each file is checked
+# against the hash in its lock, what builds the project as well, and nothing is installed that is in no lock.
+COPY deploy/locks deploy/locks
+RUN for extra in build ${EXTRAS}; do set -- "$@" --requirement "deploy/locks/$extra.txt"; done \
+    && /opt/quadpatch/bin/python -m pip install --only-binary :all: --require-hashes --no-deps "$@"
 COPY . .
-RUN /opt/quadpatch/bin/python -m pip install --no-deps . \
+RUN /opt/quadpatch/bin/python -m pip install --no-deps --no-build-isolation . \
     && /opt/quadpatch/bin/python -m pip check \
     && /opt/quadpatch/bin/python -m pip uninstall --yes pip setuptools
 

