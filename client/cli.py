@@ -1,19 +1,18 @@
 """The command line. stdout is for data, stderr for everything that a person watches."""
 
 import json
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated
 
 import typer
-from pydantic import BaseModel
 from rich.console import Console
 
-from client.errors import ClientError
-from client.exits import ExitCode, exit_code_of, exit_codes_text
+from client.connection import connected, print_json
+from client.exits import exit_codes_text
+from client.job_commands import cancel, delete, fetch, pin, wait
 from client.options import (
     DEFAULT_URL,
+    OUTPUT,
     AllButLargestOption,
     CapOption,
     HoleChoice,
@@ -25,17 +24,20 @@ from client.options import (
     MaxPerimeterOption,
     MethodChoice,
     MethodName,
+    OutputOption,
+    PreviewOption,
     QuietOption,
+    ReportOption,
     RuleOption,
     UrlOption,
     WeldToleranceOption,
     make_spec,
     tolerance,
 )
+from client.outputs import check_stdout
 from client.repairing import Task, format_of
 from client.repairing import repair as run_repair
 from client.screen import Screen
-from client.sdk import Client
 from client.tables import print_holes, print_jobs, print_models
 from jobkit.schema import JobState, OutputFormat, Recipe
 
@@ -53,16 +55,13 @@ MeshArgument = Annotated[
 ]
 _PATCHES = "Patches"
 _FITTING = "Fitting a network to the mesh (--method cnn --model self)"
-_OUTPUT = "What comes back"
 
 
 @app.command(epilog=f"Exit codes:\n\n{exit_codes_text()}")
 def repair(  # noqa: PLR0913 - one parameter per option of the command line
     mesh: MeshArgument,
     *,
-    output: Annotated[
-        Path, typer.Option("--output", "-o", help="Where to put the repaired mesh.", rich_help_panel=_OUTPUT)
-    ],
+    output: OutputOption,
     method: Annotated[MethodName, typer.Option(help="How holes are filled.")] = "dictionary",
     model: Annotated[
         str | None,
@@ -107,15 +106,16 @@ def repair(  # noqa: PLR0913 - one parameter per option of the command line
             "--format",
             help="Format of the repaired mesh.",
             show_default="the suffix of OUTPUT",
-            rich_help_panel=_OUTPUT,
+            rich_help_panel=OUTPUT,
         ),
     ] = None,
-    report: Annotated[Path | None, typer.Option(help="Where to put the JSON report.", rich_help_panel=_OUTPUT)] = None,
-    preview: Annotated[
-        Path | None, typer.Option(help="Where to put the before/after picture, a PNG.", rich_help_panel=_OUTPUT)
-    ] = None,
+    report: ReportOption = None,
+    preview: PreviewOption = None,
     overwrite: Annotated[
-        bool, typer.Option("--overwrite", help="Let OUTPUT take the place of MESH.", rich_help_panel=_OUTPUT)
+        bool, typer.Option("--overwrite", help="Let OUTPUT take the place of MESH.", rich_help_panel=OUTPUT)
+    ] = False,
+    again: Annotated[
+        bool, typer.Option("--again", help="Start a new job although the same one is under way or done.")
     ] = False,
     timeout: Annotated[
         float | None, typer.Option(help="Seconds to wait for the job; then it is canceled.", show_default="none")
@@ -127,7 +127,7 @@ def repair(  # noqa: PLR0913 - one parameter per option of the command line
 ) -> None:
     """Repair a mesh file: upload it, fill its holes, fetch the result."""
     screen = Screen(quiet)
-    with _connected(screen, url, api_key) as client:
+    with connected(screen, url, api_key) as client:
         task = Task(
             source=mesh,
             output=output,
@@ -143,10 +143,12 @@ def repair(  # noqa: PLR0913 - one parameter per option of the command line
             preview=preview,
             timeout_s=timeout,
             may_overwrite=overwrite,
+            again=again,
         )
+        check_stdout([output, report, preview], as_json)
         job = run_repair(client, screen, task)
     if as_json:
-        _print_json(job)
+        print_json(job)
 
 
 @app.command()
@@ -167,13 +169,13 @@ def holes(  # noqa: PLR0913 - one parameter per option of the command line
     """List the holes of a mesh file, and which of them would be filled."""
     screen = Screen(quiet)
     choice = HoleChoice(max_diameter, max_perimeter, all_but_largest, None, include_borders, cap, rule)
-    with _connected(screen, url, api_key) as client:
+    with connected(screen, url, api_key) as client:
         with screen.transfer("uploading") as progress:
             uploaded = client.upload(mesh, progress)
         analysed = client.wait_for_mesh(uploaded.id)
         plan = client.plan(make_spec(uploaded.id, choice, MethodChoice("smooth")))
     if as_json:
-        _print_json(plan)
+        print_json(plan)
     elif analysed.facts is not None:
         print_holes(_stdout(), analysed.facts, plan)
 
@@ -181,10 +183,10 @@ def holes(  # noqa: PLR0913 - one parameter per option of the command line
 @app.command()
 def models(url: UrlOption = DEFAULT_URL, api_key: KeyOption = None, as_json: JsonOption = False) -> None:
     """List the models that the service knows."""
-    with _connected(Screen(), url, api_key) as client:
+    with connected(Screen(), url, api_key) as client:
         known = client.models()
     if as_json:
-        _print_json(known)
+        print_json(known)
     else:
         print_models(_stdout(), known)
 
@@ -198,7 +200,7 @@ def jobs(
     as_json: JsonOption = False,
 ) -> None:
     """List the latest jobs."""
-    with _connected(Screen(), url, api_key) as client:
+    with connected(Screen(), url, api_key) as client:
         listed = list(client.jobs(limit, state))
     if as_json:
         typer.echo(json.dumps([job.model_dump(mode="json") for job in listed], indent=2))
@@ -206,70 +208,9 @@ def jobs(
         print_jobs(_stdout(), listed)
 
 
-@app.command()
-def cancel(
-    job: Annotated[str, typer.Argument(help="Id of the job.")],
-    url: UrlOption = DEFAULT_URL,
-    api_key: KeyOption = None,
-    as_json: JsonOption = False,
-) -> None:
-    """Cancel a job."""
-    screen = Screen()
-    with _connected(screen, url, api_key) as client:
-        canceled = client.cancel(job)
-    if as_json:
-        _print_json(canceled)
-    else:
-        screen.say(f"{canceled.id}: {canceled.state.value}")
-
-
-@app.command()
-def delete(
-    job: Annotated[str, typer.Argument(help="Id of the job.")],
-    url: UrlOption = DEFAULT_URL,
-    api_key: KeyOption = None,
-) -> None:
-    """Delete a finished job with its result; there is no way back."""
-    screen = Screen()
-    with _connected(screen, url, api_key) as client:
-        client.delete(job)
-    screen.say(f"{job}: deleted")
-
-
-@app.command()
-def pin(
-    job: Annotated[str, typer.Argument(help="Id of the job.")],
-    off: Annotated[bool, typer.Option("--off", help="Leave it to the retention again.")] = False,
-    url: UrlOption = DEFAULT_URL,
-    api_key: KeyOption = None,
-) -> None:
-    """Keep a job and its mesh, whatever the retention of the service."""
-    screen = Screen()
-    with _connected(screen, url, api_key) as client:
-        client.pin(job, not off)
-    screen.say(f"{job}: {'no longer pinned' if off else 'pinned'}")
-
-
-@contextmanager
-def _connected(screen: Screen, url: str, api_key: str | None) -> Iterator[Client]:
-    """Open the service; whatever goes wrong becomes a line on stderr and an exit code."""
-    try:
-        with Client(url, api_key) as client:
-            yield client
-    except ClientError as error:
-        screen.complain(str(error))
-        raise typer.Exit(exit_code_of(error)) from error
-    except OSError as error:
-        screen.complain(f"{error.filename or 'a file'}: {error.strerror}")
-        raise typer.Exit(ExitCode.USAGE) from error
-    except KeyboardInterrupt:
-        screen.complain("interrupted")
-        raise typer.Exit(ExitCode.INTERRUPTED) from None
+for command in (wait, fetch, cancel, delete, pin):
+    app.command()(command)
 
 
 def _stdout() -> Console:
     return Console(highlight=False)
-
-
-def _print_json(value: BaseModel) -> None:
-    typer.echo(value.model_dump_json(indent=2))

@@ -37,7 +37,7 @@ MEANINGS = {
     ExitCode.REJECTED: "the service rejected the mesh or the request; the message ends with its code",
     ExitCode.CANCELED: "the job was canceled, or was not done by --timeout",
     ExitCode.OTHER: "the service failed, or answered something that is not its contract",
-    ExitCode.INTERRUPTED: "Ctrl-C; a job that was running has been canceled",
+    ExitCode.INTERRUPTED: "Ctrl-C; `repair` has canceled its job",
 }
 
 

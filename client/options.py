@@ -1,6 +1,7 @@
 """Options that several commands share, and how those of a repair become a job spec."""
 
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import typer
@@ -66,6 +67,19 @@ RuleOption = Annotated[
         "the first that fits counts.",
         rich_help_panel="Which holes",
     ),
+]
+
+
+OUTPUT = "What comes back"
+OutputOption = Annotated[
+    Path,
+    typer.Option("--output", "-o", help="Where to put the repaired mesh; -: standard output.", rich_help_panel=OUTPUT),
+]
+ReportOption = Annotated[
+    Path | None, typer.Option(help="Where to put the JSON report; -: standard output.", rich_help_panel=OUTPUT)
+]
+PreviewOption = Annotated[
+    Path | None, typer.Option(help="Where to put the before/after picture, a PNG.", rich_help_panel=OUTPUT)
 ]
 
 

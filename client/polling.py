@@ -5,9 +5,10 @@ from collections.abc import Iterator
 from typing import TypeVar
 
 import httpx
-from pydantic import BaseModel, ValidationError
+from pydantic import BaseModel
 
 from client.errors import AnswerError
+from client.lenient import read_leniently
 from client.transport import Transport, retry_after_s
 
 M = TypeVar("M", bound=BaseModel)
@@ -19,10 +20,10 @@ _LONGEST_PAUSE_S = 1.0
 
 
 def parse(model: type[M], response: httpx.Response) -> M:
-    """Read an answer as what it should be; raise AnswerError where it is something else."""
+    """Read an answer as what it should be, maybe of a newer service; raise AnswerError where it is something else."""
     try:
-        return model.model_validate_json(response.content)
-    except ValidationError as error:
+        return read_leniently(model, response.content)
+    except ValueError as error:
         raise AnswerError(f"{response.request.url} did not answer with a {model.__name__.lower()}") from error
 
 

@@ -8,13 +8,25 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Literal, cast, get_args
 
-from client.errors import ClientError, UsageError, WaitTimeoutError
+from client.errors import (
+    ClientError,
+    JobFailedError,
+    RefusedError,
+    UnreachableError,
+    UsageError,
+    WaitTimeoutError,
+)
 from client.options import HoleChoice, MethodChoice, make_spec
+from client.outputs import check_place, is_stdout, is_stream, shown
 from client.screen import Screen
 from client.sdk import Client
 from client.summary import paragraph
 from client.transfers import sent_name
-from jobkit.schema import Job, JobSpec, OutputFormat
+from jobkit.schema import Job, JobState, OutputFormat
+
+# A mesh that can't be read fails here; its analysis may still be waiting for a worker.
+_FIRST_STAGE = "read"
+_ANALYSIS_S = 60.0
 
 
 @dataclass(frozen=True)
@@ -34,6 +46,8 @@ class Task:
         How long to wait for the job.
     may_overwrite : bool
         Whether the repaired mesh may take the place of the scan.
+    again : bool
+        Whether a new job is started although the same one is on its way or has a result.
     """
 
     source: Path
@@ -45,6 +59,17 @@ class Task:
     preview: Path | None = None
     timeout_s: float | None = None
     may_overwrite: bool = False
+    again: bool = False
+
+
+@dataclass(frozen=True)
+class Files:
+    """Where the files of a finished job go; `name` is that of the mesh, for people."""
+
+    name: str
+    output: Path
+    report: Path | None = None
+    preview: Path | None = None
 
 
 def repair(client: Client, screen: Screen, task: Task) -> Job:
@@ -64,35 +89,36 @@ def repair(client: Client, screen: Screen, task: Task) -> Job:
         mesh = client.upload(task.source, progress)
     screen.say(f"{task.source.name}: {_size(mesh.size_bytes)} uploaded")
     spec = make_spec(mesh.id, task.holes, task.method, mesh_name=sent_name(task.source) or None, **task.rest)
-    job = _run(client, screen, spec, task.timeout_s)
-    _fetch(client, screen, task, job)
+    job = client.create_job(spec) if task.again else client.create_job_once(spec)
+    job = _wait(client, screen, job, task.timeout_s)
+    fetch(client, screen, Files(task.source.name, task.output, task.report, task.preview), job)
     return job
 
 
 def check_outputs(task: Task) -> None:
     """Raise UsageError where an output has no folder, is one, or would overwrite another one or the scan."""
-    _check_place(task.output)
+    check_place(task.output)
     if is_same_file(task.output, task.source) and not task.may_overwrite:
         raise UsageError(f"{task.output} is the scan itself: name another file, or say --overwrite")
-    taken = [task.source, task.output]
-    for path in (task.report, task.preview):
+    check_apart([task.source, task.output], [task.report, task.preview])
+
+
+def check_apart(taken: list[Path], others: list[Path | None]) -> None:
+    """Raise UsageError where one of the other outputs can't be written, or is one that is taken."""
+    seen = list(taken)
+    for path in others:
         if path is None:
             continue
-        _check_place(path)
-        if any(is_same_file(path, other) for other in taken):
+        check_place(path)
+        if any(is_same_file(path, other) for other in seen):
             raise UsageError(f"{path} is named twice: mesh, report and preview need files of their own")
-        taken.append(path)
-
-
-def _check_place(path: Path) -> None:
-    if path.is_dir():
-        raise UsageError(f"{path} is a folder, not a file to write")
-    if not path.parent.is_dir():
-        raise UsageError(f"{path} can't be written: there is no folder {path.parent}")
+        seen.append(path)
 
 
 def is_same_file(one: Path, other: Path) -> bool:
     """Tell whether two paths lead to one file: by another spelling, a symbolic link or a hard link."""
+    if is_stdout(one) or is_stdout(other):
+        return is_stdout(one) and is_stdout(other)
     try:
         return one.samefile(other)
     except OSError:
@@ -100,8 +126,16 @@ def is_same_file(one: Path, other: Path) -> bool:
         return one.resolve() == other.resolve()
 
 
-def format_of(output: Path) -> OutputFormat:
-    """Return the format that the suffix of an output asks for; raise UsageError where it asks for none."""
+def format_of(output: Path) -> OutputFormat | None:
+    """Return the format that the suffix of an output asks for; None, that of the scan, for a stream.
+
+    Raises
+    ------
+    UsageError
+        If the suffix asks for none.
+    """
+    if is_stream(output):
+        return None
     suffix = output.suffix.lower().lstrip(".")
     if suffix not in get_args(OutputFormat):
         raise UsageError(
@@ -110,11 +144,31 @@ def format_of(output: Path) -> OutputFormat:
     return cast(OutputFormat, suffix)
 
 
-def _run(client: Client, screen: Screen, spec: JobSpec, timeout_s: float | None) -> Job:
-    job = client.create_job(spec)
-    screen.say(f"job {job.id} accepted")
-    with _canceled_on_the_way_out(client, screen, job), screen.repair() as on_change:
-        return client.wait(job.id, on_change, timeout_s)
+def _wait(client: Client, screen: Screen, job: Job, timeout_s: float | None) -> Job:
+    screen.say(f"job {job.id} " + ("accepted" if job.state is JobState.QUEUED else "is there already"))
+    try:
+        with _canceled_on_the_way_out(client, screen, job), screen.repair() as on_change:
+            return client.wait(job.id, on_change, timeout_s)
+    except JobFailedError as error:
+        _raise_for_mesh(client, error)
+        raise
+    except UnreachableError:
+        screen.complain(f"job {job.id} goes on without this command; `fetch {job.id} -o FILE` gets what it makes")
+        raise
+
+
+def _raise_for_mesh(client: Client, failed: JobFailedError) -> None:
+    """Raise MeshRejectedError where the mesh is at fault.
+
+    A bad mesh ends a job that was there before the analysis, and refuses one that comes after it: for scripts it has
+    to be one and the same.
+    """
+    if failed.job.error is None or failed.job.error.stage not in (None, _FIRST_STAGE):
+        return
+    try:
+        client.wait_for_mesh(failed.job.mesh_id, _ANALYSIS_S)
+    except (WaitTimeoutError, RefusedError):
+        return  # the job has said why
 
 
 @contextmanager
@@ -131,22 +185,24 @@ def _canceled_on_the_way_out(client: Client, screen: Screen, job: Job) -> Iterat
         raise
 
 
-def _fetch(client: Client, screen: Screen, task: Task, job: Job) -> None:
+def fetch(client: Client, screen: Screen, files: Files, job: Job) -> None:
     """Fetch the mesh first: it is there whatever happens to the files that come with it."""
     with screen.transfer("downloading") as progress:
-        client.download(job, "result", task.output, progress)
-    written = [task.output]
-    if task.report is not None:
-        client.download(job, "report", task.report)
-        written.append(task.report)
-    if task.preview is not None and _is_fetched(client, screen, job, "preview", task.preview):
-        written.append(task.preview)
+        client.download(job, "result", files.output, progress)
+    written = [files.output]
+    if files.report is not None:
+        client.download(job, "report", files.report)
+        written.append(files.report)
+    if files.preview is not None and _is_fetched(client, screen, job, "preview", files.preview):
+        written.append(files.preview)
     with tempfile.TemporaryDirectory() as folder:
-        report = task.report or Path(folder) / "report.json"
-        if task.report is not None or _is_fetched(client, screen, job, "report", report):
-            screen.tell(paragraph(task.source.name, job, json.loads(report.read_text(encoding="utf-8"))))
+        # What went into a stream can't be read again.
+        is_kept = files.report is not None and not is_stream(files.report)
+        report = files.report if files.report is not None and is_kept else Path(folder) / "report.json"
+        if is_kept or _is_fetched(client, screen, job, "report", report):
+            screen.tell(paragraph(files.name, job, json.loads(report.read_text(encoding="utf-8"))))
     for path in written:
-        screen.say(f"wrote {path}", style="green")
+        screen.say(f"wrote {shown(path)}", style="green")
 
 
 def _is_fetched(client: Client, screen: Screen, job: Job, role: Literal["report", "preview"], path: Path) -> bool:

@@ -6,9 +6,11 @@
         mesh = client.upload(Path("scan.ply"))
         job = client.create_job(JobSpec(mesh_id=mesh.id))
         job = client.wait(job.id)
-        client.download_result(job, Path("scan_repaired.ply"))
+        client.download(job, "result", Path("scan_repaired.ply"))
 """
 
+import hashlib
+import json
 import uuid
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -25,6 +27,7 @@ from client.errors import (
     RefusedError,
     WaitTimeoutError,
 )
+from client.packing import packed
 from client.polling import parse, poll
 from client.transfers import ByteProgress, download, file_chunks, no_progress, sent_name, sha256_of
 from client.transport import Transport
@@ -32,6 +35,8 @@ from client.watching import watch
 from jobkit.schema import Job, JobPage, JobSpec, JobState, Mesh, MeshState, ModelList, Plan
 
 _PAGE = 100
+# Of failed and canceled jobs with the same spec that are passed over.
+_MOST_KEYS = 20
 
 
 def ignore_job(job: Job) -> None:
@@ -59,29 +64,17 @@ class Client:
     def upload(self, path: Path, progress: ByteProgress = no_progress) -> Mesh:
         """Send a mesh file; bytes that the service has already are not sent again.
 
+        A glTF file is sent with the files that it names inside.
+
         Raises
         ------
+        UsageError
+            If a glTF file names a file that is not there, or lies outside of its folder.
         DamagedTransferError
             If the service received other bytes.
         """
-        sha256 = sha256_of(path)
-        self._names[sha256] = sent_name(path)
-        known = self._find_mesh(sha256)
-        if known is not None and known.state != MeshState.REJECTED:
-            size = path.stat().st_size
-            progress(size, size)
-            return known
-        response = self._transport.request(
-            "POST",
-            "/v1/meshes",
-            params={"filename": sent_name(path)},
-            headers={"Content-Type": "application/octet-stream", "Content-Length": str(path.stat().st_size)},
-            content=lambda: file_chunks(path, progress),
-        )
-        mesh = parse(Mesh, response)
-        if mesh.id != sha256:
-            raise DamagedTransferError(f"{path.name} arrived damaged: the service got {mesh.id}, sent was {sha256}")
-        return mesh
+        with packed(path) as whole:
+            return self._upload(whole, progress)
 
     def mesh(self, mesh_id: str) -> Mesh:
         """Return a mesh as it stands."""
@@ -123,6 +116,26 @@ class Client:
             headers={"Idempotency-Key": idempotency_key or str(uuid.uuid4())},
         )
         return parse(Job, response)
+
+    def create_job_once(self, spec: JobSpec) -> Job:
+        """Start a job, unless the same spec was sent before and its job is on its way or has a result: return that.
+
+        So a program that was ended, or that gave up on a service which was away, finds its job again by asking for
+        the same thing. A job that failed or was canceled is no reason not to start another one.
+        """
+        text = json.dumps(spec.model_dump(mode="json"), sort_keys=True)
+        digest = hashlib.sha256(text.encode()).hexdigest()
+        for number in range(1, _MOST_KEYS + 1):
+            try:
+                job = self.create_job(spec, f"same-{digest}-{number}")
+            except RefusedError as error:
+                # Under the same key an older client sent something else.
+                if error.problem.code != "idempotency_conflict":
+                    raise
+                continue
+            if job.state not in (JobState.FAILED, JobState.CANCELED):
+                return job
+        return self.create_job(spec)
 
     def plan(self, spec: JobSpec) -> Plan:
         """Ask what a job would do, without starting it."""
@@ -232,6 +245,26 @@ class Client:
     def __exit__(self, *_: object) -> None:
         """Close."""
         self.close()
+
+    def _upload(self, path: Path, progress: ByteProgress) -> Mesh:
+        sha256 = sha256_of(path)
+        self._names[sha256] = sent_name(path)
+        known = self._find_mesh(sha256)
+        if known is not None and known.state != MeshState.REJECTED:
+            size = path.stat().st_size
+            progress(size, size)
+            return known
+        response = self._transport.request(
+            "POST",
+            "/v1/meshes",
+            params={"filename": sent_name(path)},
+            headers={"Content-Type": "application/octet-stream", "Content-Length": str(path.stat().st_size)},
+            content=lambda: file_chunks(path, progress),
+        )
+        mesh = parse(Mesh, response)
+        if mesh.id != sha256:
+            raise DamagedTransferError(f"{path.name} arrived damaged: the service got {mesh.id}, sent was {sha256}")
+        return mesh
 
     def _find_mesh(self, mesh_id: str) -> Mesh | None:
         try:

@@ -10,6 +10,7 @@ from pathlib import Path
 import httpx
 
 from client.errors import DamagedTransferError
+from client.outputs import deliver, folder_of
 from client.transport import Transport
 
 CHUNK_BYTES = 1 << 18
@@ -53,7 +54,7 @@ def download(transport: Transport, path: str, target: Path, sha256: str, progres
     path : str
         On the service.
     target : Path
-        Appears whole, in one step, or not at all.
+        Appears whole, in one step, or not at all; see `client.outputs` for links and streams.
     sha256 : str
         What the bytes have to hash to, in hex.
     progress : callable
@@ -63,15 +64,15 @@ def download(transport: Transport, path: str, target: Path, sha256: str, progres
     DamagedTransferError
         If other bytes arrived.
     """
-    descriptor, name = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.", suffix=".part")
+    descriptor, name = tempfile.mkstemp(dir=folder_of(target), prefix=f".{target.name}.", suffix=".part")
     os.close(descriptor)
     partial = Path(name)
     try:
-        transport.patiently(lambda: _fetch_rest(transport, path, partial, progress))
+        transport.patiently(lambda: _fetch_rest(transport, path, partial, progress), lambda: partial.stat().st_size)
         if sha256_of(partial) != sha256:
             raise DamagedTransferError(f"{path} arrived damaged: its sha256 is not {sha256}")
         partial.chmod(0o666 & ~_umask())
-        partial.replace(target)
+        deliver(partial, target)
     finally:
         partial.unlink(missing_ok=True)
 

@@ -1,5 +1,6 @@
 """HTTP with patience: what may be repeated is repeated, with growing pauses, until the time is up."""
 
+import math
 import random
 import time
 from collections.abc import Callable, Iterator, Mapping
@@ -18,10 +19,16 @@ T = TypeVar("T")
 _TRY_AGAIN = frozenset({429, 502, 503, 504})
 _FIRST_PAUSE_S = 0.25
 _LONGEST_PAUSE_S = 5.0
-# Before the first answer ever, a wrong address is likelier than a dropped line.
+# Where nothing has ever taken a connection, a wrong address is likelier than a dropped line.
 _FIRST_CONTACT_S = 5.0
 _SILENCE_S, _CONNECT_S = 60.0, 5.0
 _TIMEOUT = httpx.Timeout(_SILENCE_S, connect=_CONNECT_S)
+# No connection was made, so that nothing says that a service is there.
+_NOT_REACHED = (httpx.ConnectError, httpx.ConnectTimeout, httpx.UnsupportedProtocol)
+
+
+def _nothing() -> int:
+    return 0
 
 
 class Transport:
@@ -32,15 +39,24 @@ class Transport:
     base_url : str
     api_key : str, optional
     patience_s : float
-        How long a request is repeated before the service is taken for unreachable, in seconds.
+        How long a request is repeated before the service is taken for unreachable, in seconds from its first failure.
+    first_contact_s : float
+        The same as long as no connection has ever been made.
     """
 
-    def __init__(self, base_url: str, api_key: str | None = None, patience_s: float = 60.0) -> None:
+    def __init__(
+        self,
+        base_url: str,
+        api_key: str | None = None,
+        patience_s: float = 60.0,
+        first_contact_s: float = _FIRST_CONTACT_S,
+    ) -> None:
         headers = {"Authorization": f"Bearer {api_key}"} if api_key else {}
         self.base_url = base_url.rstrip("/")
         self._client = httpx.Client(base_url=self.base_url, headers=headers, timeout=_TIMEOUT)
         self._patience_s = patience_s
-        self._has_answered = False
+        self._first_contact_s = first_contact_s
+        self._was_reached = False
 
     def request(
         self,
@@ -103,22 +119,28 @@ class Transport:
                 _raise_for_problem(response)
             yield response
 
-    def patiently(self, attempt: Callable[[], T]) -> T:
-        """Try until it works, an answer forbids more tries, or the time is up."""
-        started, pause_s = time.monotonic(), _FIRST_PAUSE_S
+    def patiently(self, attempt: Callable[[], T], done: Callable[[], int] = _nothing) -> T:
+        """Try until it works, an answer forbids more tries, or the time is up.
+
+        Parameters
+        ----------
+        attempt : callable
+        done : callable, optional
+            How many bytes all attempts together have brought; patience begins anew with each failure after more.
+        """
+        failing = _Failing()
         while True:
             try:
                 result = attempt()
             except (httpx.TransportError, TryAgainError) as error:
-                self._has_answered = self._has_answered or isinstance(error, TryAgainError)
-                patience_s = self._patience_s if self._has_answered else min(self._patience_s, _FIRST_CONTACT_S)
-                wait_s = getattr(error, "retry_after_s", None) or pause_s * random.uniform(0.75, 1.25)
-                if time.monotonic() + wait_s - started > patience_s:
+                self._was_reached = self._was_reached or not isinstance(error, _NOT_REACHED)
+                patience_s = self._patience_s if self._was_reached else min(self._patience_s, self._first_contact_s)
+                wait_s = failing.next_pause_s(done(), getattr(error, "retry_after_s", None))
+                if failing.seconds() + wait_s > patience_s:
                     raise self._give_up(error, patience_s) from error
                 time.sleep(wait_s)
-                pause_s = min(2 * pause_s, _LONGEST_PAUSE_S)
             else:
-                self._has_answered = True
+                self._was_reached = True
                 return result
 
     def close(self) -> None:
@@ -139,6 +161,28 @@ class Transport:
         return UnreachableError(
             f"no answer from {self.base_url} within {patience_s:g} s: {error or type(error).__name__}"
         )
+
+
+class _Failing:
+    """A row of failures: since when, and how long to pause before the next try.
+
+    Counted from the first failure, not from the first try: an upload that breaks after minutes is tried again.
+    """
+
+    def __init__(self) -> None:
+        self._since = math.nan
+        self._pause_s = _FIRST_PAUSE_S
+        self._done = 0
+
+    def seconds(self) -> float:
+        return time.monotonic() - self._since
+
+    def next_pause_s(self, done: int, asked_s: float | None) -> float:
+        if math.isnan(self._since) or done > self._done:
+            self._since, self._pause_s, self._done = time.monotonic(), _FIRST_PAUSE_S, done
+        pause_s = self._pause_s * random.uniform(0.75, 1.25)
+        self._pause_s = min(2 * self._pause_s, _LONGEST_PAUSE_S)
+        return asked_s or pause_s
 
 
 class TryAgainError(Exception):

@@ -59,7 +59,7 @@ class Service:
         facts = {"id": "0" * 64, "state": "ready", "size_bytes": 3, "created_at": "2026-11-22T09:15:02.250Z"}
         return Mesh.model_validate({**facts, "links": links})
 
-    def create_job(self, spec: JobSpec) -> Job:
+    def create_job_once(self, spec: JobSpec) -> Job:
         return Job.model_validate_json(body("queued", 1, mesh_name=spec.mesh_name))
 
     def wait(self, *_: object) -> Job:

@@ -1,0 +1,34 @@
+"""What every command does: open the service, turn errors into exit codes, print JSON."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import typer
+from pydantic import BaseModel
+
+from client.errors import ClientError
+from client.exits import ExitCode, exit_code_of
+from client.screen import Screen
+from client.sdk import Client
+
+
+@contextmanager
+def connected(screen: Screen, url: str, api_key: str | None) -> Iterator[Client]:
+    """Open the service; whatever goes wrong becomes a line on stderr and an exit code."""
+    try:
+        with Client(url, api_key) as client:
+            yield client
+    except ClientError as error:
+        screen.complain(str(error))
+        raise typer.Exit(exit_code_of(error)) from error
+    except OSError as error:
+        screen.complain(f"{error.filename or 'a file'}: {error.strerror}")
+        raise typer.Exit(ExitCode.USAGE) from error
+    except KeyboardInterrupt:
+        screen.complain("interrupted")
+        raise typer.Exit(ExitCode.INTERRUPTED) from None
+
+
+def print_json(value: BaseModel) -> None:
+    """Print an answer as JSON on stdout."""
+    typer.echo(value.model_dump_json(indent=2))
