@@ -149,7 +149,7 @@ def _departure(filled: FilledMesh, first: FilledMesh, loops: IntArray) -> FloatA
 def _without_wrong(filled: FilledMesh, faults: Faults) -> tuple[FilledMesh, dict[int, tuple[str, str]]]:
     """Open the loops again whose fills are wrong."""
     opened = _to_open(faults)
-    refused = {i: _reason(int(faults.crossings[i]), int(faults.n_folds[i])) for i in opened.tolist()}
+    refused = {i: _reason(int(faults.crossings[i])) for i in opened.tolist()}
     return filled.without(opened) if refused else filled, refused
 
 
@@ -168,7 +168,7 @@ def _to_open(faults: Faults) -> IntArray:
         opened[np.lexsort((-faults.crossings, -n_rivals))[0]] = True
 
 
-def _reason(n_crossings: int, n_folds: int) -> tuple[str, str]:
+def _reason(n_crossings: int) -> tuple[str, str]:
     if n_crossings:
-        return "crosses_surface", f"every fill that was tried runs through other surface, by {n_crossings} triangles"
-    return "folds_over", f"every fill that was tried folds over itself, at {n_folds} edges"
+        return "crosses_surface", "every fill that was tried runs through other surface"
+    return "folds_over", "every fill that was tried folds over itself"

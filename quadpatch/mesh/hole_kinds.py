@@ -18,6 +18,10 @@ from quadpatch.types import BoolArray, FloatArray, IntArray, Vertices
 # The longest loop of a piece is its outer border, if wider than this share of the piece's own diagonal.
 BORDER_SHARE = 0.5
 
+# A smaller loop is no border of its piece, whatever the faces at its rim say: on crumpled scans, holes of a few edges
+# seem to run around surface. Whether such a hole can be filled, the check of its fill tells.
+LEAST_BORDER_SHARE = 0.05
+
 # A loop with the surface on its left runs clockwise around a hole and counter-clockwise around an outer border, seen
 # along the normals at its rim; beyond this cosine it is a border for sure, below its opposite a hole.
 OUTWARD = 0.5
@@ -79,7 +83,8 @@ def outer_borders(shapes: LoopShapes, pieces: Pieces, candidates: BoolArray) -> 
     has_border[pieces.of_loop[around & is_wide]] = True
     eligible = np.flatnonzero(candidates & ~((outward < -OUTWARD) & has_border[pieces.of_loop]))
     longest = eligible[np.unique(pieces.of_loop[eligible], return_index=True)[1]]
-    is_border = around & (shapes.roundness >= LEAST_ROUNDNESS)
+    is_large = shapes.diameters > LEAST_BORDER_SHARE * pieces.diagonals[pieces.of_loop]
+    is_border = around & is_large & (shapes.roundness >= LEAST_ROUNDNESS)
     is_border[longest] |= is_wide[longest]
     return is_border
 

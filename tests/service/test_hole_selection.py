@@ -63,7 +63,7 @@ def with_all_ids(measures: list[dict[str, Any]]) -> list[dict[str, Any]]:
     return [measures[i % len(measures)] for i in range(8)]
 
 
-@settings(max_examples=400, deadline=None)
+@settings(max_examples=400)
 @given(measures=HOLES, diagonal=LENGTHS, options=OPTIONS)
 def test_a_plan_selects_what_the_method_selects(
     measures: list[dict[str, Any]], diagonal: float, options: HoleOptions

@@ -87,7 +87,7 @@ def test_a_hole_whose_every_fill_runs_through_something_is_refused() -> None:
     checked = fill_checked(mesh, as_holes(HOLE), smooth)
     code, reason = checked.refused[0]
     assert code == "crosses_surface"
-    assert "triangles" in reason
+    assert "other surface" in reason
     assert_opened(checked, mesh)
 
 
@@ -104,7 +104,7 @@ def test_a_lonely_triangle_is_refused_since_its_back_folds_over() -> None:
     checked = fill_checked(triangle, as_holes(all_loops(triangle)), smooth)
     code, reason = checked.refused[0]
     assert code == "folds_over"
-    assert "3 edges" in reason
+    assert "folds over itself" in reason
     assert_opened(checked, triangle)
 
 

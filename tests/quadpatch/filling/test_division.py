@@ -140,7 +140,7 @@ def test_a_short_loop_is_its_only_part() -> None:
 
 
 @given(seed=st.integers(0, 2**32 - 1), size=st.sampled_from([1e-12, 1e-6, 1e6, 1e12]))
-@settings(max_examples=4, deadline=None)
+@settings(max_examples=4)
 def test_a_rim_in_another_unit_and_place_is_divided_alike(seed: int, size: float) -> None:
     rng = np.random.default_rng(seed)
     n = 300

@@ -104,7 +104,7 @@ def test_the_membrane_on_equal_triangles_is_the_graph_laplacian() -> None:
 
 
 @given(seed=st.integers(0, 2**32 - 1), name=st.sampled_from(sorted(ENERGIES)), scale=st.sampled_from([1e-3, 1.0, 1e3]))
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 def test_fairing_moves_turns_and_grows_with_the_mesh(seed: int, name: str, scale: float) -> None:
     rng = np.random.default_rng(seed)
     mesh = bumpy_plate(20, 2.0, seed=seed)

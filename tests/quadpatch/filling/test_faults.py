@@ -188,7 +188,7 @@ def test_of_loops_that_are_not_looked_at_nothing_is_told_but_they_can_be_run_int
 
 
 @given(seed=st.integers(0, 2**32 - 1), size=st.sampled_from([1e-12, 1e-6, 1.0, 1e6, 1e12]), far=st.sampled_from([0, 9]))
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=10)
 def test_faults_are_the_same_in_every_unit_and_place(seed: int, size: float, far: float) -> None:
     rng = np.random.default_rng(seed)
     rotation, shift = random_rotation(rng), rng.normal(0, 1 + far, 3)

@@ -70,7 +70,7 @@ def test_a_capped_tube_is_closed_with_the_volume_of_its_prism(n: int) -> None:
 
 
 @given(seed=SEEDS, n=st.integers(6, 100))
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=10)
 def test_a_round_cap_has_well_shaped_triangles_about_as_large_as_its_rim_is_dense(seed: int, n: int) -> None:
     rng = np.random.default_rng(seed)
     tube = cylinder(n, 6)
@@ -94,7 +94,7 @@ def star(seed: int) -> FloatArray:
 
 
 @given(seed=SEEDS)
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 def test_a_cap_has_the_area_of_its_outline_and_never_folds(seed: int) -> None:
     outline = star(seed)
     rng = np.random.default_rng(seed)

@@ -78,7 +78,7 @@ def test_an_island_is_joined_where_it_lies_inside_near_the_rim_and_faces_its_way
 
 
 @given(seed=st.integers(0, 2**32 - 1), size=st.sampled_from([1e-6, 1.0, 1e6]))
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=10)
 def test_islands_are_found_in_every_unit_place_and_order(seed: int, size: float) -> None:
     rng = np.random.default_rng(seed)
     mesh = joined(PLATE, moved(ISLAND, (*rng.uniform(-5, 5, 2), 0)))
@@ -142,7 +142,7 @@ def test_any_number_of_islands_in_one_hole_becomes_one_sheet_with_one_border(pla
 
 
 @given(seed=st.integers(0, 2**32 - 1), n=st.integers(2, 8))
-@settings(max_examples=6, deadline=None)
+@settings(max_examples=6)
 def test_islands_anywhere_are_joined_without_a_fault(seed: int, n: int) -> None:
     rng = np.random.default_rng(seed)
     cells = rng.permutation(25)[:n]

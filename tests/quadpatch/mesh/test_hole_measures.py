@@ -39,7 +39,7 @@ def test_a_circle_has_the_measures_of_its_polygon(n: int) -> None:
 
 
 @given(n=st.integers(3, 900), seed=st.integers(0, 2**32 - 1), flat=st.booleans())
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 def test_the_diameter_is_the_largest_distance_between_two_vertices(n: int, seed: int, flat: bool) -> None:
     rng = np.random.default_rng(seed)
     loop = circle(n) * rng.uniform(0.5, 2, (n, 1)) * [1.0, 0.3, 1.0]
@@ -92,7 +92,7 @@ def test_planarity_is_the_distance_from_the_best_plane_in_diameters() -> None:
 
 
 @given(seed=st.integers(0, 2**32 - 1))
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 def test_measures_move_with_the_mesh(seed: int) -> None:
     rng = np.random.default_rng(seed)
     mesh = punched(sphere(3), (0, 0, 1), (0, -0.9, 0.4), radius=0.4)
@@ -134,7 +134,7 @@ def test_the_centre_does_not_follow_the_side_with_more_vertices() -> None:
 
 
 @given(seed=st.integers(0, 2**32 - 1))
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 def test_a_hole_faces_away_from_the_surface_around_it(seed: int) -> None:
     # On a ball the normal points outwards, and so does the plane over the end of a tube, whose own normals cancel out.
     rng = np.random.default_rng(seed)

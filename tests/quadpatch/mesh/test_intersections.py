@@ -46,7 +46,7 @@ def crossed_by_edges(corners: FloatArray) -> set[tuple[int, int]]:
 
 
 @given(seed=st.integers(0, 2**32 - 1), size=SIZES, far=st.sampled_from([0.0, 10.0, 1e3]))
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 def test_random_triangles_cross_where_an_edge_passes_through_in_any_unit_and_place(
     seed: int, size: float, far: float
 ) -> None:
@@ -98,7 +98,7 @@ def test_triangles_with_one_corner_in_common_cross_where_they_pass_through() -> 
 
 
 @given(seed=st.integers(0, 2**32 - 1), size=SIZES)
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=10)
 def test_noise_in_the_last_bit_makes_no_crossing(seed: int, size: float) -> None:
     # Two plates that meet in a seam whose vertices are not joined, at places that differ by one unit in the last place.
     rng = np.random.default_rng(seed)
@@ -127,7 +127,7 @@ def test_heights_are_shares_of_the_longest_edge_in_every_unit(size: float) -> No
 
 
 @given(seed=st.integers(0, 2**32 - 1), size=SIZES)
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 def test_boxes_touch_the_triangles_whose_own_boxes_meet_them(seed: int, size: float) -> None:
     rng = np.random.default_rng(seed)
     corners = size * (rng.uniform(-5, 5, (200, 1, 3)) + rng.uniform(-0.5, 0.5, (200, 3, 3)))

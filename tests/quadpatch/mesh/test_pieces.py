@@ -8,7 +8,7 @@ from tests.quadpatch.shapes import joined, open_grid, sphere
 
 
 @given(sizes=st.lists(st.integers(2, 5), min_size=1, max_size=5), seed=st.integers(0, 2**32 - 1))
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 def test_every_mesh_of_several_is_a_piece_however_vertices_and_triangles_are_ordered(
     sizes: list[int], seed: int
 ) -> None:
