@@ -16,6 +16,7 @@ from jobkit.strict_json import StrictJsonError, read_json
 
 MAX_HEADER_BYTES = 1 << 20
 MAX_DICTIONARY_BYTES = 256 << 20
+MAX_CARD_BYTES = 64 << 10
 _DTYPE_BYTES = {"F32": 4, "F64": 8}
 # A serialised ONNX ModelProto starts with its first field, ir_version: field 1, a varint.
 _ONNX_START = b"\x08"
@@ -75,8 +76,14 @@ def to_wire_card(card: Card) -> ModelCard:
     Raises
     ------
     UnusableModelError
-        If a fact is of the wrong type.
+        If a fact is of the wrong type, or the card is no JSON or too large: every list of models shows it.
     """
+    try:
+        size = len(json.dumps(card, allow_nan=False, ensure_ascii=False).encode())
+    except (ValueError, RecursionError) as error:
+        raise UnusableModelError("the card holds a number or a text that is not of JSON") from error
+    if size > MAX_CARD_BYTES:
+        raise UnusableModelError(f"the card has {size} bytes; the limit is {MAX_CARD_BYTES}")
     fields = ModelCard.model_fields.keys() - {"extra"}
     known = {name: value for name, value in card.items() if name in fields and value is not None}
     extra = {name: value for name, value in card.items() if name not in fields | {"kind", "name", "version"}}

@@ -14,7 +14,7 @@ from sqlalchemy.orm import Session
 
 from jobkit.clock import utc_now
 from jobkit.database import Database
-from jobkit.errors import ModelNotFoundError, NameTakenError
+from jobkit.errors import ModelKindError, ModelNotFoundError, NameTakenError
 from jobkit.model_header import Card, artifact_format, read_dictionary_card, to_wire_card
 from jobkit.network_header import read_network_card
 from jobkit.readable import readable
@@ -26,6 +26,8 @@ from jobkit.tables import AliasRow, ModelRow
 MODEL_PREFIX = "models"
 # Of one name, published at the same moment.
 _MOST_RIVALS = 20
+# What specs mean that name no model.
+DEFAULT_KINDS: dict[str, ModelKind] = {"default": "dictionary", "default-network": "autoencoder"}
 RESERVED_NAMES = frozenset({SELF, "smooth", "none", "latest"})
 
 
@@ -144,12 +146,19 @@ class Registry:
             If the reference means nothing.
         NameTakenError
             If a model has that name, or the name is reserved.
+        ModelKindError
+            If the alias means models of the other kind: specs that name it would break.
         """
         with self._database.write() as session:
             target = _resolve(session, reference)
             if alias in RESERVED_NAMES or session.scalars(select(ModelRow).where(ModelRow.name == alias)).first():
                 raise NameTakenError(f"{alias!r} is the name of a model, or reserved")
-            row = session.get(AliasRow, alias) or AliasRow(alias=alias)
+            row = session.get(AliasRow, alias, with_for_update=True) or AliasRow(alias=alias)
+            kind = _kind_of_alias(session, row)
+            if kind not in (None, target.kind):
+                raise ModelKindError(
+                    f"{alias!r} means models of the kind {kind}; {reference} is of the kind {target.kind}"
+                )
             row.name, row.version, row.updated_at = target.name, target.version, utc_now()
             session.add(row)
             return _to_alias(row)
@@ -180,6 +189,13 @@ class Registry:
             session.add(fresh)
             session.flush()
             return _to_version(session, fresh), True
+
+
+def _kind_of_alias(session: Session, row: AliasRow) -> str | None:
+    """Return the kind of model that an alias keeps to: that of its first target; None where it is free."""
+    if row.name is None:
+        return DEFAULT_KINDS.get(row.alias)
+    return _version_row(session, row.name, row.version).kind
 
 
 def _resolve(session: Session, reference: str) -> ModelRow:

@@ -110,13 +110,17 @@ def repair_and_keep(
     model: str | Path = SELF,
     options: RepairOptions | None = None,
     progress: Progress = no_progress,
+    network_card: dict[str, Any] | None = None,
 ) -> RepairedFile:
-    """Repair one file and keep what pictures of it are drawn from; see `repair_file`."""
+    """Repair one file and keep what pictures of it are drawn from; see `repair_file`.
+
+    A network that was published without a card in its file goes by `network_card`.
+    """
     options = options or RepairOptions()
     check_suffix(output)
     progress = harmless(progress)
     stages = Stages(progress)
-    inpainter, card = _resolve(model, options, progress)
+    inpainter, card = _resolve(model, options, progress, network_card)
     with stages.stage("read"):
         scan, welded = _read(source, options.weld_tolerance)
         precision = check_precision(scan, output)
@@ -188,7 +192,9 @@ def _unit_warnings(scan: Scan, output: Path) -> list[str]:
     return [f"the scan states no length unit, and {output.suffix} always means {implied}: the numbers are unchanged"]
 
 
-def _resolve(model: str | Path, options: RepairOptions, progress: Progress) -> tuple[Inpainter | None, dict[str, Any]]:
+def _resolve(
+    model: str | Path, options: RepairOptions, progress: Progress, network_card: dict[str, Any] | None
+) -> tuple[Inpainter | None, dict[str, Any]]:
     """Turn a model's name or path into its inpainter, and what the report says of it."""
     if model == SMOOTH and options.recipe == "paper":
         raise OptionError(NOTHING_TO_DO)
@@ -205,17 +211,17 @@ def _resolve(model: str | Path, options: RepairOptions, progress: Progress) -> t
     facts = {"name": loaded.card.get("name", path.stem), "version": loaded.card.get("version"), "kind": loaded.kind}
     facts["sha256"] = hashlib.sha256(path.read_bytes()).hexdigest()
     if loaded.dictionary is None:
-        return _network(path, options), facts
+        return _network(path, options, network_card), facts
     _check_recipe(loaded, options)
     inpainter = HeightsInpainter if loaded.recipe == "paper" else DictionaryInpainter
     return inpainter(loaded.dictionary), facts
 
 
-def _network(path: Path, options: RepairOptions) -> Inpainter:
+def _network(path: Path, options: RepairOptions, card: dict[str, Any] | None) -> Inpainter:
     """Open a network. Those of the paper are used by either recipe, others by our own alone."""
     from quadpatch.inpainters.autoencoder import AutoencoderInpainter  # noqa: PLC0415  onnxruntime is slow to load
 
-    network = AutoencoderInpainter.load(path)
+    network = AutoencoderInpainter.load(path, card)
     if options.recipe == "paper" and network.recipe != "paper":
         raise OptionError(
             f"{path.name} is a network for the recipe {network.recipe}, which corrects a faired fill; "

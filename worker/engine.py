@@ -26,7 +26,7 @@ def run_request(folder: Path, descriptor: int) -> None:
 def _repair(folder: Path, request: EngineRequest, reporter: Reporter) -> None:
     source, output = folder / request.source, folder / request.output
     options = RepairOptions.from_dict(request.options)
-    repaired = repair_and_keep(source, output, request.model, options, reporter.progress)
+    repaired = repair_and_keep(source, output, request.model, options, reporter.progress, request.model_card)
     _write_json(folder / REPORT_NAME, repaired.report)
     reporter.delivered()
     if request.with_preview:

@@ -4,6 +4,7 @@ import hashlib
 import os
 import tempfile
 from pathlib import Path
+from typing import Any
 
 from jobkit.digests import sha256_of
 from jobkit.errors import NotFoundError
@@ -47,6 +48,22 @@ def model_argument(model: ResolvedModel, registry: Registry, store: ObjectStore,
         message = f"model {model.name}@{model.version} is gone from the registry or the store"
         raise EngineFailedError(Failure("model_missing", message)) from error
     return str(path)
+
+
+def network_card(model: ResolvedModel, registry: Registry) -> dict[str, Any] | None:
+    """Return the card of a network as it was published, which may have come beside the file and not in it.
+
+    Returns
+    -------
+    dict or None
+        None where the published card says nothing that the engine needs: then that in the file holds.
+    """
+    if model.kind != "autoencoder" or model.name is None:
+        return None
+    card = registry.resolve(f"{model.name}@{model.version}").card
+    if card.patch_resolution is None:
+        return None
+    return {**card.extra, **card.model_dump(exclude={"extra"}, exclude_defaults=True), "kind": "autoencoder"}
 
 
 def _fetch(store: ObjectStore, key: str, sha256: str, path: Path) -> None:

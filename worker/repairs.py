@@ -7,7 +7,7 @@ nothing left of it.
 import logging
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TypeVar
 
 from jobkit.attempts import AT_WORK, StartedAttempt
@@ -27,7 +27,7 @@ from quadpatch.optional import failure_of
 from worker.context import Context
 from worker.failures import OUTAGE_DELAY_S, Failure, StopReason
 from worker.limits import EngineLimits
-from worker.models import model_argument
+from worker.models import model_argument, network_card
 from worker.outcomes import folder_with_mesh, outcome_of
 from worker.pulse import PATIENCE_S, Pulse, Vitals
 from worker.request import LOG_NAME, PREVIEW_NAME
@@ -116,7 +116,9 @@ def _work(context: Context, started: StartedAttempt, pulse: Pulse) -> _Repaired:
     model = model_argument(job.model, context.registry, context.store, context.cache_folder)
     settings = context.settings
     limits = EngineLimits(settings.job_time_limit_s, settings.job_memory_limit_mb, n_threads=context.n_threads)
-    request = repair_request(job.spec, source, model, limits)
+    request = replace(
+        repair_request(job.spec, source, model, limits), model_card=network_card(job.model, context.registry)
+    )
     with folder_with_mesh(context, source) as folder:
         with context.telemetry.stages() as spans:
             observer = Observer(_both(pulse, spans), _StopRule(context, pulse), pulse.note_memory)

@@ -42,6 +42,8 @@ class EngineRequest:
         As `quadpatch.repair.repair_file` takes it: `smooth`, `self` or the path of a model file.
     options : dict
         As `quadpatch.options.RepairOptions.from_dict` takes it.
+    model_card : dict or None
+        Of a network, in place of the one in its file.
     with_preview : bool
         Whether to draw a before/after picture.
     """
@@ -53,6 +55,7 @@ class EngineRequest:
     model: str = ""
     options: dict[str, Any] = field(default_factory=dict)
     with_preview: bool = False
+    model_card: dict[str, Any] | None = None
 
     def save(self, folder: Path) -> None:
         """Write the request into its folder."""

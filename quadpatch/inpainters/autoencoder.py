@@ -50,8 +50,14 @@ class AutoencoderInpainter:
     card: dict[str, Any]
 
     @classmethod
-    def load(cls, path: Path) -> "AutoencoderInpainter":
+    def load(cls, path: Path, card: dict[str, Any] | None = None) -> "AutoencoderInpainter":
         """Open a network file.
+
+        Parameters
+        ----------
+        path : Path
+        card : dict, optional
+            In place of the one in the file's metadata.
 
         Raises
         ------
@@ -68,7 +74,7 @@ class AutoencoderInpainter:
         except Exception as error:
             # onnxruntime raises a dozen classes of its own, and none of them is public.
             raise ModelError(f"{path.name} is no network that onnxruntime can run: {error}") from error
-        card = _card(session, path.name)
+        card = _card(session, path.name) if card is None else card
         resolution, recipe = card.get("patch_resolution"), card.get("recipe")
         if not isinstance(resolution, int) or not 8 <= resolution <= MAX_RESOLUTION:
             raise ModelError(
