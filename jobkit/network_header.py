@@ -5,12 +5,16 @@ stands under the key `card` in field 14, `metadata_props`, of which every entry 
 field, the graph, is skipped by its length.
 """
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, BinaryIO
 
+from jobkit.errors import UnusableModelError
 from jobkit.strict_json import read_json
 
-_METADATA_PROPS = 14
+_GRAPH, _OPSET_IMPORT, _METADATA_PROPS = 7, 8, 14
+_REFUSED = {20: "a training loop", 25: "functions of its own"}
+_STANDARD_DOMAINS = (b"", b"ai.onnx")
 _VARINT, _EIGHT_BYTES, _LENGTH, _FOUR_BYTES = 0, 1, 2, 5
 # A model has a dozen fields; a file that claims thousands is no model.
 MAX_FIELDS = 1000
@@ -33,25 +37,74 @@ def read_network_card(path: Path) -> dict[str, Any] | None:
             return None
 
 
+def check_network(path: Path) -> None:
+    """Refuse what can't be a network that an engine runs: bytes that only begin like one, operators of other vendors.
+
+    Whether the network runs and what it answers is found out by whoever runs it.
+
+    Raises
+    ------
+    UnusableModelError
+        If the file is no row of fields with a graph and standard operators.
+    """
+    has_graph, domains = False, list[bytes]()
+    with path.open("rb") as file:
+        try:
+            for number, length in _messages(file, path.stat().st_size):
+                has_graph = has_graph or (number == _GRAPH and length > 0)
+                if number in _REFUSED:
+                    raise UnusableModelError(f"the network has {_REFUSED[number]}, which is not taken")
+                if number == _OPSET_IMPORT:
+                    domains.append(_domain(file.read(min(length, MAX_ENTRY_BYTES))))
+        except ValueError as error:
+            raise UnusableModelError("the artifact is no ONNX network: it is cut off or damaged") from error
+    if not has_graph or not domains:
+        raise UnusableModelError("the artifact is no ONNX network: it has no graph, or names no operators")
+    if any(domain not in _STANDARD_DOMAINS for domain in domains):
+        raise UnusableModelError("the network uses operators that are not ONNX's own")
+
+
 def _find_card(file: BinaryIO, size: int) -> dict[str, Any] | None:
-    for _ in range(MAX_FIELDS):
-        if file.tell() >= size:
-            return None
-        number, wire_type = divmod(_varint(file), 8)
-        if wire_type == _VARINT:
-            _varint(file)
-            continue
-        length = {_EIGHT_BYTES: 8, _FOUR_BYTES: 4}.get(wire_type) or (_varint(file) if wire_type == _LENGTH else -1)
-        if not 0 <= length <= size - file.tell():
-            raise ValueError("a field ends behind the file")
-        if number != _METADATA_PROPS or wire_type != _LENGTH or length > MAX_ENTRY_BYTES:
-            file.seek(length, 1)
+    for number, length in _messages(file, size):
+        if number != _METADATA_PROPS or length > MAX_ENTRY_BYTES:
             continue
         key, value = _entry(file.read(length))
         if key == b"card":
             card = read_json(value)
             return card if isinstance(card, dict) else None
     return None
+
+
+def _messages(file: BinaryIO, size: int) -> Iterator[tuple[int, int]]:
+    """Yield number and length of each field that has a length, with the file at its first byte."""
+    for _ in range(MAX_FIELDS):
+        if file.tell() >= size:
+            return
+        number, wire_type = divmod(_varint(file), 8)
+        if wire_type == _VARINT:
+            _varint(file)
+            continue
+        length = {_EIGHT_BYTES: 8, _FOUR_BYTES: 4}.get(wire_type) or (_varint(file) if wire_type == _LENGTH else -1)
+        end = file.tell() + length
+        if not file.tell() <= end <= size:
+            raise ValueError("a field ends behind the file")
+        if wire_type == _LENGTH:
+            yield number, length
+        file.seek(end)
+    raise ValueError("it has more fields than a model")
+
+
+def _domain(data: bytes) -> bytes:
+    """Return the domain in one import of operators: field 1 is its name, field 2 the version."""
+    domain, start = b"", 0
+    while start < len(data):
+        tag, start = _varint_at(data, start)
+        value, start = _varint_at(data, start)
+        if tag % 8 == _LENGTH:
+            domain, start = data[start : start + value], start + value
+        elif tag % 8 != _VARINT:
+            raise ValueError("no import of operators")
+    return domain
 
 
 def _entry(data: bytes) -> tuple[bytes, bytes]:

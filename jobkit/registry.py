@@ -16,7 +16,7 @@ from jobkit.clock import utc_now
 from jobkit.database import Database
 from jobkit.errors import ModelKindError, ModelNotFoundError, NameTakenError
 from jobkit.model_header import Card, artifact_format, read_dictionary_card, to_wire_card
-from jobkit.network_header import read_network_card
+from jobkit.network_header import check_network, read_network_card
 from jobkit.readable import readable
 from jobkit.removals import assure
 from jobkit.schema import SELF, Alias, Model, ModelKind, ModelLinks, ModelList, ModelVersion
@@ -168,6 +168,7 @@ class Registry:
             kind_of_file = artifact_format(path)
             artifact = Artifact(stored.key, kind_of_file, stored.sha256, stored.size_bytes)
             if kind_of_file == "onnx":
+                check_network(path)
                 return "autoencoder", artifact, card or read_network_card(path) or {}
             return "dictionary", artifact, read_dictionary_card(path)
 

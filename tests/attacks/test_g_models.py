@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from onnx import TensorProto, helper
 from starlette.testclient import TestClient
 
 from jobkit.database import Database
@@ -17,6 +18,7 @@ from jobkit.registry import Registry
 from jobkit.schema import JobSpec, ResolvedModel
 from jobkit.settings import Settings
 from jobkit.store import ObjectStore
+from quadpatch.model_file import SHIPPED_MODELS
 from service.app import create_app
 from tests.integration.conftest import ply_bytes, punched_relief
 from tests.quadpatch.inpainters.test_autoencoder import N, write_network
@@ -92,3 +94,46 @@ def test_default_cannot_begin_as_a_network(registry: Registry, tmp_path: Path) -
     registry.publish_file("copy", write_network(tmp_path / "copy.onnx", None, 1), CARD)
     with pytest.raises(ModelKindError):
         registry.set_alias("default", "copy@1")
+
+
+def helper_model(domain: str, functions: bool) -> bytes:
+    values = [helper.make_tensor_value_info(name, TensorProto.FLOAT, [1]) for name in ("patches", "clean")]
+    graph = helper.make_graph([helper.make_node("Identity", ["patches"], ["clean"])], "g", values[:1], values[1:])
+    function = helper.make_function("own", "f", ["a"], ["b"], [helper.make_node("Identity", ["a"], ["b"])], [], [])
+    opsets = [helper.make_opsetid("", 17), *([helper.make_opsetid(domain, 1)] if domain else [])]
+    model = helper.make_model(graph, opset_imports=opsets, functions=[function] if functions else [])
+    return bytes(model.SerializeToString())
+
+
+GOOD = helper_model("", functions=False)
+NO_NETWORKS = {
+    "two bytes": b"\x08\x0a",
+    "any byte": b"\x08\x7f",
+    "cut off": GOOD[:-3],
+    "followed by junk": GOOD + b"\xff\xff",
+    "no graph": b"\x08\x0a\x42\x02\x10\x11",
+    "no operators": b"\x08\x0a\x3a\x03\x12\x01g",
+    "endless fields": b"\x08\x0a" * 5000,
+    "operators of another vendor": helper_model("com.microsoft", functions=False),
+    "functions of its own": helper_model("", functions=True),
+}
+
+
+@pytest.mark.parametrize("case", NO_NETWORKS)
+def test_what_only_begins_like_a_network_is_not_published(registry: Registry, tmp_path: Path, case: str) -> None:
+    path = tmp_path / "network.onnx"
+    path.write_bytes(NO_NETWORKS[case])
+    with pytest.raises(UnusableModelError):
+        registry.publish_file("junk", path, CARD)
+    assert registry.list_all().models == []
+
+
+def test_a_network_of_standard_operators_is_published(registry: Registry, tmp_path: Path) -> None:
+    path = tmp_path / "network.onnx"
+    path.write_bytes(GOOD)
+    assert registry.publish_file("good", path, CARD)[1]
+
+
+@pytest.mark.parametrize("path", sorted(SHIPPED_MODELS.glob("*.onnx")), ids=lambda path: str(path.stem))
+def test_every_network_that_ships_is_published(registry: Registry, path: Path) -> None:
+    assert registry.publish_file("shipped", path)[1]

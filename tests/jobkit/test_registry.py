@@ -13,7 +13,8 @@ from jobkit.store import ObjectStore
 from jobkit.sweep import GRACE, sweep_objects
 
 Make = Callable[[int], bytes]
-NETWORK = b"\x08\x0a\x12\x07pytorch"
+# A graph without nodes, and standard operators: as much as is looked at here.
+NETWORK = b"\x08\x0a\x12\x07pytorch\x3a\x03\x12\x01g\x42\x02\x10\x11"
 
 
 @pytest.fixture

@@ -9,6 +9,7 @@ from jobkit.registry import Registry
 from jobkit.schema import CnnMethod, DictionaryMethod, Fitting, SmoothMethod
 from jobkit.selection import resolve_method
 from jobkit.store import ObjectStore
+from tests.jobkit.test_registry import NETWORK
 
 
 @pytest.fixture
@@ -40,7 +41,7 @@ def test_a_network_is_fitted_to_the_mesh_without_being_registered(registry: Regi
 
 
 def test_a_network_that_is_taken_as_it_is_takes_no_time_to_be_fitted(registry: Registry, tmp_path: Path) -> None:
-    (tmp_path / "net").write_bytes(b"\x08\x0a")
+    (tmp_path / "net").write_bytes(NETWORK)
     registry.publish_file("small", tmp_path / "net")
     for fitting in (Fitting(steps=30), Fitting(seconds=30.0)):
         with pytest.raises(ModelKindError, match="small@1 is taken as it is; fitting goes with the model self only"):
@@ -51,7 +52,7 @@ def test_a_network_that_is_taken_as_it_is_takes_no_time_to_be_fitted(registry: R
 def test_a_network_is_asked_for_in_vain_until_one_is_registered(registry: Registry, tmp_path: Path) -> None:
     with pytest.raises(NoNetworkError, match="upload one with POST"):
         resolve_method(registry, CnnMethod(method="cnn"))
-    (tmp_path / "net").write_bytes(b"\x08\x0a")
+    (tmp_path / "net").write_bytes(NETWORK)
     registry.publish_file("small", tmp_path / "net")
     with pytest.raises(ModelNotFoundError):
         resolve_method(registry, CnnMethod(method="cnn"))

@@ -8,6 +8,7 @@ from jobkit.database import Database
 from jobkit.registry import Registry
 from jobkit.shipped import seed_shipped
 from jobkit.store import ObjectStore
+from tests.jobkit.test_registry import NETWORK
 
 Make = Callable[[int], bytes]
 
@@ -22,7 +23,7 @@ def folder(tmp_path: Path, dictionary_bytes: Make) -> Path:
     shipped = tmp_path / "shipped"
     shipped.mkdir()
     (shipped / "general-dictionary@1.safetensors").write_bytes(dictionary_bytes(1))
-    (shipped / "small@3.onnx").write_bytes(b"\x08\x0a")
+    (shipped / "small@3.onnx").write_bytes(NETWORK)
     (shipped / "small@3.json").write_text('{"description": "a small network", "kind": "autoencoder"}')
     (shipped / "README.md").write_text("not a model")
     return shipped

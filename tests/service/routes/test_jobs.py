@@ -7,6 +7,7 @@ from starlette.testclient import TestClient
 
 from jobkit.schema import Job, JobError, JobState
 from service.services import Services
+from tests.jobkit.test_registry import NETWORK
 from tests.waiting import wait_until
 
 SMOOTH = {"method": "smooth"}
@@ -60,7 +61,7 @@ def test_a_job_that_cannot_work_is_refused_at_once(
 def test_a_network_can_be_fitted_to_the_mesh_and_one_that_is_taken_as_it_is_can_not(
     client: TestClient, mesh_id: str
 ) -> None:
-    client.post("/v1/models/small/versions", content=b"\x08\x0a", headers={"Content-Type": "application/octet-stream"})
+    client.post("/v1/models/small/versions", content=NETWORK, headers={"Content-Type": "application/octet-stream"})
     fitting = {"steps": 30, "seconds": 20.0}
     method = {"method": "cnn", "model": "self", "fitting": fitting}
     accepted = client.post("/v1/jobs", json={"mesh_id": mesh_id, "method": method})

@@ -6,7 +6,8 @@ import pytest
 from starlette.testclient import TestClient
 
 Make = Callable[[int], bytes]
-NETWORK = b"\x08\x0a\x12\x07pytorch"
+# A graph without nodes, and standard operators: as much as is looked at here.
+NETWORK = b"\x08\x0a\x12\x07pytorch\x3a\x03\x12\x01g\x42\x02\x10\x11"
 
 
 def test_an_artifact_becomes_a_version_and_comes_back(client: TestClient, dictionary_bytes: Make) -> None:
