@@ -3,7 +3,7 @@
 An analysis is fenced like a job: starting it raises `attempt`, and only the latest attempt may write.
 """
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from datetime import timedelta
 
@@ -110,6 +110,12 @@ class Meshes:
             if changed.rowcount != 1:  # type: ignore[attr-defined]
                 raise StaleAttemptError(f"mesh {mesh_id} was taken by another worker")
             return Analysis(_to_source(row), row.attempt + 1, row.attempt + 1 - row.forgiven >= MAX_ANALYSES)
+
+    def analysing(self, mesh_ids: Collection[str]) -> set[str]:
+        """Return those of the meshes whose analysis is still to come."""
+        query = select(MeshRow.id).where(MeshRow.id.in_(mesh_ids), MeshRow.state == MeshState.ANALYSING.value)
+        with self._database.read() as session:
+            return set(session.scalars(query))
 
     def renew(self, analysis: Analysis, lease_s: float) -> None:
         """Prolong the lease; raise StaleAttemptError where the analysis was taken away."""

@@ -1,8 +1,8 @@
 """Queue adapter: RQ as an executor only. The database is the truth; a lost queue is refilled from it.
 
 There is one queue for both kinds of tasks: RQ loses a job when a worker that listens to two queues is killed right
-after the pop. Analyses go to the front, they are short and somebody waits for them; so do jobs whose attempt was lost,
-they have waited already.
+after the pop. Both stand in it by age, since a file says nothing of how long its analysis takes; only jobs whose
+attempt was lost go to the front, they have waited already.
 """
 
 from collections.abc import Iterator
@@ -56,7 +56,7 @@ class TaskQueue:
 
     def enqueue_inspection(self, mesh_id: str, attempt: int) -> None:
         """Ask for the analysis of a mesh; raise QueueUnavailableError."""
-        self._enqueue(INSPECT_MESH, mesh_id, mesh_entry(mesh_id, attempt), at_front=True)
+        self._enqueue(INSPECT_MESH, mesh_id, mesh_entry(mesh_id, attempt), at_front=False)
 
     def waiting(self) -> set[str]:
         """Return the entries that wait in the queue; raise QueueUnavailableError."""

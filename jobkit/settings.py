@@ -56,6 +56,18 @@ class Settings(BaseSettings):
     max_streams: int = Field(
         default=500, ge=0, description="Most event streams at the same time, of each process of the API."
     )
+    max_waiters: int = Field(
+        default=1000,
+        ge=0,
+        description="Most requests that wait for an end at the same time, of each process of the API; others are "
+        "answered at once.",
+    )
+    max_connections: int = Field(
+        default=4096, ge=16, description="Most connections at the same time, of each process of the API."
+    )
+    max_bodies: int = Field(
+        default=256, ge=1, description="Most bodies of requests under way at the same time, of each process of the API."
+    )
     job_time_limit_s: float = Field(default=900.0, ge=1, description="Most wall-clock seconds of one attempt.")
     job_memory_limit_mb: int = Field(default=4096, ge=256, description="Most memory of one attempt, in MiB.")
     max_attempts: int = Field(default=3, ge=1, le=20, description="Attempts before a job is given up.")

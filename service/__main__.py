@@ -14,10 +14,12 @@ from jobkit.settings import Settings, load_settings, settings_table
 from jobkit.telemetry import open_telemetry
 from service.app import create_app
 from service.auth import check_exposure
+from service.connections import ConnectionLimits, limited_protocol, raise_descriptor_limit
 from service.document import to_yaml
 
 # As of `uvicorn.run`.
 _START_FAILED = 3
+_BACKLOG = 4096
 USAGE = "usage: python -m service [openapi | settings]"
 
 
@@ -45,8 +47,12 @@ def main(arguments: list[str]) -> int:
 
 
 def _serve(app: FastAPI, settings: Settings) -> None:
+    limits = ConnectionLimits(raise_descriptor_limit(settings.max_connections))
     config = uvicorn.Config(
         app,
+        http=limited_protocol(limits),
+        ws="none",
+        backlog=_BACKLOG,
         host=settings.host,
         port=settings.port,
         log_level=settings.log_level,

@@ -9,9 +9,12 @@ from fastapi import FastAPI
 from jobkit.settings import Settings
 from jobkit.telemetry import Telemetry
 from service.auth import AuthMiddleware, check_exposure
+from service.bodies import BodiesMiddleware
 from service.document import TITLE, VERSION, install_document, operation_id
 from service.frame import FrameMiddleware
 from service.handlers import install_handlers
+from service.head import HeadMiddleware
+from service.kept import KEPT_S, Kept
 from service.metrics import StateCollector, new_registry
 from service.observe import ObserveMiddleware
 from service.routes import (
@@ -50,7 +53,7 @@ def create_app(settings: Settings, telemetry: Telemetry | None = None) -> FastAP
         version=VERSION,
         docs_url=None,
         redoc_url=None,
-        openapi_url="/openapi.json",
+        openapi_url=None,
         redirect_slashes=False,
         generate_unique_id_function=operation_id,
         lifespan=_lifespan,
@@ -58,6 +61,8 @@ def create_app(settings: Settings, telemetry: Telemetry | None = None) -> FastAP
     app.state.settings = settings
     app.state.max_json_bytes = settings.max_json_kb << 10
     app.state.registry = new_registry()
+    app.state.readiness = Kept(KEPT_S)
+    app.state.documents = {}
     app.state.telemetry = telemetry or Telemetry()
     modules = (meshes, jobs, events, results, repairs, retention, models, webhooks, deliveries, health, metrics)
     routers = [module.router for module in modules]
@@ -66,6 +71,8 @@ def create_app(settings: Settings, telemetry: Telemetry | None = None) -> FastAP
     install_document(app)
     install_handlers(app, [route for router in routers for route in router.routes])
     # The last one added is the outermost: ids and headers also stand on the answers of the auth middleware.
+    app.add_middleware(HeadMiddleware)
+    app.add_middleware(BodiesMiddleware, most=settings.max_bodies)
     app.add_middleware(AuthMiddleware, settings=settings)
     app.add_middleware(FrameMiddleware)
     app.add_middleware(ObserveMiddleware, registry=app.state.registry, telemetry=app.state.telemetry)
@@ -81,6 +88,8 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     try:
         async with services.streams.running():
             yield
+            services.job_waiters.close()
+            services.mesh_waiters.close()
     finally:
         app.state.registry.unregister(collector)
         services.close()

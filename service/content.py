@@ -15,6 +15,7 @@ from starlette.responses import Response, StreamingResponse
 
 from jobkit.digests import digest_field, verified_chunks
 from jobkit.store import ObjectStore
+from service.head import is_head
 from service.problems import ProblemError
 
 _RANGE = re.compile(r"^bytes=(?:(\d{1,18})-(\d{0,18})|-(\d{1,18}))$")
@@ -50,7 +51,7 @@ def content_response(request: Request, store: ObjectStore, content: Content) -> 
     ObjectNotFoundError
         If the store has lost it.
     ProblemError
-        416 if the range lies behind the end.
+        412 if an If-Match header names other bytes, 416 if the range lies behind the end.
     """
     headers = {
         "ETag": f'"{content.sha256}"',
@@ -59,18 +60,22 @@ def content_response(request: Request, store: ObjectStore, content: Content) -> 
         "Cache-Control": "private, max-age=31536000, immutable",
         "Content-Disposition": content_disposition(content.filename),
     }
+    _check_if_match(request, headers["ETag"])
     if etag_matches(request.headers.get("if-none-match"), headers["ETag"]):
         return Response(status_code=HTTPStatus.NOT_MODIFIED, headers=headers)
     span = _asked_range(request, content)
-    if span is None:
-        headers["Content-Length"] = str(content.size_bytes)
-        chunks = verified_chunks(store.read(content.key), content.sha256)
-        return StreamingResponse(chunks, HTTPStatus.OK, headers, content.media_type)
-    start, length = span
-    headers["Content-Range"] = f"bytes {start}-{start + length - 1}/{content.size_bytes}"
+    status, start, length = HTTPStatus.OK, 0, content.size_bytes
+    if span is not None:
+        status, (start, length) = HTTPStatus.PARTIAL_CONTENT, span
+        headers["Content-Range"] = f"bytes {start}-{start + length - 1}/{content.size_bytes}"
     headers["Content-Length"] = str(length)
+    if is_head(request.scope):
+        store.size(content.key)  # or the answer would promise what the store has lost
+        return Response(None, status, headers, content.media_type)
     chunks = store.read(content.key, start, length)
-    return StreamingResponse(chunks, HTTPStatus.PARTIAL_CONTENT, headers, content.media_type)
+    if span is None:
+        chunks = verified_chunks(chunks, content.sha256)
+    return StreamingResponse(chunks, status, headers, content.media_type)
 
 
 def etag_matches(header: str | None, etag: str) -> bool:
@@ -79,6 +84,18 @@ def etag_matches(header: str | None, etag: str) -> bool:
         return False
     tags = [tag.strip().removeprefix("W/") for tag in header.split(",")]
     return header.strip() == "*" or etag.removeprefix("W/") in tags
+
+
+def precondition_failed(detail: str) -> ProblemError:
+    """Return the answer to an If-Match header that does not hold."""
+    return ProblemError(HTTPStatus.PRECONDITION_FAILED, "precondition_failed", detail)
+
+
+def _check_if_match(request: Request, etag: str) -> None:
+    """Compare strongly, as RFC 9110 asks: a weak tag never matches."""
+    header = request.headers.get("if-match")
+    if header is not None and header.strip() != "*" and etag not in [tag.strip() for tag in header.split(",")]:
+        raise precondition_failed(f"the entity tag of the bytes is {etag}, which If-Match does not name")
 
 
 def content_disposition(filename: str) -> str:

@@ -60,4 +60,5 @@ def install_handlers(app: FastAPI, routes: Sequence[BaseRoute]) -> None:
 def allowed_methods(routes: Sequence[BaseRoute], path: str) -> list[str]:
     """Return all methods at a path. The router itself only knows those of the first route that fits."""
     fitting = [route for route in routes if isinstance(route, Route) and route.path_regex.match(path)]
-    return sorted(set().union(*(route.methods or () for route in fitting))) or ["GET"]
+    methods = set().union(*(route.methods or () for route in fitting)) or {"GET"}
+    return sorted(methods | {"HEAD"} if "GET" in methods else methods)

@@ -14,6 +14,8 @@ if TYPE_CHECKING:
     from python_multipart.multipart import MultipartCallbacks
 
 MAX_PARTS = 8
+# Before the first part and after the last one; a chunk that holds the border is not counted byte by byte.
+MAX_OUTSIDE_BYTES = 256 << 10
 
 
 @dataclass(frozen=True)
@@ -28,7 +30,7 @@ class PartStart:
 class PartData:
     """Bytes of the part that began last."""
 
-    data: bytes
+    data: bytearray
 
 
 @dataclass(frozen=True)
@@ -56,7 +58,12 @@ async def read_parts(content_type: str, chunks: AsyncIterator[bytes]) -> AsyncIt
     try:
         parser = MultipartParser(boundary, collector.callbacks())
         async for chunk in chunks:
+            if collector.is_whole:
+                collector.count_outside(len(chunk))
+                continue
             parser.write(chunk)
+            if not collector.has_begun:
+                collector.count_outside(len(chunk))
             for event in events:
                 yield event
             events.clear()
@@ -80,7 +87,19 @@ class _Collector:
         self._field, self._value = b"", b""
         self._disposition = b""
         self._n_parts = 0
+        self._n_outside = 0
         self.is_whole = False
+
+    @property
+    def has_begun(self) -> bool:
+        """Whether a part has begun."""
+        return self._n_parts > 0
+
+    def count_outside(self, n_bytes: int) -> None:
+        """Count bytes outside of all parts, which mean nothing, up to a limit."""
+        self._n_outside += n_bytes
+        if self._n_outside > MAX_OUTSIDE_BYTES:
+            raise malformed_multipart(f"more than {MAX_OUTSIDE_BYTES} bytes lie outside of its parts")
 
     def callbacks(self) -> "MultipartCallbacks":
         """Return what the parser calls."""
@@ -121,7 +140,11 @@ class _Collector:
         self._events.append(PartStart(name.decode("utf-8", "replace"), decoded))
 
     def _on_part_data(self, data: bytes, start: int, end: int) -> None:
-        self._events.append(PartData(data[start:end]))
+        last = self._events[-1] if self._events else None
+        if isinstance(last, PartData):  # the parser hands over each line that might have been a boundary
+            last.data.extend(data[start:end])
+        else:
+            self._events.append(PartData(bytearray(data[start:end])))
 
     def _on_part_end(self) -> None:
         self._events.append(PartEnd())

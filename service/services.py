@@ -22,6 +22,7 @@ from jobkit.store import ObjectStore, open_store
 from jobkit.webhooks import Webhooks
 from service.board import Board
 from service.streams import EventStreams
+from service.waiting import Waiters
 
 
 @dataclass(frozen=True)
@@ -41,6 +42,8 @@ class Services:
     estimates: Estimates
     streams: EventStreams
     board: Board
+    job_waiters: Waiters
+    mesh_waiters: Waiters
 
     def close(self) -> None:
         """Close all connections."""
@@ -79,6 +82,8 @@ def open_services(settings: Settings) -> Services:
         estimates,
         EventStreams(database, settings.max_streams),
         Board(jobs, estimates),
+        Waiters(jobs.unfinished, settings.max_waiters),
+        Waiters(meshes.analysing, settings.max_waiters),
     )
 
 

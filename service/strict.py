@@ -1,8 +1,11 @@
-"""Routes that take requests at their word: no unknown query parameter, no JSON that isn't called JSON."""
+"""Routes that take requests at their word.
+
+No unknown or repeated query parameter, no JSON that isn't called JSON, no body and no condition that is not looked at.
+"""
 
 from collections.abc import Callable, Coroutine
 from http import HTTPStatus
-from typing import Any
+from typing import Any, Literal
 
 from fastapi import Request, Response
 from fastapi.dependencies.models import Dependant
@@ -10,6 +13,8 @@ from fastapi.routing import APIRoute
 
 from jobkit.errors import TooLargeError
 from jobkit.strict_json import StrictJsonError, read_json
+from service.bodies import has_body
+from service.content import precondition_failed
 from service.problems import ProblemError, invalid_request, malformed_json
 
 Handler = Callable[[Request], Coroutine[Any, Any, Response]]
@@ -21,24 +26,44 @@ class StrictRoute(APIRoute):
     def get_route_handler(self) -> Handler:
         """Wrap FastAPI's handler."""
         handle = super().get_route_handler()
-        known = _query_names(self.dependant)
-        has_json_body = self.body_field is not None
+        known = _names(self.dependant, "query_params")
+        knows_if_match = "If-Match" in _names(self.dependant, "header_params")
+        takes_upload = "requestBody" in (self.openapi_extra or {})
 
         async def handle_strictly(request: Request) -> Response:
-            unknown = [name for name in request.query_params if name not in known]
-            if unknown:
-                message = f"no such parameter; there are: {', '.join(sorted(known)) or 'none'}"
-                raise invalid_request([{"loc": ("query", name), "msg": message, "type": "unknown"} for name in unknown])
-            if has_json_body:
-                request = await _with_json_body(request)
+            _check_query(request, known)
+            if not knows_if_match:
+                _check_if_match(request)
+            if self.body_field is not None:
+                request = await _with_json_body(request, is_optional=not self.body_field.field_info.is_required())
+            elif not takes_upload and has_body(request.scope):
+                raise ProblemError(HTTPStatus.BAD_REQUEST, "unexpected_body", "this request takes no body")
             return await handle(request)
 
         return handle_strictly
 
 
-def _query_names(dependant: Dependant) -> set[str]:
-    own = {parameter.alias for parameter in dependant.query_params}
-    return own.union(*(_query_names(inner) for inner in dependant.dependencies))
+def _check_query(request: Request, known: set[str]) -> None:
+    names = [name for name, _ in request.query_params.multi_items()]
+    unknown = [name for name in dict.fromkeys(names) if name not in known]
+    if unknown:
+        message = f"no such parameter; there are: {', '.join(sorted(known)) or 'none'}"
+        raise invalid_request([{"loc": ("query", name), "msg": message, "type": "unknown"} for name in unknown])
+    repeated = [name for name in known if names.count(name) > 1]
+    if repeated:
+        message = "the parameter comes more than once"
+        raise invalid_request([{"loc": ("query", name), "msg": message, "type": "repeated"} for name in repeated])
+
+
+def _check_if_match(request: Request) -> None:
+    header = request.headers.get("if-match")
+    if header is not None and header.strip() != "*":
+        raise precondition_failed("If-Match can't hold: nothing here has a strong entity tag")
+
+
+def _names(dependant: Dependant, kind: Literal["query_params", "header_params"]) -> set[str]:
+    own = {parameter.alias for parameter in getattr(dependant, kind)}
+    return own.union(*(_names(inner, kind) for inner in dependant.dependencies))
 
 
 class _BoundedRequest(Request):
@@ -58,7 +83,9 @@ class _BoundedRequest(Request):
             raise malformed_json(str(error)) from error
 
 
-async def _with_json_body(request: Request) -> Request:
+async def _with_json_body(request: Request, *, is_optional: bool) -> Request:
+    if is_optional and not has_body(request.scope):
+        return request
     kind = request.headers.get("content-type", "").partition(";")[0].strip().lower()
     if kind != "application/json" and not (kind.startswith("application/") and kind.endswith("+json")):
         raise ProblemError(

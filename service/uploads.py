@@ -147,7 +147,7 @@ class _PartSorter:
         else:
             self._field = self.fields[part.name] = bytearray()
 
-    def add(self, data: bytes) -> None:
+    def add(self, data: bytes | bytearray) -> None:
         """Take bytes of the part that began last."""
         if self._field is None:
             self.is_empty = self.is_empty and not data

@@ -1,18 +1,24 @@
-"""Requests that wait: `Prefer: wait=N` (RFC 7240), in seconds, at most as long as the service allows."""
+"""Requests that wait: `Prefer: wait=N` (RFC 7240), in seconds, at most as long as the service allows.
 
+A look at the database every tenth of a second serves all of them, however many there are.
+"""
+
+import asyncio
+import contextlib
+import logging
 import re
-import time
-from collections.abc import Callable
-from typing import Annotated, TypeVar
+from collections.abc import Callable, Collection
+from typing import Annotated
 
-import anyio
 import anyio.to_thread
 from fastapi import Header, Response
+from sqlalchemy.exc import SQLAlchemyError
 
-T = TypeVar("T")
+from jobkit.errors import JobkitError
+
+LOOK_S = 0.1
+_logger = logging.getLogger("service")
 _WAIT = re.compile(r"(?:^|[,;\s])wait\s*=\s*\"?(\d{1,6})\"?(?=$|[,;\s])", re.IGNORECASE)
-_SHORTEST_PAUSE_S = 0.05
-_LONGEST_PAUSE_S = 0.5
 
 PreferHeader = Annotated[
     str | None,
@@ -38,13 +44,69 @@ def note_applied(response: Response, prefer: str | None) -> None:
         response.headers["Preference-Applied"] = f"wait={match[1]}"
 
 
-async def wait_until(look: Callable[[], T], is_done: Callable[[T], bool], wait_s: float) -> T:
-    """Look again and again until it is done or the time is over; return the last sight."""
-    deadline = time.monotonic() + wait_s
-    pause_s = _SHORTEST_PAUSE_S
-    seen = await anyio.to_thread.run_sync(look)
-    while not is_done(seen) and (left_s := deadline - time.monotonic()) > 0:
-        await anyio.sleep(min(pause_s, left_s))
-        pause_s = min(pause_s * 1.5, _LONGEST_PAUSE_S)
-        seen = await anyio.to_thread.run_sync(look)
-    return seen
+class Waiters:
+    """Requests that wait for the end of something, all of them by one look.
+
+    Parameters
+    ----------
+    unfinished : callable
+        Returns those of some ids that have not ended. One call for all that are waited for, in a thread.
+    most : int
+        Requests that wait at the same time.
+    """
+
+    def __init__(self, unfinished: Callable[[Collection[str]], Collection[str]], most: int) -> None:
+        self._unfinished = unfinished
+        self._most = most
+        self._n_waiting = 0
+        self._waiting: dict[str, set[asyncio.Future[None]]] = {}
+        self._looking: asyncio.Task[None] | None = None
+
+    def __len__(self) -> int:
+        """Count the requests that wait."""
+        return self._n_waiting
+
+    async def wait(self, subject: str, wait_s: float) -> bool:
+        """Wait at most `wait_s` for the end of `subject`; return False, at once, where too many wait already."""
+        if self._n_waiting >= self._most:
+            return False
+        woken = asyncio.get_running_loop().create_future()
+        self._n_waiting += 1
+        self._waiting.setdefault(subject, set()).add(woken)
+        if self._looking is None or self._looking.done():
+            self._looking = asyncio.create_task(self._look())
+        with contextlib.suppress(TimeoutError):
+            try:
+                async with asyncio.timeout(wait_s):
+                    await woken
+            finally:
+                self._leave(subject, woken)
+        return True
+
+    def close(self) -> None:
+        """Let all go on that wait."""
+        self._wake(list(self._waiting))
+
+    async def _look(self) -> None:
+        while self._waiting:
+            subjects = list(self._waiting)
+            try:
+                unfinished = await anyio.to_thread.run_sync(self._unfinished, subjects)
+            except (JobkitError, SQLAlchemyError) as error:
+                _logger.warning("requests that wait can't look: %r", error.__cause__ or error)
+                unfinished = ()  # each of them looks once more, and says what is wrong
+            self._wake([subject for subject in subjects if subject not in unfinished])
+            await asyncio.sleep(LOOK_S)
+
+    def _wake(self, subjects: list[str]) -> None:
+        for subject in subjects:
+            for woken in self._waiting.get(subject, ()):
+                if not woken.done():
+                    woken.set_result(None)
+
+    def _leave(self, subject: str, woken: asyncio.Future[None]) -> None:
+        self._n_waiting -= 1
+        left = self._waiting[subject]
+        left.discard(woken)
+        if not left:
+            del self._waiting[subject]

@@ -53,6 +53,9 @@ def _conditional_headers(
     if_range: Annotated[
         str | None, Header(alias="If-Range", description="Entity tag that the range is meant for.")
     ] = None,
+    if_match: Annotated[
+        str | None, Header(alias="If-Match", description="Entity tags; the answer is 412 where none of them holds.")
+    ] = None,
     if_none_match: IfNoneMatch = None,
 ) -> None:
     """Document the headers that `service.content` reads."""
@@ -71,6 +74,7 @@ _MEANING = {
     404: "There is no such thing.",
     409: "Not possible in the present state.",
     410: "It was there, and the store has lost it.",
+    412: "If-Match names other bytes.",
     413: "The body is over the limit.",
     415: "The body is of a type that is not read here.",
     416: "The range lies outside.",

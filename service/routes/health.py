@@ -1,17 +1,21 @@
 """Whether the service lives, whether it can work, and what it is."""
 
+import json
+import math
+from collections.abc import Callable
 from http import HTTPStatus
-from typing import Literal
+from typing import Any, Literal, cast
 
 from fastapi import APIRouter, Request
 from pydantic import BaseModel, Field
 from starlette.responses import HTMLResponse, Response
 
 from service.document import to_yaml
+from service.kept import Kept
 from service.problems import RETRY_AFTER_S, ProblemError
 from service.readiness import Readiness, find_failures, read_readiness
 from service.routes.common import problems
-from service.services import ServicesDep
+from service.services import Services, ServicesDep
 from service.strict import StrictRoute
 
 router = APIRouter(tags=["service"], route_class=StrictRoute)
@@ -37,14 +41,21 @@ class Health(BaseModel):
 
 
 @router.get("/healthz", response_model=Health, responses=problems())
-def healthz() -> Health:
+async def healthz() -> Health:
     """Tell whether the process lives."""
     return Health()
 
 
 @router.get("/readyz", response_model=Readiness, responses=problems())
-def readyz(services: ServicesDep) -> Readiness:
-    """Tell whether jobs can be taken, which needs database and object store, and whether they are worked on."""
+async def readyz(request: Request, services: ServicesDep) -> Readiness:
+    """Tell whether jobs can be taken, which needs database and object store, and whether they are worked on.
+
+    The answer is up to a second old.
+    """
+    return cast(Readiness, await request.app.state.readiness.get(lambda: _read_readiness(services)))
+
+
+def _read_readiness(services: Services) -> Readiness:
     failed = find_failures(services)
     if failed:
         names = ", ".join(item.pointer for item in failed)
@@ -55,13 +66,23 @@ def readyz(services: ServicesDep) -> Readiness:
 
 
 @router.get("/openapi.yaml", include_in_schema=False)
-def openapi_yaml(request: Request) -> Response:
+async def openapi_yaml(request: Request) -> Response:
     """Hand out the description of this service."""
-    state = request.app.state
-    if not hasattr(state, "openapi_yaml"):
-        # Writing YAML takes a second, and anybody may ask for it.
-        state.openapi_yaml = to_yaml(request.app.openapi())
-    return Response(state.openapi_yaml, media_type="application/yaml")
+    return await _document(request, "application/yaml", to_yaml)
+
+
+@router.get("/openapi.json", include_in_schema=False)
+async def openapi_json(request: Request) -> Response:
+    """Hand out the same as JSON."""
+    return await _document(request, "application/json", json.dumps)
+
+
+async def _document(request: Request, media_type: str, write: Callable[[dict[str, Any]], str]) -> Response:
+    # It never changes. Writing YAML takes a second, and any client may ask for it.
+    app = request.app
+    kept = app.state.documents.setdefault(media_type, Kept(math.inf))
+    text = await kept.get(lambda: write(app.openapi()))
+    return Response(text, media_type=media_type)
 
 
 @router.get("/", include_in_schema=False)

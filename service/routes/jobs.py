@@ -3,11 +3,13 @@
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Request
+from pydantic import ValidationError
 from starlette.concurrency import run_in_threadpool
 from starlette.responses import Response
 
 from jobkit.ids import JOB_ID_PATTERN
-from jobkit.schema import Job, JobPage, JobSpec, JobState, Plan
+from jobkit.schema import Job, JobPage, JobSpec, JobState, Plan, RepairSpec
+from service.problems import invalid_request
 from service.routes.common import (
     IdempotencyKey,
     IfNoneMatch,
@@ -24,7 +26,7 @@ from service.routes.common import (
 from service.services import PrincipalDep, Services, ServicesDep
 from service.strict import StrictRoute
 from service.submission import Submission, plan, submit
-from service.waiting import PreferHeader, note_applied, preferred_wait_s, wait_until
+from service.waiting import PreferHeader, note_applied, preferred_wait_s
 
 router = APIRouter(tags=["jobs"], route_class=StrictRoute)
 
@@ -88,8 +90,7 @@ async def get_job(
     if_none_match: IfNoneMatch = None,
 ) -> Response:
     """Show where a job stands. Its entity tag covers all but `eta_s`, which ages by itself."""
-    if preferred_wait_s(prefer):
-        await _wait_for_end(services, job_id, prefer)
+    has_waited = await _wait_for_end(services, job_id, prefer)
     if if_none_match is not None:
         sight = await services.board.glance(job_id)
         tag = etag_of(sight.glance.revision, sight.queue_position, sight.glance.is_pinned)
@@ -97,7 +98,8 @@ async def get_job(
             return Response(status_code=304, headers={"ETag": tag})
     response = job_response(await services.board.job(job_id))
     response.status_code = 200
-    note_applied(response, prefer)
+    if has_waited:
+        note_applied(response, prefer)
     return response
 
 
@@ -122,36 +124,50 @@ def cancel_job(services: ServicesDep, job_id: JobIdPath) -> Response:
     "/v1/jobs/{job_id}/rerun",
     status_code=202,
     response_model=None,
-    responses={**ACCEPTED, **_ENDED, **problems(404, 409)},
+    responses={**ACCEPTED, **_ENDED, **problems(400, 404, 409, 413, 415)},
 )
 async def rerun_job(
     services: ServicesDep,
     principal: PrincipalDep,
     job_id: JobIdPath,
+    changes: RepairSpec | None = None,
     key: IdempotencyKey = None,
     prefer: PreferHeader = None,
 ) -> Response:
-    """Run the spec of a job again, as a new job pinned to what its model reference means now."""
+    """Run the spec of a job again, as a new job pinned to what its model reference means now.
+
+    What the body names replaces what the spec says, each field as a whole; `{}` or no body changes nothing.
+    """
     job = await run_in_threadpool(services.jobs.get, job_id)
-    return await answer_submission(services, Submission(job.spec, principal, key, rerun_of=job_id), prefer)
+    spec = _changed(job.spec, changes or RepairSpec())
+    return await answer_submission(services, Submission(spec, principal, key, rerun_of=job_id), prefer)
+
+
+def _changed(spec: JobSpec, changes: RepairSpec) -> JobSpec:
+    """Return the spec with the fields that the changes name, checked as a whole."""
+    named = {name: getattr(changes, name) for name in changes.model_fields_set}
+    try:
+        return JobSpec.model_validate({name: getattr(spec, name) for name in JobSpec.model_fields} | named)
+    except ValidationError as error:
+        details = error.errors(include_input=False, include_url=False)
+        raise invalid_request([{**detail, "loc": ("body", *detail["loc"])} for detail in details]) from error
 
 
 async def answer_submission(services: Services, submission: Submission, prefer: str | None) -> Response:
     """Submit a job, wait as long as the client prefers to, and say how it stands."""
     job, is_new = await run_in_threadpool(submit, services, submission)
-    seen = await _wait_for_end(services, job.id, prefer)
-    response = job_response(seen)
-    note_applied(response, prefer)
+    has_waited = await _wait_for_end(services, job.id, prefer)
+    response = job_response(await services.board.job(job.id))
+    if has_waited:
+        note_applied(response, prefer)
     if not is_new:
         response.headers["Idempotent-Replayed"] = "true"
     return response
 
 
-async def _wait_for_end(services: Services, job_id: str, prefer: str | None) -> Job:
+async def _wait_for_end(services: Services, job_id: str, prefer: str | None) -> bool:
+    """Wait as the client prefers; return whether that was possible, so that it can be told."""
     wait_s = min(preferred_wait_s(prefer), services.settings.max_wait_s)
-    return await wait_until(lambda: _look(services, job_id), lambda seen: seen.state.is_terminal, wait_s)
-
-
-def _look(services: Services, job_id: str) -> Job:
-    services.estimates.refresh()
-    return services.estimates.complete(services.jobs.get(job_id))
+    if wait_s <= 0 or (await services.board.glance(job_id)).glance.state.is_terminal:
+        return True
+    return await services.job_waiters.wait(job_id, wait_s)

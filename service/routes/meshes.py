@@ -27,7 +27,7 @@ from service.services import Services, ServicesDep
 from service.strict import StrictRoute
 from service.submission import request_analysis
 from service.uploads import Upload, UploadRules, receive_upload
-from service.waiting import PreferHeader, note_applied, preferred_wait_s, wait_until
+from service.waiting import PreferHeader, note_applied, preferred_wait_s
 
 router = APIRouter(tags=["meshes"], route_class=StrictRoute)
 MESH_PREFIX = "meshes"
@@ -100,10 +100,13 @@ async def get_mesh(
 ) -> Mesh:
     """Show facts and the hole list, once a worker has analysed the mesh."""
     wait_s = min(max(float(wait), preferred_wait_s(prefer)), services.settings.max_wait_s)
-    mesh = await wait_until(
-        lambda: services.meshes.get(mesh_id), lambda seen: seen.state is not MeshState.ANALYSING, wait_s
-    )
-    note_applied(response, prefer)
+    mesh = await run_in_threadpool(services.meshes.get, mesh_id)
+    has_waited = True
+    if wait_s > 0 and mesh.state is MeshState.ANALYSING:
+        has_waited = await services.mesh_waiters.wait(mesh_id, wait_s)
+        mesh = await run_in_threadpool(services.meshes.get, mesh_id)
+    if has_waited:
+        note_applied(response, prefer)
     if mesh.state is MeshState.ANALYSING:
         response.headers["Retry-After"] = RETRY_AFTER_S
     return mesh
@@ -117,7 +120,7 @@ async def get_mesh(
         200: {"description": "The whole file.", "content": {"application/octet-stream": {"schema": BINARY}}},
         206: {"description": "The range.", "content": {"application/octet-stream": {"schema": BINARY}}},
         **not_modified(),
-        **problems(404, 416),
+        **problems(404, 412, 416),
     },
 )
 def get_mesh_content(

@@ -94,7 +94,7 @@ def get_model_version(services: ServicesDep, name: ModelNamePath, version: Versi
         200: {"description": "The whole file.", "content": {OCTETS: {"schema": BINARY}}},
         206: {"description": "The range.", "content": {OCTETS: {"schema": BINARY}}},
         **not_modified(),
-        **problems(404, 416),
+        **problems(404, 412, 416),
     },
 )
 def get_model_artifact(

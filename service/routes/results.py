@@ -23,7 +23,7 @@ def _documented(media_type: str, schema: Mapping[str, Any]) -> dict[int | str, d
         200: {"description": "The whole file.", "content": content},
         206: {"description": "The range.", "content": {media_type: {"schema": BINARY}}},
         **not_modified(),
-        **problems(404, 409, 410, 416),
+        **problems(404, 409, 410, 412, 416),
     }
 
 

@@ -1,7 +1,11 @@
-import anyio
+import asyncio
+from collections.abc import Collection
+
 import pytest
 
-from service.waiting import preferred_wait_s, wait_until
+from jobkit.errors import DatabaseUnavailableError
+from service.waiting import Waiters, preferred_wait_s
+from tests.waiting import GUARD_S
 
 
 @pytest.mark.parametrize(
@@ -24,16 +28,54 @@ def test_only_a_whole_number_of_seconds_is_a_wait(header: str | None, seconds: f
     assert preferred_wait_s(header) == seconds
 
 
-def test_waiting_ends_as_soon_as_it_is_done() -> None:
-    sights = iter(range(10))
-    assert anyio.run(wait_until, lambda: next(sights), lambda seen: seen == 3, 60.0) == 3
+def test_all_that_wait_share_one_look_and_each_is_woken_by_its_own_end() -> None:
+    looks: list[list[str]] = []
+
+    def unfinished(subjects: Collection[str]) -> set[str]:
+        looks.append(sorted(subjects))
+        return {"b"} if len(looks) < 3 else set()
+
+    async def run() -> tuple[bool, ...]:
+        waiters = Waiters(unfinished, 1000)
+        results = await asyncio.gather(*(waiters.wait(subject, GUARD_S) for subject in ["a", "b"] * 500))
+        assert len(waiters) == 0
+        return tuple(results)
+
+    assert all(asyncio.run(run()))
+    assert looks[0] == ["a", "b"]
+    assert looks[-1] == ["b"]
+    assert len(looks) == 3
 
 
-def test_waiting_ends_with_the_last_sight_when_the_time_is_over() -> None:
-    sights = iter(range(1000))
-    assert anyio.run(wait_until, lambda: next(sights), lambda seen: False, 0.2) >= 1
+def test_waiting_ends_when_the_time_is_over_or_all_are_let_go() -> None:
+    async def run() -> None:
+        waiters = Waiters(lambda subjects: subjects, 10)
+        assert await waiters.wait("a", 0.05)
+        waiting = asyncio.create_task(waiters.wait("a", GUARD_S))
+        while not len(waiters):
+            await asyncio.sleep(0)
+        waiters.close()
+        assert await waiting
+        assert len(waiters) == 0
+
+    asyncio.run(run())
 
 
-def test_no_wait_is_one_look() -> None:
-    sights = iter(range(10))
-    assert anyio.run(wait_until, lambda: next(sights), lambda seen: False, 0.0) == 0
+def test_those_that_are_too_many_are_answered_at_once() -> None:
+    async def run() -> None:
+        waiters = Waiters(lambda subjects: subjects, 1)
+        first = asyncio.create_task(waiters.wait("a", GUARD_S))
+        while not len(waiters):
+            await asyncio.sleep(0)
+        assert await waiters.wait("b", GUARD_S) is False
+        waiters.close()
+        assert await first is True
+
+    asyncio.run(run())
+
+
+def test_a_look_that_fails_lets_all_look_for_themselves() -> None:
+    def fail(subjects: Collection[str]) -> set[str]:
+        raise DatabaseUnavailableError("away")
+
+    assert asyncio.run(Waiters(fail, 1).wait("a", GUARD_S))
