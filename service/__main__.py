@@ -71,11 +71,13 @@ def _serve(app: FastAPI, settings: Settings) -> None:
 
 
 class _Server(uvicorn.Server):
-    """A server that ends event streams as soon as it is asked to stop; it would wait for them otherwise."""
+    """A server that ends streams and waiting as soon as it is asked to stop; it would wait for them otherwise."""
 
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
         """Stop serving."""
-        cast(FastAPI, self.config.app).state.services.streams.close()
+        services = cast(FastAPI, self.config.app).state.services
+        for held in (services.streams, services.job_waiters, services.mesh_waiters):
+            held.close()
         await super().shutdown(sockets)
 
 

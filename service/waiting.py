@@ -84,7 +84,8 @@ class Waiters:
         return True
 
     def close(self) -> None:
-        """Let all go on that wait."""
+        """Let all go on that wait, and let no others wait."""
+        self._most = 0
         self._wake(list(self._waiting))
 
     async def _look(self) -> None:

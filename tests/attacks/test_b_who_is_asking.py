@@ -1,6 +1,7 @@
 """Letter B: the Host header decides who is asking; the path never follows it."""
 
 import ast
+import tomllib
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager
 from http.client import HTTPResponse
@@ -11,6 +12,8 @@ import httptools
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from packaging.requirements import Requirement
+from packaging.version import Version
 from pydantic import SecretStr
 from starlette.testclient import TestClient
 
@@ -158,3 +161,14 @@ def test_the_parser_leaves_a_host_as_it_is() -> None:
 
     httptools.HttpRequestParser(Taker()).feed_data(b"GET / HTTP/1.1\r\nHost: a{b/x?\r\n\r\n")
     assert seen == [(b"Host", b"a{b/x?")]
+
+
+def test_no_older_library_stands_in_front_than_is_tested() -> None:
+    """Starlette 0.52 took the path from Host; the lower bounds are what constraints.txt pins, up to patches."""
+    project = tomllib.loads(Path("pyproject.toml").read_text("utf-8"))
+    needed = {r.name: r for r in map(Requirement, project["project"]["optional-dependencies"]["service"])}
+    lines = Path("constraints.txt").read_text("utf-8").splitlines()
+    pinned = dict(line.split("==", 1) for line in lines if "==" in line and not line.startswith("#"))
+    for name in ("fastapi", "httptools", "python-multipart", "starlette", "uvicorn", "uvloop"):
+        (lowest,) = [Version(s.version) for s in needed[name].specifier if s.operator == ">="]
+        assert lowest.release[:2] == Version(pinned[name]).release[:2], name

@@ -57,6 +57,7 @@ def test_waiting_ends_when_the_time_is_over_or_all_are_let_go() -> None:
         waiters.close()
         assert await waiting
         assert len(waiters) == 0
+        assert await waiters.wait("a", GUARD_S) is False
 
     asyncio.run(run())
 
