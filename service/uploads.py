@@ -151,7 +151,7 @@ class _PartSorter:
         """Take bytes of the part that began last."""
         if self._field is None:
             self.is_empty = self.is_empty and not data
-            self._writer.write(data)
+            self._writer.write(bytes(data))
             return
         self._field += data
         if len(self._field) > MAX_FIELD_BYTES:
