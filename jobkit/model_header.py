@@ -4,6 +4,7 @@ A safetensors file is 8 bytes of length (little endian), a JSON header of that l
 header is read. A network is only recognised here; `jobkit.network_header` looks at its parts.
 """
 
+import json
 import math
 from pathlib import Path
 from typing import Any, Literal, TypeGuard

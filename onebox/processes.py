@@ -93,6 +93,11 @@ class Supervisor:
         """File that the named program writes to."""
         return self._log_folder / f"{name}.log"
 
+    @property
+    def is_stopping(self) -> bool:
+        """Whether a stop was requested, so that `start` may have returned before all programs were ready."""
+        return self._is_stopping
+
     def request_stop(self, *_: object) -> None:
         """Ask `start` and `watch` to return soon; fit to be a signal handler."""
         self._is_stopping = True

@@ -31,6 +31,9 @@ def serve(box: Box, say: Callable[[str], None]) -> None:
         try:
             address.unlink(missing_ok=True)
             supervisor.start()
+            if supervisor.is_stopping:
+                say("stopped before it was ready")
+                return
             address.write_text(box.url, encoding="ascii")
             say(f"Quadpatch is ready on {box.url} with {box.n_workers} workers")
             say(f"data in {box.data}, logs in {box.log_folder}; stop with Ctrl-C")

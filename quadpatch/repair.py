@@ -243,7 +243,7 @@ def _network_to_fit(options: RepairOptions, progress: Progress) -> tuple[Inpaint
     except ModuleNotFoundError as error:
         raise TorchMissingError(
             f"fitting a network to a mesh needs {error.name}, which is not installed here: "
-            f"install quadpatch[networks], or take a model that is ready, such as {BASE_NETWORK}"
+            f"install the extra 'networks', or take a model that is ready, such as {BASE_NETWORK}"
         ) from error
     return FittingInpainter(load_residual(path), options.network, options.seed, progress), {
         "name": SELF_NETWORK,

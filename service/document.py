@@ -11,7 +11,8 @@ from jobkit.schema import PROBLEM_MEDIA_TYPE, RepairSpec
 from service.auth import public_paths
 
 TITLE = "Quadpatch"
-VERSION = "1.0.0"
+# That of the project; the version of the contract is in its paths, `/v1`.
+VERSION = "0.1.0"
 DESCRIPTION = (
     "Repairs holes in 3D scans. Upload a mesh, start a job, fetch the repaired mesh: measured vertices keep their "
     "bits, invented ones are marked, scored and explained. Names are snake_case, times RFC 3339, lengths in mesh "

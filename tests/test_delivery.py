@@ -21,6 +21,7 @@ from deploy.lock import PYTHON
 from jobkit.readiness import READY_FILE_VARIABLE
 from jobkit.settings import PREFIX, Settings, refuse_unknown_names
 from onebox.box import usable_port
+from service.document import VERSION
 from tests.waiting import end, wait_until
 from worker.limits import _DATA_SLACK_MB
 
@@ -202,6 +203,7 @@ def test_the_version_is_the_same_everywhere() -> None:
     assert newest is not None
     assert newest[1] == version
     assert {SERVICES[name]["image"] for name in OURS} == {f"quadpatch:{version}"}
+    assert version == VERSION
 
 
 def test_the_licence_is_the_one_that_is_declared() -> None:

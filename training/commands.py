@@ -130,4 +130,4 @@ def _check_extra() -> None:
     """Look for what training and export need, before minutes are spent on training."""
     for package in EXTRA:
         if find_spec(package) is None:
-            raise MissingExtraError(f"training networks needs {package}: pip install 'quadpatch[networks]'")
+            raise MissingExtraError(f"training networks needs {package}: pip install '.[networks]' in the repository")

@@ -28,7 +28,7 @@ STAGES = (
 class JobError(Response):
     """Why a job, or an attempt, failed."""
 
-    code: str = Field(description="Stable code.", examples=["time_limit"])
+    code: str = Field(description="Stable code.", examples=["time_limit_exceeded"])
     message: str = Field(description="A sentence for people.", examples=["the repair took longer than 120 s"])
     stage: str | None = Field(default=None, description="Stage of the method that failed.", examples=["inpaint"])
     retryable: bool = Field(default=False, description="Whether the same job may succeed another time.")

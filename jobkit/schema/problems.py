@@ -24,6 +24,9 @@ class Problem(Response):
     status: int = Field(ge=400, le=599, description="The HTTP status.", examples=[404])
     code: str = Field(description="Stable code, meant for programs.", examples=["mesh_not_found"])
     detail: str = Field(description="What went wrong this time.", examples=["there is no mesh 3b1f…"])
-    instance: str = Field(description="This very occurrence: the request's id.", examples=["urn:uuid:…"])
+    instance: str = Field(
+        description="This very occurrence: the request's id.",
+        examples=["urn:quadpatch:request:d63eb55a-11a0-4400-a36b-f9604e3cf4a3"],
+    )
     retryable: bool = Field(default=False, description="Whether the same request may succeed later.")
     errors: list[FieldError] = Field(default_factory=list, description="One entry per wrong field.")

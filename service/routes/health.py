@@ -28,7 +28,7 @@ code,pre{background:#8882;border-radius:4px;padding:.1em .3em}pre{padding:1em;ov
 <p>Repairs holes in 3D scans. This is its HTTP service; <a href="/openapi.yaml">openapi.yaml</a> describes it.</p>
 <pre>curl -F mesh=@scan.ply URL/v1/repairs        # upload, get a job
 curl URL/v1/jobs/JOB -H 'Prefer: wait=30'    # look until it has ended
-curl -OJ URL/v1/jobs/JOB/result              # fetch the repaired mesh</pre>
+curl -fOJ URL/v1/jobs/JOB/result             # fetch the repaired mesh</pre>
 <p><a href="/v1/jobs">Jobs</a> · <a href="/v1/models">models</a> · <a href="/readyz">state</a></p>
 </html>
 """

@@ -42,7 +42,7 @@ def test_a_worker_without_torch_fails_a_job_that_needs_it_for_good_and_says_how_
         run_engine(nursery, repair_request(tmp_path, "self-network"), tmp_path, observer)
     failure = caught.value.failure
     assert (failure.code, failure.retryable) == ("torch_missing", False)
-    assert "install quadpatch[networks]" in failure.message
+    assert "install the extra 'networks'" in failure.message
     # Before any work is done.
     assert heard == []
     assert not (tmp_path / "repaired.ply").exists()

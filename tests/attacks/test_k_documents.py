@@ -1,0 +1,80 @@
+"""What documents, examples and messages promise is so."""
+
+import inspect
+import os
+import re
+import signal
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+
+import client.sdk
+from jobkit.overdue import CANCEL_PATIENCE_S
+from tests.waiting import GUARD_S, wait_until
+
+ROOT = Path(__file__).resolve().parents[2]
+TEXTS = [ROOT / "README.md", ROOT / "SECURITY.md", *sorted((ROOT / "docs").glob("*.md")), *ROOT.glob("service/**/*.py")]
+SOURCES = [
+    p for folder in ("quadpatch", "training", "client", "worker", "onebox") for p in ROOT.glob(f"{folder}/**/*.py")
+]
+
+
+@pytest.mark.parametrize("path", TEXTS, ids=lambda path: str(path.relative_to(ROOT)))
+def test_curl_saves_no_error_as_a_mesh(path: Path) -> None:
+    for line in path.read_text("utf-8").splitlines():
+        for options in re.findall(r"\bcurl -(\w*O\w*)", line):
+            assert "f" in options, line
+
+
+@pytest.mark.parametrize("path", [*TEXTS, *SOURCES], ids=lambda path: str(path.relative_to(ROOT)))
+def test_nobody_is_sent_to_an_index_that_does_not_have_the_project(path: Path) -> None:
+    assert not re.search(r"install '?quadpatch\b", path.read_text("utf-8"))
+
+
+def test_the_docstring_of_the_sdk_calls_methods_that_there_are() -> None:
+    called = re.findall(r"\bclient\.(\w+)\(", inspect.getdoc(client.sdk) or "")
+    assert {"upload", "create_job", "wait", "download"} <= set(called)
+    assert all(callable(getattr(client.sdk.Client, name)) for name in called)
+
+
+def test_examples_of_codes_are_codes_and_of_instances_instances() -> None:
+    document = yaml.safe_load((ROOT / "openapi.yaml").read_text("utf-8"))
+    schemas: dict[str, Any] = document["components"]["schemas"]
+    table = (ROOT / "docs/api.md").read_text("utf-8")
+    shown = {
+        (name, example)
+        for name, schema in schemas.items()
+        for example in schema.get("properties", {}).get("code", {}).get("examples", [])
+    }
+    assert {name for name, _ in shown} >= {"JobError", "MeshProblem", "Problem"}
+    for name, example in shown:
+        # Codes of single fields are those of the validation.
+        assert name == "FieldError" or f"| `{example}` |" in table, (name, example)
+    assert schemas["Problem"]["properties"]["instance"]["examples"][0].startswith("urn:quadpatch:request:")
+
+
+def test_the_wait_for_a_cancel_is_that_of_the_code() -> None:
+    text = (ROOT / "docs/architecture.md").read_text("utf-8")
+    assert f"no worker acknowledges within {CANCEL_PATIENCE_S} s" in text
+
+
+def test_a_box_that_is_stopped_while_it_starts_does_not_say_that_it_is_ready(tmp_path: Path) -> None:
+    command = [sys.executable, "-m", "onebox", "serve", "--data", str(tmp_path / "var"), "--port", "0"]
+    said = tmp_path / "said"
+    environment = {k: v for k, v in os.environ.items() if not k.startswith("QUADPATCH_")}
+    with said.open("wb") as output:
+        process = subprocess.Popen(command, stdout=output, stderr=output, env=environment)
+    try:
+        # The queue is the first to start; the API has not begun to import by then.
+        wait_until(lambda: list((tmp_path / "var" / "logs").glob("valkey.log")), process)
+        process.send_signal(signal.SIGTERM)
+        assert process.wait(timeout=GUARD_S) == 0
+    finally:
+        process.kill()
+        process.wait()
+    assert "is ready on" not in said.read_text("utf-8")
+    assert "stopped before it was ready" in said.read_text("utf-8")
