@@ -6,7 +6,7 @@ READY  := $(VENV)/.ready
 # Twice quiet: errors only.
 PIP    := $(BIN)/python -m pip --quiet --quiet --disable-pip-version-check
 
-.PHONY: demo test test-postgres faults fuzz check serve openapi lock sbom bench bench-quality bench-scans clean
+.PHONY: demo test test-postgres faults fuzz check serve openapi samples lock sbom bench bench-quality bench-scans clean
 
 $(READY): pyproject.toml constraints.txt
 	@echo "setting up $(VENV); this takes a few minutes the first time ..." >&2
@@ -46,6 +46,9 @@ check: $(READY)           ## ruff, import rules, types
 
 openapi: $(READY)         ## write openapi.yaml from the app
 	@$(BIN)/python -m service openapi > openapi.yaml
+
+samples: $(READY)         ## write the samples of README.md and docs/api.md from the answers of a real box
+	@$(BIN)/python -m benchmarks.samples
 
 # Needs the package index. Where pip also looks elsewhere, PIP_FIND_LINKS= and PIP_CONFIG_FILE=/dev/null leave that out.
 lock: $(READY)            ## write the locks of the image, versions with hashes, from constraints.txt

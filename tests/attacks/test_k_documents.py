@@ -1,6 +1,7 @@
 """What documents, examples and messages promise is so."""
 
 import inspect
+import json
 import os
 import re
 import signal
@@ -13,7 +14,9 @@ import pytest
 import yaml
 
 import client.sdk
+from benchmarks.samples import BLOCK, DOCUMENTS, MORE, RECORD, line, wrapped
 from jobkit.overdue import CANCEL_PATIENCE_S
+from jobkit.schema import HoleCounts, Job, JobResult, Mesh, MeshFacts
 from tests.waiting import GUARD_S, wait_until
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -25,9 +28,9 @@ SOURCES = [
 
 @pytest.mark.parametrize("path", TEXTS, ids=lambda path: str(path.relative_to(ROOT)))
 def test_curl_saves_no_error_as_a_mesh(path: Path) -> None:
-    for line in path.read_text("utf-8").splitlines():
-        for options in re.findall(r"\bcurl -(\w*O\w*)", line):
-            assert "f" in options, line
+    for row in path.read_text("utf-8").splitlines():
+        for options in re.findall(r"\bcurl -(\w*O\w*)", row):
+            assert "f" in options, row
 
 
 @pytest.mark.parametrize("path", [*TEXTS, *SOURCES], ids=lambda path: str(path.relative_to(ROOT)))
@@ -78,3 +81,38 @@ def test_a_box_that_is_stopped_while_it_starts_does_not_say_that_it_is_ready(tmp
         process.wait()
     assert "is ready on" not in said.read_text("utf-8")
     assert "stopped before it was ready" in said.read_text("utf-8")
+
+
+def test_samples_are_those_that_the_script_wrote() -> None:
+    recorded = json.loads(RECORD.read_text("utf-8"))
+    shown = {m["name"]: m["text"] for path in DOCUMENTS for m in BLOCK.finditer(path.read_text("utf-8"))}
+    assert shown == recorded
+
+
+@pytest.mark.parametrize(
+    ("name", "models"),
+    [
+        ("start", (Job,)),
+        ("wait", (Job, JobResult, HoleCounts)),
+        ("follow", (Job, JobResult, HoleCounts)),
+        ("upload", (Mesh,)),
+        ("mesh", (Mesh, MeshFacts)),
+    ],
+)
+def test_samples_show_fields_of_the_contract(name: str, models: tuple[Any, ...]) -> None:
+    answer = json.loads(RECORD.read_text("utf-8"))[name].split("\n", 1)[1]
+    whole = json.loads(re.sub(rf",\s*{MORE}", "", answer))
+    assert whole.keys() <= models[0].model_fields.keys()
+    for field, model in zip(("result", "facts"), models[1:2] * 2, strict=False):
+        if whole.get(field):
+            assert whole[field].keys() <= model.model_fields.keys()
+    if HoleCounts in models:
+        counts = HoleCounts.model_validate(whole["result"]["holes"])
+        assert counts.found == counts.filled + counts.filled_smooth + counts.skipped + counts.refused
+
+
+def test_a_sample_is_broken_between_its_members() -> None:
+    answer = {"a": "x" * 80, "b": "y" * 80}
+    text = wrapped(line(answer, ("a", "b")))
+    assert len(text.splitlines()) == 2
+    assert json.loads(re.sub(rf",\s*{MORE}", "", text)) == answer
