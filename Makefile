@@ -25,10 +25,10 @@ serve: $(READY)           ## one box on http://127.0.0.1:8000 until Ctrl-C
 # One thread for each of the two processes: where four share two cores, each waits for the others. At most 8 minutes on
 # two idle cores: what is slow is listed, so that it is made cheaper or gets a target of its own, such as `faults`.
 test: $(READY)            ## every test, with the real Valkey
-	@OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadgroup --durations 10
+	@OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadfile --durations 10
 
 test-postgres: $(READY)   ## the tests of service and workers on PostgreSQL and S3, both started by the tests
-	@TEST_BACKEND=postgres-s3 OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadgroup \
+	@TEST_BACKEND=postgres-s3 OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadfile \
 		tests/jobkit tests/service tests/worker tests/dispatcher tests/integration tests/contract tests/onebox
 
 # Network namespaces and disks that fill up need root; without it the suite says what it left out.

@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 from urllib.parse import urlsplit
 
 import hypothesis
@@ -27,6 +28,7 @@ from onebox.valkey import running_valkey
 from quadpatch.model_file import save_dictionary
 from quadpatch.sparse.dictionary import Dictionary
 from quadpatch.sparse.signals import HEIGHTS, NORMALISATION
+from tests.distribution import SharingScheduling
 from tests.servers import PostgresServer, S3Server, fresh_bucket, fresh_database, running_postgres, running_s3
 from tests.waiting import end, wait_until_answered
 
@@ -42,11 +44,9 @@ hypothesis.settings.load_profile("tests")
 BACKENDS = ("sqlite-local", "postgres-s3")
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Keep a file's tests in one process of `--dist loadgroup`, and in one all that need the box: it starts once."""
-    for item in items:
-        needs_box = "box" in getattr(item, "fixturenames", ())
-        item.add_marker(pytest.mark.xdist_group("box" if needs_box else item.nodeid.partition("::")[0]))
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> SharingScheduling | None:
+    """Let `--dist loadfile` keep together what shares the box."""
+    return SharingScheduling(config, log) if config.getvalue("dist") == "loadfile" else None
 
 
 @pytest.fixture(scope="session")
