@@ -48,8 +48,9 @@ class HoleResult:
     measures : dict
         What the verdict rests on; `folds` and `crossings` count the faults that the check left.
     fill : str
-        Which geometric fill carries it: `energies` (what suits the surface), or a plainer one, `thin_plate`, `membrane`
-        or `unfaired`, where others fold or run through other surface. Empty where nothing was filled.
+        Which geometric fill carries it: `energies` (what suits the surface), `flat` (a plane patch), or a plainer one,
+        `thin_plate`, `membrane`, `unfaired` or `triangulated`, where others fold or run through other surface. Empty
+        where nothing was filled.
     """
 
     hole: Hole

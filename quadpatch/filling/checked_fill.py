@@ -12,7 +12,7 @@ import numpy as np
 from quadpatch.filling.doubling import doubles_surface
 from quadpatch.filling.fairing import MEMBRANE, THIN_PLATE, Energy
 from quadpatch.filling.faults import Faults, find_faults
-from quadpatch.filling.fill import close_flat, close_holes, fair_holes
+from quadpatch.filling.fill import close_flat, close_holes, fair_holes, triangulate_holes
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.filling.flat_cap import flat_caps
 from quadpatch.filling.rim_relief import relieve_rims
@@ -35,6 +35,7 @@ PLAINER_FILLS: dict[str, Fill] = {
     "thin_plate": _faired_by(THIN_PLATE),
     "membrane": _faired_by(MEMBRANE),
     "unfaired": close_flat,
+    "triangulated": triangulate_holes,
 }
 
 
@@ -107,7 +108,8 @@ def fill_checked(
             break
         other = plainer(mesh, [loops[i] for i in doubtful]).as_part_of(doubtful, filled)
         tried = find_faults(filled.with_fills(other, doubtful), doubtful, obstacles)
-        better = doubtful[tried.severity[doubtful] < faults.severity[doubtful]]
+        # A fill that is wrong as well would be refused: then the first one says better what is in the way.
+        better = doubtful[(tried.severity < faults.severity)[doubtful] & ~tried.is_wrong[doubtful]]
         if len(better):
             filled = filled.with_fills(other, better)
             faults = find_faults(filled, obstacles=obstacles)
@@ -136,14 +138,21 @@ def _first_fill(mesh: TriangleMesh, loops: list[IntArray], fill: Fill, flat: Boo
 
 
 def _departure(filled: FilledMesh, first: FilledMesh, loops: IntArray) -> FloatArray:
-    """Mean distance (n_loops,) of the new vertices of some loops from their first fill; 0 for the others."""
-    looked_at = np.isin(filled.vertex_hole, loops)
-    points = filled.mesh.vertices[filled.n_measured_vertices :][looked_at]
+    """Mean distance (n_loops,) of the fills of some loops from the first ones; 0 for the others.
+
+    It is that of the new vertices, or of the triangles' centroids where there are none.
+    """
+    vertices = filled.mesh.vertices
+    bare = np.setdiff1d(loops, filled.vertex_hole)
+    of_vertex, of_triangle = np.isin(filled.vertex_hole, loops), np.isin(filled.triangle_hole, bare)
+    centroids = vertices[filled.mesh.triangles[filled.n_measured_triangles :][of_triangle]].mean(axis=1)
+    points = np.concatenate([vertices[filled.n_measured_vertices :][of_vertex], centroids])
+    hole = np.concatenate([filled.vertex_hole[of_vertex], filled.triangle_hole[of_triangle]])
     surface = first.mesh.triangles[first.n_measured_triangles :][np.isin(first.triangle_hole, loops)]
     if not len(points) or not len(surface):
         return np.zeros(len(filled.gap))
     distance = distance_to_mesh(points, TriangleMesh(first.mesh.vertices, surface))
-    return mean_by(filled.vertex_hole[looked_at], distance, len(filled.gap))
+    return mean_by(hole, distance, len(filled.gap))
 
 
 def _without_wrong(filled: FilledMesh, faults: Faults) -> tuple[FilledMesh, dict[int, tuple[str, str]]]:

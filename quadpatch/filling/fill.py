@@ -110,6 +110,17 @@ def close_flat(mesh: TriangleMesh, loops: list[IntArray]) -> FilledMesh:
     return _appended(ClosedMesh(mesh, near.used, near.centre, near.around, patch, unknown, unknown, unfilled), patch)
 
 
+def triangulate_holes(mesh: TriangleMesh, loops: list[IntArray]) -> FilledMesh:
+    """Triangulate boundary loops, without new vertices: the plainest of all fills.
+
+    Takes and returns what `close_flat` does.
+    """
+    near = _surroundings(mesh, loops)
+    patch, unfilled = _triangulated(near.vertices, near.around, near.loops, near.taken)
+    unknown = np.full(len(loops), np.nan)
+    return _appended(ClosedMesh(mesh, near.used, near.centre, near.around, patch, unknown, unknown, unfilled), patch)
+
+
 def fair_holes(closed: ClosedMesh, energy: Energy) -> FilledMesh:
     """Fair all holes by one energy.
 
@@ -169,6 +180,13 @@ def _appended(closed: ClosedMesh, patch: Refined) -> FilledMesh:
 
 def _close(vertices: FloatArray, around: Triangles, loops: list[IntArray], taken: EdgeSet) -> tuple[Refined, list[int]]:
     """Triangulate and refine all loops."""
+    patch, unfilled = _triangulated(vertices, around, loops, taken)
+    return refine(patch, taken), unfilled
+
+
+def _triangulated(
+    vertices: FloatArray, around: Triangles, loops: list[IntArray], taken: EdgeSet
+) -> tuple[Refined, list[int]]:
     edges = directed_edges(around)
     flat = triangulate_loops(loops, vertices, _rim_normals(vertices, around, loops), taken)
     found = [(i, triangles) for i, triangles in enumerate(flat) if triangles is not None]
@@ -178,7 +196,7 @@ def _close(vertices: FloatArray, around: Triangles, loops: list[IntArray], taken
     lengths = np.linalg.norm(vertices[edges[:, 0]] - vertices[edges[:, 1]], axis=1)
     count = np.bincount(edges.ravel(), minlength=len(vertices))
     spacing = np.bincount(edges.ravel(), np.repeat(lengths, 2), minlength=len(vertices)) / np.maximum(count, 1)
-    return refine(Refined(vertices, triangles, hole, spacing, len(vertices)), taken), unfilled
+    return Refined(vertices, triangles, hole, spacing, len(vertices)), unfilled
 
 
 def _rim_normals(vertices: FloatArray, around: Triangles, loops: list[IntArray]) -> list[FloatArray]:

@@ -8,7 +8,7 @@ from quadpatch.filling.fill import close_flat, close_holes, fair_holes
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.mesh.boundary import boundary_loops
 from quadpatch.mesh.distance import distance_to_mesh
-from quadpatch.mesh.normals import vertex_normals
+from quadpatch.mesh.normals import triangle_normals, vertex_normals
 from quadpatch.types import FloatArray, IntArray, TriangleMesh
 from tests.quadpatch.filling.fills import all_loops, assert_keeps
 from tests.quadpatch.filling.handmade import as_holes
@@ -37,12 +37,12 @@ def blades(mesh: TriangleMesh, through: list[Fill], spared: Fill | None) -> Tria
     parts = [mesh]
     for fill in through:
         filled = fill(mesh, HOLE)
-        points = filled.mesh.vertices[filled.n_measured_vertices :]
+        points, normals = places(filled)
         clearance = distance_to_mesh(points, near) if near else np.full(len(points), 0.1)
         at = int(clearance.argmax())
         assert clearance[at] > 1e-3
         half = 0.4 * clearance[at]
-        up = vertex_normals(filled.mesh.vertices, filled.mesh.triangles)[filled.n_measured_vertices + at]
+        up = normals[at]
         aside = np.cross(up, [1.0, 0.3, 0.2])
         aside /= np.linalg.norm(aside)
         # Shifted, so that no vertex lies on the blade.
@@ -50,6 +50,15 @@ def blades(mesh: TriangleMesh, through: list[Fill], spared: Fill | None) -> Tria
         corners = np.array([foot - half * up - half * aside, foot - half * up + half * aside, foot + half * up])
         parts.append(TriangleMesh(corners, np.array([[0, 1, 2]])))
     return joined(*parts)
+
+
+def places(filled: FilledMesh) -> tuple[FloatArray, FloatArray]:
+    """New vertices, or the centroids of new triangles where there are none, and the normals there."""
+    vertices, n = filled.mesh.vertices, filled.n_measured_vertices
+    if len(vertices) > n:
+        return vertices[n:], vertex_normals(vertices, filled.mesh.triangles)[n:]
+    new = filled.mesh.triangles[filled.n_measured_triangles :]
+    return vertices[new].mean(axis=1), triangle_normals(vertices, new)
 
 
 ORDER: list[tuple[str, Fill]] = [("energies", smooth), *PLAINER_FILLS.items()]
