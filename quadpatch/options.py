@@ -121,11 +121,6 @@ class HoleOptions:
         return None if self.ids is None else frozenset(self.ids)
 
     @property
-    def asks_for_geometry(self) -> bool:
-        """Whether some holes are to be filled without the model, by a plane patch or smoothly."""
-        return self.cap is not None or any(rule.action in ("smooth", "flat") for rule in self.rules)
-
-    @property
     def is_automatic(self) -> bool:
         """Whether sizes are left to the automatic rule: the user chose none, and no loops."""
         given = (self.max_diameter, self.max_perimeter, self.ids)
@@ -236,10 +231,6 @@ class RepairOptions:
         check_weld_tolerance(self.weld_tolerance)
         if self.recipe not in get_args(Recipe):
             raise OptionError(f"recipe must be one of {', '.join(get_args(Recipe))}; it is {self.recipe!r}")
-        if self.recipe == "paper" and self.holes.asks_for_geometry:
-            raise OptionError(
-                "holes.cap and the actions smooth and flat of holes.rules go with the recipe default only"
-            )
         if self.recipe != "paper" and self.dictionary != DictionaryOptions():
             raise OptionError("dictionary.atoms and dictionary.nonzero go with the recipe paper only")
         if not isinstance(self.seed, int) or self.seed < 0:

@@ -113,6 +113,10 @@ def inpaint_as_paper(
     with stages.stage("holes"):
         holes = find_holes(mesh)
         selection = select_holes(holes, options.holes, diagonal(mesh))
+        if any(action != "model" for action in selection.actions.values()):
+            raise OptionError(
+                "holes.cap and the actions smooth and flat of holes.rules go with the recipe default only"
+            )
     with stages.stage("fill"):
         filled = close_flat(mesh, [hole.loop for hole in selection.chosen])
     completion, warnings = None, []

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 MAX_PARTS = 8
 # Before the first part and after the last one; a chunk that holds the border is not counted byte by byte.
 MAX_OUTSIDE_BYTES = 256 << 10
+_SLICE_BYTES = 64 << 10
 
 
 @dataclass(frozen=True)
@@ -57,7 +58,7 @@ async def read_parts(content_type: str, chunks: AsyncIterator[bytes]) -> AsyncIt
     collector = _Collector(events)
     try:
         parser = MultipartParser(boundary, collector.callbacks())
-        async for chunk in chunks:
+        async for chunk in _slices(chunks):
             if collector.is_whole:
                 collector.count_outside(len(chunk))
                 continue
@@ -72,6 +73,13 @@ async def read_parts(content_type: str, chunks: AsyncIterator[bytes]) -> AsyncIt
         raise malformed_multipart("it does not follow the format, or ends early") from error
     if not collector.is_whole:
         raise malformed_multipart("it ends early")
+
+
+async def _slices(chunks: AsyncIterator[bytes]) -> AsyncIterator[bytes]:
+    """Cut chunks into slices, as small as what is counted outside of parts needs."""
+    async for chunk in chunks:
+        for start in range(0, len(chunk), _SLICE_BYTES):
+            yield chunk[start : start + _SLICE_BYTES]
 
 
 def malformed_multipart(reason: str) -> ProblemError:

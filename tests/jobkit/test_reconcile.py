@@ -42,12 +42,12 @@ def test_a_submitted_job_waits_under_the_dotted_path_of_its_task(
     assert waiting.timeout == 120
 
 
-def test_an_analysis_overtakes_the_jobs(
+def test_an_analysis_waits_its_turn_behind_older_jobs(
     database: Database, queue: TaskQueue, rq_queue: Queue, job: Job, mesh: Mesh
 ) -> None:
     submit_job(database, queue, job.id, job.attempt)
     submit_analysis(database, queue, mesh.id)
-    assert [waiting.func_name for waiting in rq_queue.get_jobs()] == [INSPECT_MESH, RUN_JOB]
+    assert [waiting.func_name for waiting in rq_queue.get_jobs()] == [RUN_JOB, INSPECT_MESH]
 
 
 def test_a_queue_that_lost_everything_is_filled_again(
