@@ -40,7 +40,7 @@ def read_network_card(path: Path) -> dict[str, Any] | None:
 def check_network(path: Path) -> None:
     """Refuse what can't be a network that an engine runs: bytes that only begin like one, operators of other vendors.
 
-    Whether the network runs and what it answers is found out by whoever runs it.
+    It does not tell whether the network runs, or what it answers: the engine finds that out.
 
     Raises
     ------

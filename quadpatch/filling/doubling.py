@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from quadpatch.filling.filled_mesh import FilledMesh
+from quadpatch.filling.filled_mesh import FilledMesh, rim_diagonals
 from quadpatch.mesh.averages import mean_by
 from quadpatch.mesh.distance import nearest_triangles
 from quadpatch.mesh.normals import triangle_normals
-from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh
+from quadpatch.types import BoolArray, IntArray, TriangleMesh
 
 # A fill doubles the surface where it is closer to it than this share of the rim's size, and faces the other way.
 CLOSE = 0.05
@@ -33,23 +33,13 @@ def doubles_surface(filled: FilledMesh, loops: IntArray) -> BoolArray:
     if not len(hole):
         return np.zeros(n_loops, bool)
     measured = TriangleMesh(mesh.vertices, mesh.triangles[: filled.n_measured_triangles])
-    new = mesh.triangles[filled.n_measured_triangles :][np.isin(filled.triangle_hole, loops)]
+    new_all = mesh.triangles[filled.n_measured_triangles :]
+    new = new_all[np.isin(filled.triangle_hole, loops)]
     distance, nearest = nearest_triangles(mesh.vertices[new].mean(axis=1), measured)
     agreement = np.einsum(
         "ij,ij->i", triangle_normals(mesh.vertices, new), triangle_normals(mesh.vertices, measured.triangles[nearest])
     )
-    is_back = (distance < CLOSE * _rim_sizes(filled)[hole]) & (agreement < -0.5)
+    sizes = rim_diagonals(mesh.vertices, new_all, filled.triangle_hole, filled.n_measured_vertices, n_loops)
+    is_back = (distance < CLOSE * sizes[hole]) & (agreement < -0.5)
     share = mean_by(hole, is_back.astype(np.float64), n_loops)
     return np.asarray(share > MOST)
-
-
-def _rim_sizes(filled: FilledMesh) -> FloatArray:
-    """Diagonal (n_loops,) of the bounding box of every rim, in mesh units."""
-    corners = filled.mesh.triangles[filled.n_measured_triangles :].ravel()
-    hole = np.repeat(filled.triangle_hole, 3)
-    on_rim = corners < filled.n_measured_vertices
-    points, hole = filled.mesh.vertices[corners[on_rim]], hole[on_rim]
-    low, high = np.full((len(filled.gap), 3), np.inf), np.full((len(filled.gap), 3), -np.inf)
-    np.minimum.at(low, hole, points)
-    np.maximum.at(high, hole, points)
-    return np.asarray(np.linalg.norm(np.where(np.isfinite(low), high - low, 0.0), axis=1))

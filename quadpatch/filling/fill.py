@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from quadpatch.filling.fairing import THIN_PLATE, Energy, fair, triangles_around
-from quadpatch.filling.filled_mesh import FilledMesh
+from quadpatch.filling.filled_mesh import FilledMesh, rim_diagonals
 from quadpatch.filling.refinement import Refined, refine, relax
 from quadpatch.filling.triangulation import EdgeSet, triangulate_loops
 from quadpatch.mesh.averages import mean_by
@@ -234,7 +234,9 @@ def _fair_patch(closed: ClosedMesh, energy: Energy) -> Refined:
     furthest = np.zeros(n_holes)
     np.maximum.at(furthest, hole[new], _apart(faired, plate)[new])
     # Curvature carried on from a ragged rim can run away; such a hole takes the thin plate.
-    runaway = furthest > RUNAWAY_SHARE * _hole_widths(plate, n_holes)
+    runaway = furthest > RUNAWAY_SHARE * rim_diagonals(
+        plate.vertices, plate.triangles, plate.hole, plate.n_measured, n_holes
+    )
     vertices = np.where((new & runaway[hole])[:, None], plate.vertices, faired.vertices)
     return replace(faired, vertices=vertices)
 
@@ -257,18 +259,6 @@ def _mean_by_hole(patch: Refined, values: FloatArray, n_holes: int) -> FloatArra
     hole = _hole_of_new(patch)
     new = hole >= 0
     return mean_by(hole[new], values[new], n_holes)
-
-
-def _hole_widths(patch: Refined, n_holes: int) -> FloatArray:
-    """Diagonal of the bounding box of every hole's rim, (n_holes,)."""
-    corners = patch.triangles.ravel()
-    hole = np.repeat(patch.hole, 3)
-    on_rim = corners < patch.n_measured
-    low, high = np.full((n_holes, 3), np.inf), np.full((n_holes, 3), -np.inf)
-    np.minimum.at(low, hole[on_rim], patch.vertices[corners[on_rim]])
-    np.maximum.at(high, hole[on_rim], patch.vertices[corners[on_rim]])
-    size = np.where(np.isfinite(low), high, 0.0) - np.where(np.isfinite(low), low, 0.0)
-    return np.asarray(np.linalg.norm(size, axis=1))
 
 
 def _faired(patch: Refined, around: Triangles, energy: Energy, *, uniform: bool = False) -> Refined:

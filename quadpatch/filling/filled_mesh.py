@@ -92,3 +92,33 @@ class FilledMesh:
             rim_turn=whole.rim_turn,
             unfilled=loops[self.unfilled].tolist(),
         )
+
+
+def rim_diagonals(
+    vertices: FloatArray, triangles: IntArray, hole: IntArray, n_measured: int, n_holes: int
+) -> FloatArray:
+    """Measure the rims of fills by the diagonals of their bounding boxes.
+
+    Parameters
+    ----------
+    vertices : (n, 3) float64
+        Measured ones first.
+    triangles : (m, 3) int64
+        Of the fills.
+    hole : (m,) int64
+        Of every triangle.
+    n_measured, n_holes : int
+
+    Returns
+    -------
+    (n_holes,) float64
+        In mesh units; 0 without a fill.
+    """
+    corners = triangles.ravel()
+    of_corner = np.repeat(hole, 3)
+    on_rim = corners < n_measured
+    low, high = np.full((n_holes, 3), np.inf), np.full((n_holes, 3), -np.inf)
+    np.minimum.at(low, of_corner[on_rim], vertices[corners[on_rim]])
+    np.maximum.at(high, of_corner[on_rim], vertices[corners[on_rim]])
+    size = np.where(np.isfinite(low), high, 0.0) - np.where(np.isfinite(low), low, 0.0)
+    return np.asarray(np.linalg.norm(size, axis=1))
