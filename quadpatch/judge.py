@@ -49,7 +49,7 @@ class HoleResult:
         What the verdict rests on; `folds` and `crossings` count the faults that the check left.
     fill : str
         Which geometric fill carries it: `energies` (what suits the surface), `flat` (a plane patch), or a plainer one,
-        `thin_plate`, `membrane`, `unfaired` or `triangulated`, where others fold or run through other surface. Empty
+        `thin_plate` or `constrained`, where others fold or run through other surface. Empty
         where nothing was filled.
     """
 

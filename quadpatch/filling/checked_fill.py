@@ -9,10 +9,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from quadpatch.filling.constrained_fill import fill_constrained
 from quadpatch.filling.doubling import doubles_surface
-from quadpatch.filling.fairing import MEMBRANE, THIN_PLATE, Energy
+from quadpatch.filling.fairing import THIN_PLATE
 from quadpatch.filling.faults import Faults, find_faults
-from quadpatch.filling.fill import close_flat, close_holes, fair_holes, triangulate_holes
+from quadpatch.filling.fill import close_holes, fair_holes
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.filling.flat_cap import flat_caps
 from quadpatch.filling.rim_relief import relieve_rims
@@ -24,19 +25,22 @@ from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Trian
 Fill = Callable[[TriangleMesh, list[IntArray]], FilledMesh]
 
 
-def _faired_by(energy: Energy) -> Fill:
-    return lambda mesh, loops: fair_holes(close_holes(mesh, loops), energy)
+# How some of them may be filled again: (filled mesh, all loops, positions of some, obstacles) -> mesh with their fills.
+Refill = Callable[[FilledMesh, list[IntArray], IntArray, Triangles | None], FilledMesh]
+
+
+def _fill_by_thin_plate(
+    filled: FilledMesh, loops: list[IntArray], chosen: IntArray, obstacles: Triangles | None
+) -> FilledMesh:
+    n_vertices, n_triangles = filled.n_measured_vertices, filled.n_measured_triangles
+    mesh = TriangleMesh(filled.mesh.vertices[:n_vertices], filled.mesh.triangles[:n_triangles])
+    return fair_holes(close_holes(mesh, [loops[i] for i in chosen]), THIN_PLATE).as_part_of(chosen, filled)
 
 
 _DOUBLED = ("doubles_surface", "a fill would lie on the back of the very surface whose border it closes")
 
 # From the smoothest to the plainest.
-PLAINER_FILLS: dict[str, Fill] = {
-    "thin_plate": _faired_by(THIN_PLATE),
-    "membrane": _faired_by(MEMBRANE),
-    "unfaired": close_flat,
-    "triangulated": triangulate_holes,
-}
+PLAINER_FILLS: dict[str, Refill] = {"thin_plate": _fill_by_thin_plate, "constrained": fill_constrained}
 
 
 @dataclass(frozen=True)
@@ -106,10 +110,11 @@ def fill_checked(
         doubtful = np.flatnonzero(faults.is_doubtful & ~flat)
         if not len(doubtful):
             break
-        other = plainer(mesh, [loops[i] for i in doubtful]).as_part_of(doubtful, filled)
+        other = plainer(filled, loops, doubtful, obstacles)
         tried = find_faults(filled.with_fills(other, doubtful), doubtful, obstacles)
         # A fill that is wrong as well would be refused: then the first one says better what is in the way.
-        better = doubtful[(tried.severity < faults.severity)[doubtful] & ~tried.is_wrong[doubtful]]
+        is_better = (tried.severity < faults.severity) & ~tried.is_wrong
+        better = np.setdiff1d(doubtful[is_better[doubtful]], other.unfilled)
         if len(better):
             filled = filled.with_fills(other, better)
             faults = find_faults(filled, obstacles=obstacles)

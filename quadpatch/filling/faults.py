@@ -55,6 +55,8 @@ class Faults:
     folds : Folds
     crossings : (n_loops,) int64
         New triangles that run through measured or new surface.
+    crossing_triangles : (n,) int64
+        Those, as triangles of the filled mesh.
     rivals : (n, 2) int64
         Pairs of loops whose fills run through each other, each pair once.
     is_lost : (n_loops,) bool
@@ -63,6 +65,7 @@ class Faults:
 
     folds: Folds
     crossings: IntArray
+    crossing_triangles: IntArray
     rivals: IntArray
     is_lost: BoolArray
 
@@ -73,8 +76,13 @@ class Faults:
 
     @property
     def is_doubtful(self) -> BoolArray:
-        """Loops (n_loops,) that another fill may suit better: all faults but those of the measured surface."""
-        return (self._count(~self.folds.is_excused) > 0) | (self.crossings > 0)
+        """Loops (n_loops,) that another fill may suit better.
+
+        Those with any fault but the folds of the measured surface, and but for running into a fill that is lost itself.
+        """
+        pairs = self.rivals[~self.is_lost[self.rivals].any(axis=1)]
+        has_rival = np.isin(np.arange(len(self.crossings)), pairs)
+        return np.asarray((self._count(~self.folds.is_excused) > 0) | self.is_lost | has_rival)
 
     @property
     def is_wrong(self) -> BoolArray:
@@ -91,6 +99,12 @@ class Faults:
         """Order (n_loops,) of fills from good to bad: what makes a fill wrong counts before what makes it doubtful."""
         doubtful = self._count(~self.folds.is_excused) + self.crossings
         return np.asarray(np.where(self.is_wrong, _WRONG, 0) + doubtful)
+
+    @property
+    def doubtful_triangles(self) -> IntArray:
+        """Triangles (n,) of the filled mesh that cross others or fold, but where the measured surface asks for it."""
+        folding = self.folds.pairs[~self.folds.is_excused].ravel()
+        return np.unique(np.concatenate([folding, self.crossing_triangles]))
 
     def _count(self, which: BoolArray) -> IntArray:
         return np.bincount(self.folds.hole[which], minlength=len(self.crossings))
@@ -159,26 +173,29 @@ def _neighbours(triangles: Triangles) -> tuple[IntArray, IntArray]:
 
 def _crossings(
     filled: FilledMesh, looked_at: BoolArray, obstacles: Triangles | None
-) -> tuple[IntArray, IntArray, BoolArray]:
-    """Find crossings, rivals and lost loops, as `Faults` has them."""
+) -> tuple[IntArray, IntArray, IntArray, BoolArray]:
+    """Find crossings, their triangles, rivals and lost loops, as `Faults` has them."""
     n_loops = len(filled.gap)
     triangles, mine = filled.mesh.triangles, np.zeros(len(filled.mesh.triangles), bool)
     mine[filled.n_measured_triangles :] = looked_at[filled.triangle_hole]
     if not mine.any():
-        return np.zeros(n_loops, np.int64), np.zeros((0, 2), np.int64), np.zeros(n_loops, bool)
+        nothing = np.zeros(0, np.int64)
+        return np.zeros(n_loops, np.int64), nothing, nothing.reshape(0, 2), np.zeros(n_loops, bool)
     others = triangles[~mine] if obstacles is None else np.concatenate([triangles[~mine], obstacles])
     around = TriangleMesh(filled.mesh.vertices, others)
     near = others[touching_boxes(*_boxes(filled, looked_at), around)]
     pairs = crossing_pairs(TriangleMesh(around.vertices, np.concatenate([triangles[mine], near])))
     owner = filled.triangle_hole[mine[filled.n_measured_triangles :]]
-    crossings = np.bincount(owner[np.unique(pairs[pairs < len(owner)])], minlength=n_loops)
+    crossing = np.unique(pairs[pairs < len(owner)])
+    crossings = np.bincount(owner[crossing], minlength=n_loops)
     # What is near comes behind the fills that are looked at; it has no loop.
     loops = np.concatenate([owner, np.full(len(near), -1)])[pairs]
     loops = np.unique(np.sort(loops, axis=1), axis=0)
     is_lost = np.zeros(n_loops, bool)
     is_lost[loops[(loops[:, 0] < 0) & (loops[:, 1] >= 0), 1]] = True
     is_lost[loops[(loops[:, 0] == loops[:, 1]) & (loops[:, 0] >= 0), 0]] = True
-    return crossings, loops[(loops[:, 0] >= 0) & (loops[:, 0] < loops[:, 1])], is_lost
+    rivals = loops[(loops[:, 0] >= 0) & (loops[:, 0] < loops[:, 1])]
+    return crossings, np.flatnonzero(mine)[crossing], rivals, is_lost
 
 
 def _boxes(filled: FilledMesh, looked_at: BoolArray) -> tuple[FloatArray, FloatArray]:

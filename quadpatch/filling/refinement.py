@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from quadpatch.filling.triangulation import EdgeSet
-from quadpatch.mesh.normals import cross, length, vertex_normals
+from quadpatch.mesh.normals import cross, length, triangle_normals, unit, vertex_normals
 from quadpatch.mesh.smoothing import neighbour_average
 from quadpatch.types import BoolArray, FloatArray, IntArray, Triangles, Vertices
 
@@ -22,6 +22,8 @@ _MAX_ROUNDS = 24
 _MAX_FLIP_PASSES = 40
 # An edge counts as Delaunay while cot(alpha) + cot(beta) is above minus this.
 _DELAUNAY_SLACK = 1e-9
+# Flips that are asked to keep the surface from folding over leave a margin to `faults.FOLD_ANGLE_DEG`.
+MOST_TURN_DEG = 135.0
 
 
 @dataclass(frozen=True)
@@ -53,14 +55,22 @@ class Refined:
         return np.arange(len(self.vertices)) >= self.n_measured
 
 
-def refine(patch: Refined, taken: EdgeSet) -> Refined:
-    """Split and flip until every triangle is about as large as the surface around its hole is dense."""
-    patch = flip_to_delaunay(patch, taken)
+def refine(patch: Refined, taken: EdgeSet, rim: Triangles | None = None) -> Refined:
+    """Split and flip until every triangle is about as large as the surface around its hole is dense.
+
+    Parameters
+    ----------
+    patch : Refined
+    taken : EdgeSet
+    rim : (k, 3) int64, optional
+        See `flip_to_delaunay`.
+    """
+    patch = flip_to_delaunay(patch, taken, rim)
     for _ in range(_MAX_ROUNDS):
         large = _too_large(patch)
         if not large.any():
             break
-        patch = flip_to_delaunay(_split_at_centroid(patch, large), taken)
+        patch = flip_to_delaunay(_split_at_centroid(patch, large), taken, rim)
     return patch
 
 
@@ -86,7 +96,7 @@ def _split_at_centroid(patch: Refined, large: BoolArray) -> Refined:
     )
 
 
-def relax(patch: Refined, around: Triangles, taken: EdgeSet) -> Refined:
+def relax(patch: Refined, around: Triangles, taken: EdgeSet, rim: Triangles | None = None) -> Refined:
     """Slide new vertices along the surface to the mean of their neighbours, and flip again: better shaped triangles.
 
     Parameters
@@ -95,6 +105,8 @@ def relax(patch: Refined, around: Triangles, taken: EdgeSet) -> Refined:
     around : (k, 3) int64
         Triangles of the input next to the holes.
     taken : EdgeSet
+    rim : (k, 3) int64, optional
+        See `flip_to_delaunay`.
     """
     triangles = np.concatenate([around, patch.triangles])
     mean = neighbour_average(triangles, len(patch.vertices)) @ patch.vertices
@@ -102,17 +114,27 @@ def relax(patch: Refined, around: Triangles, taken: EdgeSet) -> Refined:
     slide = mean - patch.vertices
     slide -= np.einsum("ij,ij->i", slide, normals)[:, None] * normals
     slide[~patch.is_new] = 0
-    return flip_to_delaunay(replace(patch, vertices=patch.vertices + slide), taken)
+    return flip_to_delaunay(replace(patch, vertices=patch.vertices + slide), taken, rim)
 
 
-def flip_to_delaunay(patch: Refined, taken: EdgeSet) -> Refined:
-    """Flip interior edges until all are locally Delaunay; each pass flips edges that share no triangle."""
+def flip_to_delaunay(patch: Refined, taken: EdgeSet, rim: Triangles | None = None) -> Refined:
+    """Flip interior edges until all are locally Delaunay; each pass flips edges that share no triangle.
+
+    Parameters
+    ----------
+    patch : Refined
+    taken : EdgeSet
+        Edges that exist already.
+    rim : (k, 3) int64, optional
+        Triangles of the input next to the holes. With them, no flip makes a turn beyond `MOST_TURN_DEG` or makes one
+        sharper.
+    """
     triangles = patch.triangles.copy()
     active = np.arange(len(triangles))
     shared = _in_several_holes(patch)
     for _ in range(_MAX_FLIP_PASSES):
         part = triangles[active]
-        flipped = _flip_once(part, patch.vertices, taken, shared)
+        flipped = _flip_once(part, patch.vertices, taken, shared, rim)
         if not len(flipped):
             break
         triangles[active] = part
@@ -132,7 +154,9 @@ def _in_several_holes(patch: Refined) -> BoolArray:
     return shared
 
 
-def _flip_once(triangles: Triangles, vertices: Vertices, taken: EdgeSet, shared: BoolArray) -> IntArray:
+def _flip_once(
+    triangles: Triangles, vertices: Vertices, taken: EdgeSet, shared: BoolArray, rim: Triangles | None
+) -> IntArray:
     """Flip, in place, edges that are not Delaunay, no two in one triangle; return the triangles that changed."""
     n_vertices = len(vertices)
     edges = triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
@@ -151,6 +175,8 @@ def _flip_once(triangles: Triangles, vertices: Vertices, taken: EdgeSet, shared:
     allowed &= ~taken.contains(np.stack([c, d], axis=1)) & ~(shared[c] & shared[d])
     crossing = _edge_keys(c, d, n_vertices)
     allowed &= ranked[np.searchsorted(ranked, crossing).clip(max=max(len(ranked) - 1, 0))] != crossing
+    if rim is not None:
+        allowed &= _turns_little(np.concatenate([triangles, rim]), vertices, (a, b, c, d), (left // 3, right // 3))
     allowed[allowed] = _is_first_everywhere(left[allowed] // 3, right[allowed] // 3, len(triangles))
     first = np.unique(crossing[allowed], return_index=True)[1]
     chosen = np.flatnonzero(allowed)[first]
@@ -173,6 +199,50 @@ def _is_unfolded(a: Vertices, b: Vertices, c: Vertices, d: Vertices) -> BoolArra
     """Whether the triangles (a, d, c) and (d, b, c), which the flip makes, look the same way."""
     unfolded: BoolArray = np.einsum("ij,ij->i", cross(d - a, c - a), cross(b - d, c - d)) > 0
     return unfolded
+
+
+def _turns_little(
+    triangles: Triangles, vertices: Vertices, corners: tuple[IntArray, ...], sides: tuple[IntArray, IntArray]
+) -> BoolArray:
+    """Whether flips (n,) keep the turns at their five edges within `MOST_TURN_DEG`, or below the sharpest before.
+
+    Flips are given by the ends a, b of their edges and the apexes c, d of the triangles on the two sides (a, b, c) and
+    (b, a, d).
+    """
+    a, b, c, d = corners
+    left, right = sides
+    normals = triangle_normals(vertices, triangles)
+    across = _Neighbours(triangles, len(vertices))
+    of_ac, of_cb = (normals[across.of(*edge, left)] for edge in ((a, c), (c, b)))
+    of_bd, of_da = (normals[across.of(*edge, right)] for edge in ((b, d), (d, a)))
+    abc, bad = normals[left], normals[right]
+    adc, dbc = (unit(cross(vertices[p] - vertices[d], vertices[q] - vertices[d])) for p, q in ((c, a), (b, c)))
+    before = _least_cosine([(abc, bad), (abc, of_ac), (abc, of_cb), (bad, of_bd), (bad, of_da)])
+    after = _least_cosine([(adc, dbc), (adc, of_ac), (adc, of_da), (dbc, of_cb), (dbc, of_bd)])
+    return np.asarray(after >= np.minimum(before, np.cos(np.radians(MOST_TURN_DEG))))
+
+
+def _least_cosine(pairs: list[tuple[FloatArray, FloatArray]]) -> FloatArray:
+    return np.asarray(np.min([np.einsum("ij,ij->i", one, other) for one, other in pairs], axis=0))
+
+
+class _Neighbours:
+    """Triangles by their edges, for "what lies across this edge?" in bulk."""
+
+    def __init__(self, triangles: Triangles, n_vertices: int) -> None:
+        edges = triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
+        keys = _edge_keys(edges[:, 0], edges[:, 1], n_vertices)
+        self._n_vertices, self._order = n_vertices, np.argsort(keys, kind="stable")
+        self._ranked = keys[self._order]
+
+    def of(self, start: IntArray, end: IntArray, triangle: IntArray) -> IntArray:
+        """Find the triangle (n,) on the other side of an edge of each triangle (n,); itself where there is none."""
+        key = _edge_keys(start, end, self._n_vertices)
+        first = np.searchsorted(self._ranked, key)
+        second = np.minimum(first + 1, len(self._ranked) - 1)
+        one, other = self._order[first] // 3, self._order[second] // 3
+        other = np.where(self._ranked[second] == key, other, one)
+        return np.where(one == triangle, other, one)
 
 
 def _is_first_everywhere(left: IntArray, right: IntArray, n_triangles: int) -> BoolArray:

@@ -6,6 +6,8 @@ smallest; equal ones are told apart by their area. The table costs O(n^3) for a 
 divided by chords first (`quadpatch.filling.division`).
 """
 
+from dataclasses import dataclass, field, replace
+
 import numpy as np
 
 from quadpatch.filling.division import RimLoop, divide
@@ -20,8 +22,42 @@ MAX_TABLE_SIZE = 128
 _ANGLE_STEP = 1e-3
 
 
+@dataclass(frozen=True)
+class Forbidden:
+    """What a triangulation may not contain.
+
+    Attributes
+    ----------
+    edges : EdgeSet
+        Edges that exist already: a chord along one of them would give it a third face. Others may be forbidden, too.
+    triangles : (k, 3) int64
+        Vertices of triangles, in any order.
+    """
+
+    edges: "EdgeSet"
+    triangles: Triangles = field(default_factory=lambda: np.zeros((0, 3), np.int64))
+
+    def with_edges(self, edges: IntArray) -> "Forbidden":
+        """Add edges (n, 2) to a copy."""
+        return replace(self, edges=self.edges.with_edges(edges))
+
+    def contains(self, first: IntArray, second: IntArray, third: IntArray) -> BoolArray:
+        """Whether each triangle, by its corners (broadcast against each other), is forbidden."""
+        corners = np.stack(np.broadcast_arrays(first, second, third), axis=-1)
+        found = np.zeros(corners.shape[:-1], bool)
+        possible = np.isin(corners, self.triangles).all(axis=-1)
+        found[possible] = np.isin(_sorted_rows(corners[possible]), _sorted_rows(self.triangles))
+        return found
+
+
+def _sorted_rows(triangles: Triangles) -> np.ndarray[tuple[int], np.dtype[np.void]]:
+    """One value (n,) for the three vertices of each triangle (n, 3), whatever their order."""
+    rows = np.ascontiguousarray(np.sort(triangles, axis=1))
+    return rows.view([("", np.int64)] * 3).ravel()
+
+
 def triangulate_loops(
-    loops: list[IntArray], vertices: Vertices, rim_normals: list[FloatArray], taken: "EdgeSet"
+    loops: list[IntArray], vertices: Vertices, rim_normals: list[FloatArray], forbidden: Forbidden
 ) -> list[Triangles | None]:
     """Triangulate boundary loops without new vertices.
 
@@ -32,35 +68,34 @@ def triangulate_loops(
     vertices : (n_vertices, 3) float64
     rim_normals : list of (n_loop, 3) float64
         Unit normal of the face at each rim edge, from loop vertex i to i + 1.
-    taken : EdgeSet
-        Edges that exist already: a chord along one of them would give it a third face.
+    forbidden : Forbidden
 
     Returns
     -------
     list of (n_loop - 2, 3) int64 or None
-        Vertex indices; None where every triangulation would reuse an existing edge.
+        Vertex indices; None where every triangulation would contain what is forbidden.
     """
-    found = _triangulate(loops, vertices, rim_normals, taken)
+    found = _triangulate(loops, vertices, rim_normals, forbidden)
     # Two holes with two corners in common may want the same chord; the later one has to do without.
     members = np.concatenate([np.zeros(0, np.int64), *loops])
     owner = np.repeat(np.arange(len(loops)), [len(loop) for loop in loops])
     for i in _clashing(found):
         near = np.unique(owner[np.isin(members, loops[i])]).tolist()
         others = [directed_edges(t) for j, t in ((j, found[j]) for j in near if j != i) if t is not None]
-        known = taken.among(loops[i]).with_edges(np.concatenate([np.zeros((0, 2), np.int64), *others]))
-        found[i] = _triangulate([loops[i]], vertices, [rim_normals[i]], known)[0]
+        edges = forbidden.edges.among(loops[i]).with_edges(np.concatenate([np.zeros((0, 2), np.int64), *others]))
+        found[i] = _triangulate([loops[i]], vertices, [rim_normals[i]], replace(forbidden, edges=edges))[0]
     return found
 
 
 def _triangulate(
-    loops: list[IntArray], vertices: Vertices, rim_normals: list[FloatArray], taken: "EdgeSet"
+    loops: list[IntArray], vertices: Vertices, rim_normals: list[FloatArray], forbidden: Forbidden
 ) -> list[Triangles | None]:
     """Triangulate every loop for itself."""
-    taken = taken.with_edges(np.concatenate([np.zeros((0, 2), np.int64), *(_bridges(loop) for loop in loops)]))
+    forbidden = forbidden.with_edges(np.concatenate([np.zeros((0, 2), np.int64), *(_bridges(loop) for loop in loops)]))
     rims = [RimLoop(loop, normals) for loop, normals in zip(loops, rim_normals, strict=True)]
-    parts = [divide(rim, vertices, MAX_TABLE_SIZE, taken.pairs) for rim in rims]
+    parts = [divide(rim, vertices, MAX_TABLE_SIZE, forbidden.edges.pairs) for rim in rims]
     flat = [part for of_loop in parts for part in of_loop]
-    found = iter(_by_length([p.vertices for p in flat], vertices, [p.normals for p in flat], taken))
+    found = iter(_by_length([p.vertices for p in flat], vertices, [p.normals for p in flat], forbidden))
     pieces = [[next(found) for _ in of_loop] for of_loop in parts]
     return [_joined(p) for p in pieces]
 
@@ -97,7 +132,7 @@ def _clashing(found: list[Triangles | None]) -> list[int]:
 
 
 def _by_length(
-    loops: list[IntArray], vertices: Vertices, rim_normals: list[FloatArray], taken: "EdgeSet"
+    loops: list[IntArray], vertices: Vertices, rim_normals: list[FloatArray], forbidden: Forbidden
 ) -> list[Triangles | None]:
     """Triangulate loops in batches of one length."""
     result: list[Triangles | None] = [None] * len(loops)
@@ -107,7 +142,7 @@ def _by_length(
     for members in by_length.values():
         batch = np.stack([loops[i] for i in members])
         normals = np.stack([rim_normals[i] for i in members])
-        corners, finite = _minimum_weight(vertices[batch], normals, taken.chords(batch))
+        corners, finite = _minimum_weight(vertices[batch], normals, batch, forbidden)
         for i, local, found in zip(members, corners, finite, strict=True):
             result[i] = loops[i][local] if found else None
     return result
@@ -152,11 +187,13 @@ class EdgeSet:
         return (np.minimum(start, end) << 32) | np.maximum(start, end)
 
 
-def _minimum_weight(points: FloatArray, rim_normals: FloatArray, taken: BoolArray) -> tuple[IntArray, BoolArray]:
-    """Triangulate b loops of n points at once: points (b, n, 3) -> corners (b, n - 2, 3), whether each exists (b,)."""
+def _minimum_weight(
+    points: FloatArray, rim_normals: FloatArray, loops: IntArray, forbidden: Forbidden
+) -> tuple[IntArray, BoolArray]:
+    """Triangulate b loops (b, n) of points (b, n, 3) at once: corners (b, n - 2, 3), whether each exists (b,)."""
     b, n, _ = points.shape
-    angle = np.zeros((b, n, n))
-    area = np.zeros((b, n, n))
+    taken = forbidden.edges.chords(loops)
+    angle, area = np.zeros((b, n, n)), np.zeros((b, n, n))
     apex = np.full((b, n, n), -1)
     normal = np.zeros((b, n, n, 3))
     i = np.arange(n - 1)
@@ -178,6 +215,7 @@ def _minimum_weight(points: FloatArray, rim_normals: FloatArray, taken: BoolArra
         bend = np.maximum(bend, np.maximum(angle[ik], angle[kj]))
         total = double_area / 2 + area[ik] + area[kj]
         bend[taken[:, i, j]] = np.inf
+        bend[forbidden.contains(loops[:, i, None], loops[:, k], loops[:, j, None])] = np.inf
         best = np.argmin(np.round(bend / _ANGLE_STEP) + 1e-3 * total / size, axis=-1)  # (b, n - gap)
         at = (rows, np.arange(n - gap)[None, :], best)
         angle[:, i, j], area[:, i, j], normal[:, i, j] = bend[at], total[at], unit[at]

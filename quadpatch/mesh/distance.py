@@ -31,3 +31,10 @@ def nearest_triangles(points: Vertices, mesh: TriangleMesh) -> tuple[FloatArray,
         np.ascontiguousarray(points), mesh.vertices[used], local.reshape(-1, 3)
     )
     return np.asarray(np.sqrt(squared)), np.asarray(triangle, np.int64)
+
+
+def nearest_points(points: Vertices, mesh: TriangleMesh) -> Vertices:
+    """Find the nearest point (n, 3) of a mesh, which has triangles, to each of some points (n, 3)."""
+    used, local = np.unique(mesh.triangles, return_inverse=True)
+    found = igl.point_mesh_squared_distance(np.ascontiguousarray(points), mesh.vertices[used], local.reshape(-1, 3))
+    return np.asarray(found[2])

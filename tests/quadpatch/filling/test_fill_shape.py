@@ -50,8 +50,8 @@ def test_the_gap_is_the_mean_distance_between_the_thin_plate_and_a_second_opinio
     mesh = CLOSED["sphere"]
     closed = close_holes(mesh, all_loops(mesh))
     plate = closed.plate
-    second = fair(plate.vertices, np.concatenate([closed.around, plate.triangles]), plate.is_new, SECOND_OPINION)
-    apart = np.linalg.norm(second - plate.vertices, axis=1)[len(closed.used) :]
+    second = fair(plate.vertices, np.concatenate([closed.near.around, plate.triangles]), plate.is_new, SECOND_OPINION)
+    apart = np.linalg.norm(second - plate.vertices, axis=1)[len(closed.near.used) :]
     for energy in (SMOOTH, THIN_PLATE):
         result = fair_holes(closed, energy)
         expected = [apart[result.vertex_hole == i].mean() for i in range(3)]
@@ -95,7 +95,7 @@ def test_a_fill_that_runs_away_from_a_ragged_rim_is_held_by_the_thin_plate() -> 
     ragged = TriangleMesh(rough, mesh.triangles)
     closed = close_holes(ragged, loops)
     result = fair_holes(closed, Energy(variation=1.0))
-    plate = closed.plate.vertices[len(closed.used) :] + closed.centre
+    plate = closed.plate.vertices[len(closed.near.used) :] + closed.near.centre
     is_plate = (result.mesh.vertices[result.n_measured_vertices :] == plate).all(axis=1)
     assert is_plate[result.vertex_hole == 0].all()
     assert not is_plate[result.vertex_hole == 1].any()

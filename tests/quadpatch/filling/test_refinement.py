@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from quadpatch.filling.refinement import Refined, flip_to_delaunay, refine, relax
-from quadpatch.filling.triangulation import EdgeSet, triangulate_loops
+from quadpatch.filling.triangulation import EdgeSet, Forbidden, triangulate_loops
 from quadpatch.mesh.boundary import boundary_loops, directed_edges
 from quadpatch.mesh.normals import area_vectors, vertex_normals
 from quadpatch.types import FloatArray, IntArray, TriangleMesh, Triangles, Vertices
@@ -29,7 +29,7 @@ def coarse(mesh: TriangleMesh, n_holes: int = 1) -> tuple[Refined, EdgeSet]:
     loops = sorted(boundary_loops(mesh.triangles).loops, key=len)[:n_holes]
     taken = EdgeSet(directed_edges(mesh.triangles))
     normals = vertex_normals(mesh.vertices, mesh.triangles)
-    flat = triangulate_loops(loops, mesh.vertices, [normals[loop] for loop in loops], taken)
+    flat = triangulate_loops(loops, mesh.vertices, [normals[loop] for loop in loops], Forbidden(taken))
     found = [triangles for triangles in flat if triangles is not None]
     assert len(found) == n_holes
     hole = np.repeat(np.arange(n_holes), [len(triangles) for triangles in found])

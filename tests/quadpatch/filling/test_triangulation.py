@@ -5,13 +5,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from quadpatch.filling.triangulation import MAX_TABLE_SIZE, EdgeSet, triangulate_loops
+from quadpatch.filling.triangulation import MAX_TABLE_SIZE, EdgeSet, Forbidden, triangulate_loops
 from quadpatch.mesh.boundary import boundary_loops, directed_edges
 from quadpatch.mesh.normals import area_vectors, triangle_normals
 from quadpatch.types import FloatArray, IntArray, Triangles
 from tests.quadpatch.shapes import faces_per_edge, is_oriented_manifold
 
-NOTHING = EdgeSet(np.zeros((0, 2), np.int64))
+NO_EDGES = EdgeSet(np.zeros((0, 2), np.int64))
+NOTHING = Forbidden(NO_EDGES)
 UP = np.array([0.0, 0.0, 1.0])
 
 
@@ -35,9 +36,9 @@ def polygon_area(corners: FloatArray) -> float:
     return abs(float((x * np.roll(y, -1) - y * np.roll(x, -1)).sum())) / 2
 
 
-def triangulate(corners: FloatArray, taken: EdgeSet = NOTHING, normals: FloatArray | None = None) -> Triangles | None:
+def triangulate(corners: FloatArray, taken: EdgeSet = NO_EDGES, normals: FloatArray | None = None) -> Triangles | None:
     normals = np.tile(UP, (len(corners), 1)) if normals is None else normals
-    (found,) = triangulate_loops([np.arange(len(corners))], corners, [normals], taken)
+    (found,) = triangulate_loops([np.arange(len(corners))], corners, [normals], Forbidden(taken))
     return found
 
 
@@ -153,7 +154,7 @@ def test_one_impossible_loop_does_not_spoil_its_batch() -> None:
     vertices = np.concatenate([star(4, 0), star(4, 1)])
     loops = [np.arange(4), np.arange(4, 8)]
     normals = [np.tile(UP, (4, 1))] * 2
-    first, second = triangulate_loops(loops, vertices, normals, EdgeSet(np.array([[0, 2], [1, 3]])))
+    first, second = triangulate_loops(loops, vertices, normals, Forbidden(EdgeSet(np.array([[0, 2], [1, 3]]))))
     assert first is None
     assert second is not None
 
@@ -185,7 +186,7 @@ def test_two_holes_never_share_a_chord() -> None:
 def test_an_edge_set_knows_its_edges_in_both_directions() -> None:
     edges = EdgeSet(np.array([[3, 1], [2, 5]]))
     assert edges.contains(np.array([[[1, 3], [3, 1]], [[5, 2], [1, 2]]])).tolist() == [[True, True], [True, False]]
-    assert NOTHING.contains(np.array([[1, 3]])).tolist() == [False]
+    assert NO_EDGES.contains(np.array([[1, 3]])).tolist() == [False]
 
 
 def ring(n: int) -> tuple[FloatArray, IntArray]:
@@ -225,3 +226,44 @@ def test_of_many_roofs_over_one_ridge_one_is_creased_along_it(n_roofs: int) -> N
 def test_edges_among_some_vertices_are_those_with_both_ends_there() -> None:
     edges = EdgeSet(np.array([[0, 1], [1, 2], [2, 3], [3, 0]])).among(np.array([2, 1, 0]))
     assert edges.contains(np.array([[1, 0], [2, 1], [3, 2], [0, 3]])).tolist() == [True, True, False, False]
+
+
+@given(n=st.integers(3, 12), seed=st.integers(0, 2**32 - 1))
+@settings(max_examples=60)
+def test_triangles_that_are_forbidden_are_not_used(n: int, seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    every = np.array(list(itertools.combinations(range(n), 3)))
+    some = every[rng.random(len(every)) < 0.3]
+    loop, corners = rng.permutation(n), np.zeros((n, 3))
+    corners[loop] = star(n, seed)
+    forbidden = Forbidden(NO_EDGES, rng.permuted(some, axis=1))
+    (found,) = triangulate_loops([loop], corners, [np.tile(UP, (n, 1))], forbidden)
+    if found is None:
+        return
+    assert_closes(loop, found)
+    assert not {frozenset(t) for t in found.tolist()} & {frozenset(t) for t in some.tolist()}
+
+
+def test_the_next_best_triangulation_is_taken_where_the_best_is_forbidden() -> None:
+    # A square has two: without one triangle of the first it is the second, without one of each there is none.
+    corners = star(4, 0)
+    normals = [np.tile(UP, (4, 1))]
+    first = triangulate(corners)
+    assert first is not None
+    (second,) = triangulate_loops([np.arange(4)], corners, normals, Forbidden(NO_EDGES, first[:1]))
+    assert second is not None
+    assert {frozenset(t) for t in second.tolist()}.isdisjoint(frozenset(t) for t in first.tolist())
+    both = Forbidden(NO_EDGES, np.concatenate([first[:1], second[1:]]))
+    assert triangulate_loops([np.arange(4)], corners, normals, both) == [None]
+
+
+@pytest.mark.parametrize("n", [200, 3 * MAX_TABLE_SIZE])
+def test_long_loops_do_without_what_is_forbidden_too(n: int) -> None:
+    corners, normals = wavy(n), [np.tile(UP, (n, 1))]
+    plain = triangulate(corners)
+    assert plain is not None
+    forbidden = plain[:: len(plain) // 10]
+    (found,) = triangulate_loops([np.arange(n)], corners, normals, Forbidden(NO_EDGES, forbidden))
+    assert found is not None
+    assert_closes(np.arange(n), found)
+    assert {frozenset(t) for t in found.tolist()}.isdisjoint(frozenset(t) for t in forbidden.tolist())

@@ -1,0 +1,138 @@
+"""The measured surface next to holes, which is all that filling them reads."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from quadpatch.filling.fairing import triangles_around
+from quadpatch.filling.filled_mesh import FilledMesh
+from quadpatch.filling.refinement import Refined
+from quadpatch.filling.triangulation import EdgeSet, Forbidden, triangulate_loops
+from quadpatch.mesh.boundary import directed_edges
+from quadpatch.mesh.normals import triangle_normals, unit, vertex_normals
+from quadpatch.types import FloatArray, IntArray, TriangleMesh, Triangles
+
+# The minimum variation surface asks for the Laplacian at the rim and at one ring of vertices outside it, and that for
+# all triangles around these.
+_RINGS = 2
+
+
+@dataclass(frozen=True)
+class Surroundings:
+    """The measured surface next to holes, in vertices and coordinates of its own.
+
+    Attributes
+    ----------
+    mesh : TriangleMesh
+        The input.
+    used : (n_local,) int64
+        Input vertices next to a hole.
+    centre : (3,) float64
+        Origin of the local coordinates: far-away scans would lose digits without it.
+    vertices : (n_local, 3) float64
+    around : (k, 3) int64
+        Input triangles next to a hole, in local vertices.
+    loops : list of (n_loop,) int64
+        In local vertices.
+    edges : EdgeSet
+        Those of the input triangles.
+    """
+
+    mesh: TriangleMesh
+    used: IntArray
+    centre: FloatArray
+    vertices: FloatArray
+    around: Triangles
+    loops: list[IntArray]
+    edges: EdgeSet
+
+    @classmethod
+    def of(cls, mesh: TriangleMesh, loops: list[IntArray]) -> "Surroundings":
+        """Cut out what the filling reads: nothing in it looks further than two rings from a rim."""
+        rim = np.unique(np.concatenate([np.zeros(0, np.int64), *loops]))
+        near = triangles_around(mesh.triangles, rim, len(mesh.vertices), _RINGS)
+        used, local = np.unique(mesh.triangles[near], return_inverse=True)
+        around = local.reshape(-1, 3)
+        centre = mesh.vertices[used].mean(axis=0) if len(used) else np.zeros(3)
+        local_loops = [np.searchsorted(used, loop) for loop in loops]
+        edges = EdgeSet(directed_edges(around))
+        return cls(mesh, used, centre, mesh.vertices[used] - centre, around, local_loops, edges)
+
+    def triangulate(self, forbidden: Forbidden | None = None) -> tuple[Refined, list[int]]:
+        """Triangulate all loops, without new vertices.
+
+        Parameters
+        ----------
+        forbidden : Forbidden, optional
+            In local vertices; without, the edges that exist.
+
+        Returns
+        -------
+        patch : Refined
+        unfilled : list of int
+            Positions of loops that have no triangulation.
+        """
+        rim_normals = _rim_normals(self.vertices, self.around, self.loops)
+        flat = triangulate_loops(self.loops, self.vertices, rim_normals, forbidden or Forbidden(self.edges))
+        found = [(i, triangles) for i, triangles in enumerate(flat) if triangles is not None]
+        unfilled = [i for i, triangles in enumerate(flat) if triangles is None]
+        triangles = np.concatenate([np.zeros((0, 3), np.int64), *(t for _, t in found)])
+        hole = np.repeat(np.array([i for i, _ in found], np.int64), [len(t) for _, t in found])
+        return Refined(self.vertices, triangles, hole, self._spacing(), len(self.vertices)), unfilled
+
+    def _spacing(self) -> FloatArray:
+        """Mean length (n_local,) of the edges at every vertex; 0 without any."""
+        edges = directed_edges(self.around)
+        lengths = np.linalg.norm(self.vertices[edges[:, 0]] - self.vertices[edges[:, 1]], axis=1)
+        count = np.bincount(edges.ravel(), minlength=len(self.vertices))
+        total = np.bincount(edges.ravel(), np.repeat(lengths, 2), minlength=len(self.vertices))
+        return np.asarray(total / np.maximum(count, 1))
+
+    def rim_turn(self) -> FloatArray:
+        """Mean length (n_loops,) of the difference between the unit normals of neighbouring rim vertices."""
+        normals = vertex_normals(self.vertices, self.around)
+        turns = [np.linalg.norm(normals[loop] - normals[np.roll(loop, -1)], axis=1).mean() for loop in self.loops]
+        return np.array(turns, np.float64)
+
+    def filled(
+        self, patch: Refined, unfilled: list[int], gap: FloatArray | None = None, rim_turn: FloatArray | None = None
+    ) -> FilledMesh:
+        """Put a fill in local vertices behind the mesh's own; without gap and rim turn, they are NaN."""
+        mesh, n_local = self.mesh, len(self.used)
+        n_input = len(mesh.vertices)
+        unknown = np.full(len(self.loops), np.nan)
+        to_mesh = np.concatenate([self.used, n_input + np.arange(len(patch.vertices) - n_local)])
+        vertex_hole = np.zeros(len(patch.vertices), np.int64)
+        vertex_hole[patch.triangles] = patch.hole[:, None]
+        vertices = np.concatenate([mesh.vertices, patch.vertices[n_local:] + self.centre])
+        triangles = np.concatenate([mesh.triangles, to_mesh[patch.triangles]])
+        return FilledMesh(
+            TriangleMesh(vertices, triangles),
+            n_input,
+            len(mesh.triangles),
+            patch.hole,
+            vertex_hole[n_local:],
+            unknown if gap is None else gap,
+            unknown if rim_turn is None else rim_turn,
+            unfilled,
+        )
+
+
+def _rim_normals(vertices: FloatArray, around: Triangles, loops: list[IntArray]) -> list[FloatArray]:
+    """Look up the unit normals of the faces at the rim edges of every loop; a bridge lies between its neighbours'."""
+    normals = triangle_normals(vertices, around)
+    edges = directed_edges(around)
+    keys = edges[:, 0] * np.int64(len(vertices)) + edges[:, 1]
+    order = np.argsort(keys)
+    found = []
+    for loop in loops:
+        wanted = loop * np.int64(len(vertices)) + np.roll(loop, -1)
+        at = order[np.searchsorted(keys, wanted, sorter=order).clip(max=len(keys) - 1)]
+        of_loop = normals[at // 3]
+        bridge = keys[at] != wanted
+        if bridge.any():
+            of_loop[bridge] = 0.0
+            between = np.roll(of_loop, 1, axis=0) + np.roll(of_loop, -1, axis=0)
+            of_loop[bridge] = unit(between[bridge])
+        found.append(of_loop)
+    return found
