@@ -11,6 +11,11 @@ from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Trian
 LEAST_HEIGHT = 1e-6
 # Crossings by less than this share of a triangle are rounding.
 _SHRINKAGE = 1e-3
+# A triangle lies on another where its centroid does, up to this share of the other's longest edge; both must be higher
+# than the second share of theirs, or the edge between two neighbours would be as near.
+_ON_SURFACE = 1e-6
+_LEAST_HEIGHT_ON_SURFACE = 1e-3
+_PAIRS_AT_A_TIME = 1_000_000
 # Triangles larger than so many mean radii count as large.
 _LARGE = 4.0
 
@@ -27,11 +32,47 @@ def crossing_pairs(mesh: TriangleMesh) -> IntArray:
     (n_pairs, 2) int64
         Positions of triangles. Triangles without a height are in none of the pairs.
     """
-    solid = np.flatnonzero(heights(mesh.vertices, mesh.triangles) > LEAST_HEIGHT)
+    height = heights(mesh.vertices, mesh.triangles)
+    solid = np.flatnonzero(height > LEAST_HEIGHT)
     if len(solid) < 2:
         return np.zeros((0, 2), np.int64)
     pairs = solid[_exact_pairs(mesh.vertices, mesh.triangles[solid])]
-    return pairs[_cross_when_shrunk(mesh, pairs)]
+    clear = np.flatnonzero(height > _LEAST_HEIGHT_ON_SURFACE)
+    # Sheets in one plane but for rounding do not cross.
+    overlapping = clear[_overlapping_pairs(mesh.vertices[mesh.triangles[clear]])]
+    corners = np.sort(mesh.triangles[overlapping], axis=-1)
+    overlapping = overlapping[(corners[:, 0] != corners[:, 1]).any(axis=-1)]
+    return np.concatenate([pairs[_cross_when_shrunk(mesh, pairs)], overlapping])
+
+
+def _overlapping_pairs(corners: FloatArray) -> IntArray:
+    """Pairs (n, 2) of triangles, by their corners (m, 3, 3), the centroid of the second of which lies on the first."""
+    if not len(corners):
+        return np.zeros((0, 2), np.int64)
+    centres = corners.mean(axis=1)
+    radii = length(corners - centres[:, None]).max(axis=1)
+    tree, found = cKDTree(centres), []
+    n_near = np.cumsum(tree.query_ball_point(centres, radii, return_length=True))
+    # Few triangles may hold the centroids of all others: as many at a time as memory has room for.
+    for part in np.split(np.arange(len(corners)), np.flatnonzero(np.diff(n_near // _PAIRS_AT_A_TIME)) + 1):
+        near = tree.query_ball_point(centres[part], radii[part])
+        lower = np.repeat(part, [len(row) for row in near])
+        upper = np.concatenate(near).astype(np.int64)
+        on_it = (lower != upper) & _lies_on(centres[upper], corners[lower])
+        found.append(np.stack([lower[on_it], upper[on_it]], axis=1))
+    return np.concatenate(found)
+
+
+def _lies_on(points: Vertices, corners: FloatArray) -> BoolArray:
+    """Whether each point (n, 3) lies on its triangle (n, 3, 3), off its border."""
+    a, b, c = (corners[:, k] for k in range(3))
+    normal = cross(b - a, c - a)
+    double_area = length(normal)
+    longest = np.max([length(b - a), length(c - b), length(a - c)], axis=0)
+    lies = np.abs(np.einsum("ij,ij->i", points - a, normal)) <= _ON_SURFACE * longest * double_area
+    for start, end in ((a, b), (b, c), (c, a)):
+        lies &= np.einsum("ij,ij->i", cross(end - start, points - start), normal) > _SHRINKAGE * double_area**2
+    return np.asarray(lies)
 
 
 def _exact_pairs(vertices: Vertices, triangles: Triangles) -> IntArray:

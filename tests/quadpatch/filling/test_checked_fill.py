@@ -130,12 +130,12 @@ def assert_opened(checked: CheckedFill, mesh: TriangleMesh) -> None:
     assert checked.departure.tolist() == [0.0] * len(checked.filled.gap)
 
 
-def test_a_lonely_triangle_is_refused_since_its_back_folds_over() -> None:
+def test_a_lonely_triangle_is_refused_since_its_back_lies_on_it() -> None:
     triangle = TriangleMesh(np.eye(3), np.array([[0, 1, 2]]))
     checked = fill_checked(triangle, as_holes(all_loops(triangle)), smooth)
     code, reason = checked.refused[0]
-    assert code == "folds_over"
-    assert "folds over itself" in reason
+    assert code == "crosses_surface"
+    assert "runs through other surface" in reason
     assert_opened(checked, triangle)
 
 

@@ -146,3 +146,30 @@ def test_no_box_and_no_triangle_touch_nothing() -> None:
     none = np.zeros((0, 3))
     assert not touching_boxes(none, none, open_grid(4)).any()
     assert len(touching_boxes(np.zeros((1, 3)), np.ones((1, 3)), TriangleMesh(none, np.zeros((0, 3), np.int64)))) == 0
+
+
+@given(seed=st.integers(0, 2**32 - 1), size=SIZES, lift=st.sampled_from([0.0, 1e-15, 1e-9]))
+@settings(max_examples=25)
+def test_sheets_in_one_plane_but_for_rounding_lie_on_each_other(seed: int, size: float, lift: float) -> None:
+    rng = np.random.default_rng(seed)
+    small = 0.3 * (np.array(FLOOR) + rng.uniform(-0.5, 0.5, 3) * [1, 1, 0]) + [0, 0, lift]
+    above = np.array(FLOOR) + np.array([0, 0, 0.01])
+    corners = np.stack([np.array(FLOOR), small, above]) @ random_rotation(rng)
+    mesh = TriangleMesh(size * corners.reshape(-1, 3), np.arange(9).reshape(-1, 3))
+    assert pairs_of(mesh) == {(0, 1)}
+
+
+@pytest.mark.parametrize("angle", [1e-4, 0.01, 0.5])
+def test_neighbours_do_not_lie_on_each_other_however_sharp_their_edge(angle: float) -> None:
+    flap = [[-1.0, -1, 0], [2, -1, 0], [0, 3 * np.cos(angle) - 1, 3 * np.sin(angle)]]
+    corners = np.array([FLOOR, flap])
+    mesh = TriangleMesh(corners.reshape(-1, 3)[[0, 1, 2, 5]], np.array([[0, 1, 2], [1, 0, 3]]))
+    assert pairs_of(mesh) == set()
+
+
+def test_many_small_triangles_on_few_large_ones_are_all_found() -> None:
+    grid = open_grid(40, 2.0)
+    floor = soup(*[(10 * np.array(FLOOR)).tolist()] * 3)
+    mesh = joined(grid, moved(floor, (0, 0, 1e-13)))
+    n = len(grid.triangles)
+    assert {i for i, _ in pairs_of(mesh)} >= set(range(n))
