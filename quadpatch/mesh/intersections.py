@@ -10,7 +10,7 @@ from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Trian
 # A triangle lower than this share of its longest edge is a line in all but name: it has no side to be crossed on.
 LEAST_HEIGHT = 1e-6
 # Crossings by less than this share of a triangle are rounding.
-_SHRINKAGE = 1e-3
+_SHRINKAGE = 1e-5
 # A triangle lies on another where its centroid does, up to this share of the other's longest edge; both must be higher
 # than the second share of theirs, or the edge between two neighbours would be as near.
 _ON_SURFACE = 1e-6
