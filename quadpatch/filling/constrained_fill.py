@@ -18,7 +18,7 @@ from quadpatch.filling.refinement import Refined, refine, relax
 from quadpatch.filling.surroundings import Surroundings
 from quadpatch.filling.triangulation import Forbidden
 from quadpatch.mesh.distance import nearest_points
-from quadpatch.mesh.intersections import touching_boxes
+from quadpatch.mesh.intersections import heights, touching_boxes
 from quadpatch.raycast import RayScene
 from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Triangles, Vertices
 
@@ -30,6 +30,8 @@ _MAX_HALVINGS = 10
 _WIDER_FROM = 3
 # A fill stays within the bounding box of its rim, made wider on each side by this share of its diagonal.
 _MARGIN = 0.5
+# A triangle that becomes lower than this share of its longest edge has collapsed.
+_LEAST_HEIGHT = 0.02
 # A vertex is drawn to the first fill where that is not farther away than this many edge lengths.
 _NEAR = 1.0
 # The surface at the ends of a chord, within this share of it, is its own.
@@ -143,6 +145,7 @@ class _OneHole:
         n_vertices, n_triangles = filled.n_measured_vertices, filled.n_measured_triangles
         mesh = TriangleMesh(filled.mesh.vertices[:n_vertices], filled.mesh.triangles[:n_triangles])
         self._near = Surroundings.of(mesh, [loop])
+        self._is_single = np.array_equal(mesh.vertices, mesh.vertices.astype(np.float32))
 
     def fill(self) -> FilledMesh | None:
         patch = self._triangulation()
@@ -203,11 +206,13 @@ class _OneHole:
         return np.stack([loop[first[blocked]], loop[second[blocked]]], axis=1)
 
     def _moved(self, patch: Refined, target: Vertices) -> Refined:
-        """Move the new vertices towards their targets (n, 3), each as far as nothing at it folds or crosses."""
+        """Move new vertices towards their targets (n, 3), each as far as nothing at it folds, crosses or collapses."""
+        is_low = heights(patch.vertices, patch.triangles) < _LEAST_HEIGHT
         share = np.ones(len(patch.vertices))
         for halving in range(_MAX_HALVINGS):
             moved = _between(patch, target, share)
-            faulty = self._new(self._faults(moved).doubtful_triangles, moved)
+            collapsed = np.flatnonzero(~is_low & (heights(moved.vertices, moved.triangles) < _LEAST_HEIGHT))
+            faulty = np.union1d(self._new(self._faults(moved).doubtful_triangles, moved), collapsed)
             if not len(faulty):
                 return moved
             held = _corners(patch, faulty)
@@ -223,9 +228,16 @@ class _OneHole:
         return find_faults(self._with(patch), np.array([self._position]), self._obstacles)
 
     def _with(self, patch: Refined) -> FilledMesh:
-        """Put a fill of the loop behind the others."""
+        """Put a fill of the loop behind the others, in the precision of the measured coordinates.
+
+        Fills that keep clear of surface by little would not do so in a file of single precision otherwise.
+        """
+        fill = self._near.filled(patch, [])
+        if self._is_single:
+            new = fill.mesh.vertices[fill.n_measured_vertices :]
+            fill = fill.with_vertices(new.astype(np.float32).astype(np.float64))
         chosen = np.array([self._position])
-        return self._filled.with_fills(self._near.filled(patch, []).as_part_of(chosen, self._filled), chosen)
+        return self._filled.with_fills(fill.as_part_of(chosen, self._filled), chosen)
 
     def _new(self, triangles: IntArray, patch: Refined) -> IntArray:
         """Triangles of the patch among those of the mesh that ends with it."""

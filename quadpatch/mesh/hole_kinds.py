@@ -118,8 +118,8 @@ def open_ends(vertices: Vertices, rims: Rims, shapes: LoopShapes, pieces: Pieces
 def _rise(rims: Rims, shapes: LoopShapes) -> FloatArray:
     """Sine (n_loops,) of the angle at which the faces along each rim rise from its plane, signed like its normal.
 
-    Heights are summed before they are divided: noise as large as the faces themselves averages out. What lies in the plane
-    is summed by quarters of the rim, or a flap that hangs into the hole would make up for the faces opposite to it.
+    Heights are summed before they are divided: noise as large as the faces themselves averages out. What lies in the
+    plane is summed by quarters of the rim, or a flap that hangs into the hole would make up for the faces opposite.
     """
     normals, centres = shapes.plane_normals[rims.loop], shapes.centres[rims.loop]
     into = rims.inward * (rims.heights * rims.lengths)[:, None]
@@ -135,4 +135,5 @@ def _sums_of_quarters(rims: Rims, values: FloatArray) -> FloatArray:
     """Sum values (n,) over the edges of each quarter of each loop: (n_loops, 4)."""
     position = np.arange(len(rims.loop)) - rims.starts[rims.loop]
     quarter = 4 * position // np.diff(rims.starts)[rims.loop]
-    return np.bincount(4 * rims.loop + quarter, values, minlength=4 * rims.n_loops).reshape(-1, 4)
+    sums = np.bincount(4 * rims.loop + quarter, values, minlength=4 * rims.n_loops)
+    return np.asarray(sums, np.float64).reshape(-1, 4)

@@ -11,6 +11,7 @@ from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.filling.refinement import MOST_TURN_DEG, refine
 from quadpatch.filling.surroundings import Surroundings
 from quadpatch.mesh.distance import distance_to_mesh
+from quadpatch.mesh.intersections import heights
 from quadpatch.mesh.normals import triangle_normals
 from quadpatch.types import FloatArray, IntArray, TriangleMesh
 from tests.quadpatch.filling.fills import CLOSED, all_loops, assert_keeps
@@ -163,3 +164,26 @@ def test_flips_that_keep_the_rim_in_sight_make_no_sharper_turns(seed: int) -> No
     before = sharpest_turn(patch.triangles, patch.vertices)
     refined = refine(patch, near.edges, near.around)
     assert sharpest_turn(refined.triangles, refined.vertices) <= max(before, MOST_TURN_DEG) + 1e-6
+
+
+def test_a_fill_of_a_mesh_in_single_precision_holds_in_a_file_of_single_precision() -> None:
+    for seed in range(3):
+        mesh = jagged(seed)
+        single = TriangleMesh(mesh.vertices.astype(np.float32).astype(np.float64), mesh.triangles)
+        filled = constrained(single, sorted(all_loops(mesh), key=len)[:-1])
+        assert (filled.mesh.vertices == filled.mesh.vertices.astype(np.float32)).all()
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_no_triangle_collapses_on_the_way_to_a_first_fill_that_is_crumpled(seed: int) -> None:
+    mesh = punched(sphere(3), (0, 0, 1), radius=0.6)
+    loops = all_loops(mesh)
+    first = plate(mesh, loops)
+    new = first.mesh.vertices[first.n_measured_vertices :]
+    # Many of its vertices lie in one place.
+    rng = np.random.default_rng(seed)
+    crumpled = first.with_vertices(np.where(rng.random((len(new), 1)) < 0.5, new, new.mean(axis=0)))
+    filled = fill_constrained(crumpled, loops, np.arange(len(loops)))
+    assert not find_faults(filled).is_doubtful.any()
+    low = heights(filled.mesh.vertices, filled.mesh.triangles[filled.n_measured_triangles :])
+    assert low.min() > 0.01
