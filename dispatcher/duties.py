@@ -3,12 +3,14 @@
 from dispatcher.keeper import Keeper
 from dispatcher.loop import Duty
 from dispatcher.retention import Sweeper, remove_expired
+from dispatcher.scrubbing import Scrubbing
 from dispatcher.webhooks import deliver_webhooks, forget_old_deliveries
 from jobkit.database import Database
 from jobkit.leadership import Leadership
 from jobkit.overdue import TimeLimits
 from jobkit.queue import TaskQueue
 from jobkit.reconcile import reconcile
+from jobkit.scrub import ROUND_S
 from jobkit.settings import Settings
 from jobkit.store import ObjectStore
 
@@ -36,6 +38,7 @@ def duties_of(
         settings.heartbeat_s,
     )
     sweeper = Sweeper(database, store)
+    scrubbing = Scrubbing(settings, database, store)
     return [
         Duty("jobs", settings.dispatch_s, keeper.look),
         Duty("webhooks", settings.dispatch_s, lambda is_over: deliver_webhooks(database, settings, is_over)),
@@ -44,4 +47,5 @@ def duties_of(
         ),
         Duty("retention", settings.sweep_s, lambda is_over: remove_expired(settings, database, store, is_over)),
         Duty("sweep", settings.sweep_s, sweeper.sweep),
+        Duty("scrub", ROUND_S, scrubbing.round),
     ]

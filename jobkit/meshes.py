@@ -152,7 +152,7 @@ class Meshes:
                 row = MeshRow(id=stored.sha256, key=stored.key, size_bytes=stored.size_bytes, created_at=now, attempt=0)
                 session.add(row)
                 restart(row, filename, mesh_format)
-            elif is_missing(row) or _is_damaged(row):
+            elif is_missing(row) or is_damaged(row):
                 restart(row, filename or row.filename, row.format)
             elif row.state == MeshState.REJECTED and mesh_format not in (None, row.format):
                 restart(row, filename, mesh_format)
@@ -196,7 +196,8 @@ def is_missing(row: MeshRow) -> bool:
     return row.problem is not None and row.problem.get("code") == MESH_MISSING
 
 
-def _is_damaged(row: MeshRow) -> bool:
+def is_damaged(row: MeshRow) -> bool:
+    """Tell whether the bytes of the mesh were found to be others than those that were uploaded."""
     return row.problem is not None and row.problem.get("code") == MESH_DAMAGED
 
 

@@ -19,6 +19,7 @@ from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
 from jobkit.clock import shared_now
+from jobkit.damage import forget_damaged, is_known_damaged
 from jobkit.database import Database
 from jobkit.errors import ObjectNotFoundError, StoreUnavailableError
 from jobkit.store import ObjectStore
@@ -64,6 +65,8 @@ def let_go(database: Database, keys: Iterable[str]) -> None:
 def assure(database: Database, store: ObjectStore, key: str, patience_s: float = PATIENCE_S) -> None:
     """Make sure that an object that was just written stays; to be called before a row names it.
 
+    What was known of damage to it is forgotten: its bytes have just come again.
+
     Parameters
     ----------
     database : Database
@@ -82,6 +85,11 @@ def assure(database: Database, store: ObjectStore, key: str, patience_s: float =
         if time.monotonic() > deadline:
             raise StoreUnavailableError("the same bytes are being removed as nobody's; send them again later")
         time.sleep(_PAUSE_S)
+    with database.read() as session:
+        was_damaged = is_known_damaged(session, key)
+    if was_damaged:
+        with database.write() as session:
+            forget_damaged(session, key)
     try:
         store.size(key)
     except ObjectNotFoundError as error:

@@ -97,6 +97,13 @@ class Settings(BaseSettings):
     sweep_s: float = Field(
         default=600.0, gt=0, le=86_400, description="Seconds between two sweeps for what is past its retention."
     )
+    scrub_days: float = Field(
+        default=30.0,
+        ge=0,
+        le=36_500,
+        description="Days within which all stored objects are read and checked; 0: never.",
+    )
+    scrub_mb_s: float = Field(default=8.0, ge=1, description="Most MiB a second that this check reads.")
     webhook_allowed_networks: str = Field(
         default="",
         description="Networks in CIDR notation, comma-separated, that webhooks may be sent to although they are not "

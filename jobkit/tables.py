@@ -4,51 +4,13 @@ A mesh is named by the sha256 of its bytes. A job's `revision` is the number of 
 same statement that changes the job, which makes event numbers gapless without a lock of their own.
 """
 
-from datetime import UTC, datetime
+from datetime import datetime
 from typing import Any
 
-from sqlalchemy import JSON, BigInteger, DateTime, ForeignKey, ForeignKeyConstraint, Index, String, UniqueConstraint
-from sqlalchemy.engine import Dialect
-from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column
-from sqlalchemy.types import TypeDecorator
+from sqlalchemy import JSON, BigInteger, ForeignKey, ForeignKeyConstraint, Index, String, UniqueConstraint
+from sqlalchemy.orm import Mapped, mapped_column
 
-NAMING = {
-    "ix": "ix_%(table_name)s_%(column_0_N_name)s",
-    "uq": "uq_%(table_name)s_%(column_0_N_name)s",
-    "fk": "fk_%(table_name)s_%(column_0_N_name)s",
-    "pk": "pk_%(table_name)s",
-}
-
-
-class UtcDateTime(TypeDecorator[datetime]):
-    """A moment in UTC; SQLite forgets zones, so it is given none and gets it back on the way out."""
-
-    impl = DateTime(timezone=True)
-    cache_ok = True
-
-    def process_bind_param(self, value: datetime | None, dialect: Dialect) -> datetime | None:
-        """Refuse naive moments, convert the others to UTC."""
-        if value is None:
-            return None
-        if value.tzinfo is None:
-            raise ValueError(f"{value} has no time zone")
-        moment = value.astimezone(UTC)
-        return moment.replace(tzinfo=None) if dialect.name == "sqlite" else moment
-
-    def process_result_value(self, value: datetime | None, dialect: Dialect) -> datetime | None:
-        """Give the moment its zone."""
-        if value is None:
-            return None
-        return value.replace(tzinfo=UTC) if value.tzinfo is None else value.astimezone(UTC)
-
-
-class Base(DeclarativeBase):
-    """Base of all tables."""
-
-    type_annotation_map = {datetime: UtcDateTime, dict[str, Any]: JSON(none_as_null=True)}  # noqa: RUF012
-
-
-Base.metadata.naming_convention = NAMING
+from jobkit.table_base import Base
 
 
 class MeshRow(Base):
@@ -56,6 +18,7 @@ class MeshRow(Base):
 
     `filename` is that of its latest upload.
     `used_at` is when its bytes came last, or when the last job on it ended that retention has removed since.
+    `checked_at`, here, of jobs and of models, is when the scrub last read the objects that the row names.
     """
 
     __tablename__ = "meshes"
@@ -74,9 +37,10 @@ class MeshRow(Base):
     problem: Mapped[dict[str, Any] | None]
     pinned: Mapped[bool] = mapped_column(default=False)
     used_at: Mapped[datetime]
+    checked_at: Mapped[datetime | None]
     created_at: Mapped[datetime]
     updated_at: Mapped[datetime]
-    __table_args__ = (Index(None, "state"), Index(None, "used_at"))
+    __table_args__ = (Index(None, "state"), Index(None, "used_at"), Index(None, "checked_at", "created_at"))
 
 
 class JobRow(Base):
@@ -117,7 +81,13 @@ class JobRow(Base):
     updated_at: Mapped[datetime]
     started_at: Mapped[datetime | None]
     finished_at: Mapped[datetime | None]
-    __table_args__ = (Index(None, "state", "id"), Index(None, "mesh_id"), Index(None, "finished_at"))
+    checked_at: Mapped[datetime | None]
+    __table_args__ = (
+        Index(None, "state", "id"),
+        Index(None, "mesh_id"),
+        Index(None, "finished_at"),
+        Index(None, "checked_at", "finished_at"),
+    )
 
 
 class AttemptRow(Base):
@@ -159,6 +129,7 @@ class ModelRow(Base):
     key: Mapped[str] = mapped_column(String(200))
     card: Mapped[dict[str, Any]]
     created_at: Mapped[datetime]
+    checked_at: Mapped[datetime | None]
     __table_args__ = (UniqueConstraint("name", "sha256"),)
 
 
@@ -190,6 +161,26 @@ class RemovalRow(Base):
     __tablename__ = "removals"
     key: Mapped[str] = mapped_column(String(1024), primary_key=True)
     until: Mapped[datetime]
+
+
+class DamagedRow(Base):
+    """An object whose bytes are not those that were stored, or can't be read; `checked_at` is the latest look at it."""
+
+    __tablename__ = "damaged_objects"
+    key: Mapped[str] = mapped_column(String(1024), primary_key=True)
+    kind: Mapped[str] = mapped_column(String(16))
+    sha256: Mapped[str] = mapped_column(String(64))
+    found_at: Mapped[datetime]
+    checked_at: Mapped[datetime]
+
+
+class ScrubRow(Base):
+    """How many objects of a kind the scrub has read, and how many bytes."""
+
+    __tablename__ = "scrub_counts"
+    kind: Mapped[str] = mapped_column(String(16), primary_key=True)
+    objects: Mapped[int] = mapped_column(BigInteger)
+    size_bytes: Mapped[int] = mapped_column(BigInteger)
 
 
 class LeaderRow(Base):

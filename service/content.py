@@ -13,10 +13,11 @@ from urllib.parse import quote
 from starlette.requests import Request
 from starlette.responses import Response, StreamingResponse
 
+from jobkit.damage import refuse_damaged
 from jobkit.digests import digest_field, verified_chunks
-from jobkit.store import ObjectStore
 from service.head import is_head
 from service.problems import ProblemError
+from service.services import Services
 
 _RANGE = re.compile(r"^bytes=(?:(\d{1,18})-(\d{0,18})|-(\d{1,18}))$")
 _UNSAFE = re.compile(r"[^A-Za-z0-9._ -]")
@@ -43,11 +44,13 @@ class Content:
     media_type: str = OCTETS
 
 
-def content_response(request: Request, store: ObjectStore, content: Content) -> Response:
+def content_response(request: Request, services: Services, content: Content) -> Response:
     """Send the object, or the range of it that is asked for, or just that it has not changed.
 
     Raises
     ------
+    ObjectDamagedError
+        If the scrub found that its bytes are not those that were stored.
     ObjectNotFoundError
         If the store has lost it.
     ProblemError
@@ -63,6 +66,7 @@ def content_response(request: Request, store: ObjectStore, content: Content) -> 
     _check_if_match(request, headers["ETag"])
     if etag_matches(request.headers.get("if-none-match"), headers["ETag"]):
         return Response(status_code=HTTPStatus.NOT_MODIFIED, headers=headers)
+    refuse_damaged(services.database, content.key)
     span = _asked_range(request, content)
     status, start, length = HTTPStatus.OK, 0, content.size_bytes
     if span is not None:
@@ -70,9 +74,9 @@ def content_response(request: Request, store: ObjectStore, content: Content) -> 
         headers["Content-Range"] = f"bytes {start}-{start + length - 1}/{content.size_bytes}"
     headers["Content-Length"] = str(length)
     if is_head(request.scope):
-        store.size(content.key)  # or the answer would promise what the store has lost
+        services.store.size(content.key)  # or the answer would promise what the store has lost
         return Response(None, status, headers, content.media_type)
-    chunks = store.read(content.key, start, length)
+    chunks = services.store.read(content.key, start, length)
     if span is None:
         chunks = verified_chunks(chunks, content.sha256)
     return StreamingResponse(chunks, status, headers, content.media_type)

@@ -9,9 +9,21 @@ from sqlalchemy.orm import InstrumentedAttribute, Session
 
 from jobkit.attempts import AT_WORK
 from jobkit.clock import shared_now
+from jobkit.damage import OBJECT_KINDS
 from jobkit.database import Database
 from jobkit.schema import DeliveryState, JobState, MeshState
-from jobkit.tables import AliasRow, AttemptCountRow, DeliveryRow, JobRow, MeshRow, ModelRow, StageRow
+from jobkit.scrub_due import oldest_look
+from jobkit.tables import (
+    AliasRow,
+    AttemptCountRow,
+    DamagedRow,
+    DeliveryRow,
+    JobRow,
+    MeshRow,
+    ModelRow,
+    ScrubRow,
+    StageRow,
+)
 
 # They show from the start with a 0: a rate does not see what comes into being as a 1.
 _EXPECTED_OUTCOMES = (
@@ -24,7 +36,7 @@ _EXPECTED_OUTCOMES = (
 )
 
 
-def database_figures(database: Database, lease_s: float) -> list[Metric]:
+def database_figures(database: Database, lease_s: float, scrub_days: float) -> list[Metric]:
     """Read everything in one session.
 
     Parameters
@@ -32,6 +44,8 @@ def database_figures(database: Database, lease_s: float) -> list[Metric]:
     database : Database
     lease_s : float
         How long leases last, in seconds: they tell only when they end.
+    scrub_days : float
+        Days within which all objects are to be read; 0: never.
 
     Raises
     ------
@@ -46,6 +60,7 @@ def database_figures(database: Database, lease_s: float) -> list[Metric]:
             *_leases(session, now, lease_s),
             *_totals(session),
             *_models(session),
+            *_scrub(session, now, scrub_days),
         ]
 
 
@@ -121,6 +136,30 @@ def _models(session: Session) -> Iterator[Metric]:
     for row in session.scalars(select(AliasRow)):
         aliases.add_metric([row.alias, row.name, str(row.version)], 1)
     yield from (models, aliases)
+
+
+def _scrub(session: Session, now: datetime, days: float) -> Iterator[Metric]:
+    objects = CounterMetricFamily("quadpatch_scrub_objects", "Objects that the scrub has read.", labels=["kind"])
+    size = CounterMetricFamily("quadpatch_scrub_bytes", "Bytes that the scrub has read.", labels=["kind"])
+    damaged = GaugeMetricFamily("quadpatch_damaged_objects", "Objects known to be damaged, by kind.", labels=["kind"])
+    read = {row.kind: row for row in session.scalars(select(ScrubRow))}
+    found = _counts(session, DamagedRow.kind)
+    for kind in OBJECT_KINDS:
+        objects.add_metric([kind], read[kind].objects if kind in read else 0)
+        size.add_metric([kind], read[kind].size_bytes if kind in read else 0)
+        damaged.add_metric([kind], found.get(kind, 0))
+    yield from (objects, size, damaged)
+    oldest = oldest_look(session)
+    yield GaugeMetricFamily(
+        "quadpatch_scrub_oldest_check_age_seconds",
+        "How long ago the object was checked, or else stored, that was checked longest ago; 0: there is none.",
+        value=0 if oldest is None else max(0.0, (now - oldest).total_seconds()),
+    )
+    yield GaugeMetricFamily(
+        "quadpatch_scrub_period_seconds",
+        "Within how long all objects are to be checked; 0: never.",
+        value=days * 86_400,
+    )
 
 
 def _counts(session: Session, column: InstrumentedAttribute[str]) -> dict[str, int]:

@@ -20,6 +20,7 @@ from jobkit.database import Database
 from jobkit.errors import DatabaseUnavailableError, QueueUnavailableError
 from jobkit.leadership import DISPATCHER, current_leader
 from jobkit.queue import TaskQueue
+from jobkit.settings import Settings
 from service.figures import database_figures
 from service.services import Services
 
@@ -71,14 +72,14 @@ class _BuildCollector(Collector):
 
 def _read(services: Services) -> Iterator[Metric]:
     """Read all figures. What stands on something that does not answer is left out, and its `up` is 0."""
-    yield from _of_the_database(services.database, services.settings.lease_s)
+    yield from _of_the_database(services.database, services.settings)
     yield from _of_the_queue(services.queue)
     yield from _of_the_disk(services.settings.data_dir)
 
 
-def _of_the_database(database: Database, lease_s: float) -> Iterator[Metric]:
+def _of_the_database(database: Database, settings: Settings) -> Iterator[Metric]:
     try:
-        metrics = [*database_figures(database, lease_s), *_of_the_dispatcher(database)]
+        metrics = [*database_figures(database, settings.lease_s, settings.scrub_days), *_of_the_dispatcher(database)]
         is_up = True
     except DatabaseUnavailableError:
         metrics, is_up = [], False

@@ -17,6 +17,7 @@ from jobkit.text import printable
 # The narrowest class decides; classes that are not here are faults of this service.
 STATUS_BY_ERROR: Mapping[type[errors.JobkitError], HTTPStatus] = {
     errors.ResultMissingError: HTTPStatus.GONE,
+    errors.ObjectDamagedError: HTTPStatus.GONE,
     errors.NotFoundError: HTTPStatus.NOT_FOUND,
     errors.ConflictError: HTTPStatus.CONFLICT,
     errors.OverLimitError: HTTPStatus.FORBIDDEN,

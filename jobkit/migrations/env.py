@@ -2,9 +2,9 @@
 
 from alembic import context
 
-from jobkit.tables import Base
+from jobkit.tables import MeshRow
 
 connection = context.config.attributes["connection"]
-context.configure(connection=connection, target_metadata=Base.metadata, render_as_batch=True)
+context.configure(connection=connection, target_metadata=MeshRow.metadata, render_as_batch=True)
 with context.begin_transaction():
     context.run_migrations()

@@ -120,7 +120,7 @@ async def get_mesh(
         200: {"description": "The whole file.", "content": {"application/octet-stream": {"schema": BINARY}}},
         206: {"description": "The range.", "content": {"application/octet-stream": {"schema": BINARY}}},
         **not_modified(),
-        **problems(404, 412, 416),
+        **problems(404, 410, 412, 416),
     },
 )
 def get_mesh_content(
@@ -132,7 +132,7 @@ def get_mesh_content(
     mesh = services.meshes.get(mesh_id)
     source = services.meshes.source(mesh_id)
     name = mesh.filename or f"mesh-{mesh_id[:12]}"
-    return content_response(request, services.store, Content(source.key, mesh_id, mesh.size_bytes, name))
+    return content_response(request, services, Content(source.key, mesh_id, mesh.size_bytes, name))
 
 
 def register_mesh(services: Services, upload: Upload, filename: str | None, given: Format | None) -> tuple[Mesh, bool]:

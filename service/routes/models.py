@@ -94,7 +94,7 @@ def get_model_version(services: ServicesDep, name: ModelNamePath, version: Versi
         200: {"description": "The whole file.", "content": {OCTETS: {"schema": BINARY}}},
         206: {"description": "The range.", "content": {OCTETS: {"schema": BINARY}}},
         **not_modified(),
-        **problems(404, 412, 416),
+        **problems(404, 410, 412, 416),
     },
 )
 def get_model_artifact(
@@ -106,9 +106,7 @@ def get_model_artifact(
     """Fetch the bytes of a version."""
     artifact = services.registry.artifact(name, version)
     filename = f"{name}@{version}.{artifact.format}"
-    return content_response(
-        request, services.store, Content(artifact.key, artifact.sha256, artifact.size_bytes, filename)
-    )
+    return content_response(request, services, Content(artifact.key, artifact.sha256, artifact.size_bytes, filename))
 
 
 @router.post(

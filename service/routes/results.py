@@ -89,7 +89,7 @@ def _file_response(
     name = repaired_name(job.mesh_name or mesh.filename, mesh.id, suffix)
     key = result_key(job_id, job.attempt, file.name)
     try:
-        return content_response(request, services.store, Content(key, file.sha256, file.size_bytes, name, media_type))
+        return content_response(request, services, Content(key, file.sha256, file.size_bytes, name, media_type))
     except ObjectNotFoundError as error:
         services.jobs.get(job_id)  # or was the job deleted at this moment?
         raise ResultMissingError(f"the {role} of job {job_id} is gone from the store; run the job again") from error

@@ -15,10 +15,13 @@ from jobkit.errors import ObjectDamagedError
 from jobkit.jobs import Jobs, NewJob
 from jobkit.meshes import MESH_DAMAGED, Meshes
 from jobkit.schema import JobSpec, JobState, MeshState, ResolvedModel
+from jobkit.scrub import Scrub, ScrubLimits
 from jobkit.settings import Settings
 from jobkit.store import CHUNK_BYTES, ObjectStore, StoredObject
 from service.app import create_app
 from tests.integration.conftest import ply_bytes, punched_relief
+from tests.jobkit.holdings import DAY, age_rows, finish, new_job
+from tests.jobkit.holdings import damage as damage_object
 from tests.worker.test_repairs import working
 from worker.jobs import inspect_mesh, run_job
 
@@ -36,15 +39,7 @@ def client(settings: Settings) -> Iterator[TestClient]:
 def damage(store: ObjectStore, tmp_path: Path) -> Callable[[str], None]:
     """Flip four bytes in the middle of an object, as a disk may."""
 
-    def flip(key: str) -> None:
-        data = bytearray(b"".join(store.read(key)))
-        for place in range(len(data) // 2, len(data) // 2 + 4):
-            data[place] ^= 0x10
-        path = tmp_path / "damaged"
-        path.write_bytes(data)
-        store.put_file(key, path)
-
-    return flip
+    return lambda key: damage_object(store, key, tmp_path)
 
 
 def stored_mesh(store: ObjectStore) -> StoredObject:
@@ -113,6 +108,30 @@ def test_content_states_its_digest_and_damaged_content_is_not_sent_whole(
     assert (part.status_code, part.headers["repr-digest"]) == (206, digest(DATA))
     damage(f"meshes/{mesh_id[:2]}/{mesh_id}")
     assert len(client.get(path).content) < len(DATA)
+
+
+def test_what_the_scrub_found_damaged_is_refused_under_its_code(
+    client: TestClient, database: Database, store: ObjectStore, damage: Callable[[str], None]
+) -> None:
+    mesh_id = client.post("/v1/meshes?filename=a.ply", content=DATA).json()["id"]
+    mesh = Meshes(database).get(mesh_id)
+    job = finish(database, store, Jobs(database).create(new_job(mesh))[0].id)
+    model = client.get("/v1/models").json()
+    assert model["models"] == []
+    keys = [f"meshes/{mesh_id[:2]}/{mesh_id}", f"results/{job.id}/{job.attempt}/repaired.ply"]
+    for key in keys:
+        damage(key)
+    age_rows(database, 28 * DAY)
+    assert Scrub(database, store, ScrubLimits(30, 1e9)).round().damaged == len(keys)
+    for path in (f"/v1/meshes/{mesh_id}/content", f"/v1/jobs/{job.id}/result"):
+        for method, headers in (("GET", {}), ("GET", {"Range": "bytes=0-1"}), ("HEAD", {})):
+            assert client.request(method, path, headers=headers).status_code == 410
+        assert client.get(path).json()["code"] == "object_damaged"
+    refused = client.post("/v1/jobs", json={"mesh_id": mesh_id, "method": {"method": "smooth"}})
+    assert (refused.status_code, refused.json()["code"]) == (409, "mesh_rejected")
+    assert MESH_DAMAGED in refused.json()["detail"]
+    assert client.post("/v1/meshes?filename=a.ply", content=DATA).json()["state"] == "analysing"
+    assert client.get(f"/v1/meshes/{mesh_id}/content").content == DATA
 
 
 def form(data: bytes) -> tuple[bytes, str]:

@@ -54,7 +54,7 @@ def test_a_sweep_tells_what_it_found_in_either_direction(database: Database, sto
     assert "1 meshes are in the store again" in sweeper.sweep(never)
 
 
-def test_both_are_duties_of_the_dispatcher(settings: Settings, database: Database, store: ObjectStore) -> None:
+def test_all_are_duties_of_the_dispatcher(settings: Settings, database: Database, store: ObjectStore) -> None:
     queue = TaskQueue(settings.redis_url.get_secret_value(), settings.queue_name, 60)
     leadership = Leadership(database, "dispatcher", "a", 60)
     duties = {duty.name: duty for duty in duties_of(settings, database, store, queue, leadership)}
@@ -64,4 +64,8 @@ def test_both_are_duties_of_the_dispatcher(settings: Settings, database: Databas
     assert duties["sweep"].work(never) == ""
     assert {duties[name].interval_s for name in ("retention", "sweep")} == {settings.sweep_s}
     assert len(keys_in(store)) == 1
+    upload(database, store, b"kept")
+    age_rows(database, 28 * DAY)
+    assert duties["scrub"].work(never) == "checked 1 objects, 4 bytes; 0 more are damaged"
+    assert duties["scrub"].work(never) == ""
     queue.close()

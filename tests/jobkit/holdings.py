@@ -19,6 +19,7 @@ from jobkit.store import ListedObject, ObjectStore, ObjectWriter, StoredObject, 
 from jobkit.sweep import CONTENT_PREFIXES, RESULT_PREFIX
 from jobkit.tables import (
     AttemptRow,
+    DamagedRow,
     EventRow,
     IdempotencyRow,
     JobRow,
@@ -87,7 +88,12 @@ def age_rows(database: Database, by: timedelta) -> None:
     columns = [
         (MeshRow, MeshRow.used_at),
         (MeshRow, MeshRow.created_at),
+        (MeshRow, MeshRow.checked_at),
         (JobRow, JobRow.finished_at),
+        (JobRow, JobRow.checked_at),
+        (ModelRow, ModelRow.created_at),
+        (ModelRow, ModelRow.checked_at),
+        (DamagedRow, DamagedRow.checked_at),
         (RemovalRow, RemovalRow.until),
     ]
     with database.write() as session:
@@ -191,6 +197,16 @@ class _NotingWriter:
 
     def __exit__(self, *failure: object) -> None:
         self._writer.__exit__(*failure)  # type: ignore[arg-type]
+
+
+def damage(store: ObjectStore, key: str, folder: Path) -> None:
+    """Flip four bits of an object, as a disk may."""
+    data = bytearray(b"".join(store.read(key)))
+    for place in range(len(data) // 2, min(len(data), len(data) // 2 + 4)):
+        data[place] ^= 0x10
+    path = folder / "damaged"
+    path.write_bytes(data)
+    store.put_file(key, path)
 
 
 def sha256(data: bytes) -> str:

@@ -13,7 +13,8 @@ from sqlalchemy.exc import DataError, DBAPIError, IntegrityError
 
 from jobkit.database import Database
 from jobkit.errors import DatabaseUnavailableError, SettingsError
-from jobkit.tables import Base, JobRow, MeshRow, ModelRow
+from jobkit.table_base import Base
+from jobkit.tables import JobRow, MeshRow, ModelRow
 from tests.servers import PostgresServer, fresh_database, running_postgres
 from tests.waiting import GUARD_S, let_others_run
 

@@ -1,5 +1,6 @@
 from collections.abc import Callable, Iterator
 from datetime import timedelta
+from pathlib import Path
 
 import pytest
 from prometheus_client import CollectorRegistry, generate_latest
@@ -11,12 +12,14 @@ from starlette.testclient import TestClient
 from jobkit.clock import utc_now
 from jobkit.leadership import DISPATCHER, Leadership
 from jobkit.schema import HoleCounts, Job, JobError, JobResult
+from jobkit.scrub import Scrub, ScrubLimits
 from jobkit.settings import Settings
 from jobkit.stages import StageSeconds
 from jobkit.tables import JobRow
 from service.app import create_app
 from service.metrics import CACHE_S, StateCollector
 from service.services import Services
+from tests.jobkit.holdings import DAY, age_rows, damage
 
 Sample = tuple[str, frozenset[tuple[str, str]]]
 
@@ -115,6 +118,23 @@ def test_models_and_what_aliases_point_to_are_told(
     labels = {"name": "parts", "version": "1", "kind": "dictionary", "sha256": answer.json()["sha256"]}
     assert found[sample("model_info", **labels)] == 1
     assert found[sample("model_alias_info", alias="default", name="parts", version="1")] == 1
+
+
+def test_what_the_scrub_read_and_found_is_told(services: Services, mesh_id: str, tmp_path: Path) -> None:
+    found = figures(services)
+    assert found[sample("scrub_objects_total", kind="mesh")] == 0
+    assert found[sample("scrub_period_seconds")] == 30 * 86_400
+    damage(services.store, services.meshes.source(mesh_id).key, tmp_path)
+    age_rows(services.database, 28 * DAY)
+    assert found[sample("scrub_oldest_check_age_seconds")] < 28 * 86_400
+    assert figures(services)[sample("scrub_oldest_check_age_seconds")] >= 28 * 86_400
+    read = Scrub(services.database, services.store, ScrubLimits(30, 1e9)).round()
+    found = figures(services)
+    assert found[sample("scrub_objects_total", kind="mesh")] == 1
+    assert found[sample("scrub_bytes_total", kind="mesh")] == read.size_bytes
+    assert found[sample("damaged_objects", kind="mesh")] == 1
+    assert found[sample("damaged_objects", kind="result")] == 0
+    assert found[sample("scrub_oldest_check_age_seconds")] < 28 * 86_400
 
 
 def test_requests_are_counted_by_the_template_of_their_route(client: TestClient) -> None:

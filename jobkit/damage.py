@@ -1,0 +1,49 @@
+"""Objects whose bytes are known to be others than those that were stored: what the scrub found, and who asks for it."""
+
+from dataclasses import dataclass
+from datetime import datetime
+
+from sqlalchemy import delete
+from sqlalchemy.orm import Session
+
+from jobkit.database import Database
+from jobkit.errors import ObjectDamagedError
+from jobkit.tables import DamagedRow
+
+OBJECT_KINDS = ("mesh", "model", "result")
+
+
+@dataclass(frozen=True)
+class NamedObject:
+    """An object as a row names it; `kind` is one of OBJECT_KINDS."""
+
+    kind: str
+    key: str
+    sha256: str
+
+
+def note_damaged(session: Session, named: NamedObject, now: datetime) -> bool:
+    """Remember that the object is damaged; return whether that is new."""
+    row = session.get(DamagedRow, named.key, with_for_update=True)
+    if row is not None:
+        row.checked_at = now
+        return False
+    session.add(DamagedRow(key=named.key, kind=named.kind, sha256=named.sha256, found_at=now, checked_at=now))
+    return True
+
+
+def forget_damaged(session: Session, key: str) -> None:
+    """Remember nothing about the object: its bytes are right, or it is gone."""
+    session.execute(delete(DamagedRow).where(DamagedRow.key == key))
+
+
+def is_known_damaged(session: Session, key: str) -> bool:
+    """Tell whether the latest look at the object found it damaged."""
+    return session.get(DamagedRow, key) is not None
+
+
+def refuse_damaged(database: Database, key: str) -> None:
+    """Raise ObjectDamagedError where the object is known to be damaged."""
+    with database.read() as session:
+        if is_known_damaged(session, key):
+            raise ObjectDamagedError("the bytes in the store are not those that were stored")
