@@ -80,7 +80,8 @@ def test_containers_run_modules_that_exist(name: str) -> None:
 
 
 def test_settings_and_secrets_are_those_of_the_code() -> None:
-    together = {**SETTINGS, **SECRETS["quadpatch-secrets"]}
+    secrets = {**SECRETS["quadpatch-secrets"], **SECRETS["quadpatch-api-keys"]}
+    together = {**SETTINGS, **secrets}
     refuse_unknown_names(together)
     ours = {name.removeprefix(PREFIX).lower(): value for name, value in together.items() if name.startswith(PREFIX)}
     settings = Settings.model_validate(ours)
@@ -88,11 +89,11 @@ def test_settings_and_secrets_are_those_of_the_code() -> None:
     assert settings.effective_database_url.startswith("postgresql+psycopg://")
     assert settings.effective_object_store_url.startswith("s3://")
     assert all(name.startswith(PREFIX) or FOREIGN_NAMES.fullmatch(name) for name in together)
-    assert not set(SETTINGS) & set(SECRETS["quadpatch-secrets"])
+    assert not set(SETTINGS) & set(secrets)
 
 
 def test_the_secrets_agree_with_each_other() -> None:
-    keys = SECRETS["quadpatch-secrets"]["QUADPATCH_API_KEYS"].split(",")
+    keys = SECRETS["quadpatch-api-keys"]["QUADPATCH_API_KEYS"].split(",")
     assert SECRETS["quadpatch-metrics"]["key"] in keys
     assert f":{SECRETS['valkey']['password']}@valkey:6379" in SECRETS["quadpatch-secrets"]["QUADPATCH_REDIS_URL"]
 
