@@ -1,10 +1,10 @@
-"""What a client says about the bytes of its body: their coding, and their digests (RFC 9110, RFC 9530)."""
+"""What a client says about the bytes of a body or of a part of it: coding and digests (RFC 9110, RFC 9530)."""
 
 import base64
 import binascii
 import hashlib
 import re
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Iterable, Mapping
 from http import HTTPStatus
 
 from fastapi import Request
@@ -14,31 +14,77 @@ from service.problems import ProblemError
 DIGEST_HEADERS = ("content-digest", "repr-digest")
 # Those that RFC 9530 calls active; others are passed over, as it asks.
 _ALGORITHMS = {"sha-256": "sha256", "sha-512": "sha512"}
+# Transfer encodings of mail that leave bytes as they are.
+_PLAIN = ("", "7bit", "8bit", "binary")
 _MEMBER = re.compile(r"([a-z*][a-z0-9_.*-]*)=:([A-Za-z0-9+/=]*):")
 
 
-def refuse_coding(request: Request) -> None:
-    """Refuse a body that is compressed: it would be stored, hashed and read as what it is not.
+def refuse_coding(headers: Mapping[str, str]) -> None:
+    """Refuse a body, or a part of one, that is compressed or coded: it would be stored, hashed and read as it is.
+
+    Parameters
+    ----------
+    headers : mapping
+        Of the request, or of the part; looked up by names in lower case.
 
     Raises
     ------
     ProblemError
         415 with the one coding that is taken.
     """
-    coding = request.headers.get("content-encoding", "").strip().lower()
-    if coding not in ("", "identity"):
+    coding = headers.get("content-encoding", "").strip().lower()
+    transfer = headers.get("content-transfer-encoding", "").strip().lower()
+    if coding not in ("", "identity") or transfer not in _PLAIN:
         raise ProblemError(
             HTTPStatus.UNSUPPORTED_MEDIA_TYPE,
             "unsupported_encoding",
-            "a body with a Content-Encoding is not taken; send the file as it is",
+            "bytes under a Content-Encoding or Content-Transfer-Encoding are not taken; send the file as it is",
             {"Accept-Encoding": "identity"},
         )
 
 
+class StatedDigests:
+    """Bytes on their way, held against the digests that headers state.
+
+    Without a coding the content is the representation, so both headers speak of the same bytes.
+
+    Parameters
+    ----------
+    what : str
+        What the headers speak of, for messages.
+    headers : sequence of (str, str)
+        Names in lower case; other headers than `DIGEST_HEADERS` are passed over.
+
+    Raises
+    ------
+    ProblemError
+        400 if a header can't be read.
+    """
+
+    def __init__(self, what: str, headers: Iterable[tuple[str, str]]) -> None:
+        self._what = what
+        given = [(name, value) for name, value in headers if name in DIGEST_HEADERS]
+        self._stated = [(name, *stated) for name, value in given for stated in _read_digests(name, value)]
+        self._hashes = {algorithm: hashlib.new(_ALGORITHMS[algorithm]) for _, algorithm, _ in self._stated}
+
+    def update(self, data: bytes | bytearray) -> None:
+        """Take bytes that arrived."""
+        for running in self._hashes.values():
+            running.update(data)
+
+    def check(self) -> None:
+        """Hold what arrived against what was stated; raise ProblemError, 400, where they differ."""
+        for name, algorithm, value in self._stated:
+            if self._hashes[algorithm].digest() != value:
+                raise ProblemError(
+                    HTTPStatus.BAD_REQUEST,
+                    "digest_mismatch",
+                    f"{self._what} that arrived has another {algorithm} than its {name.title()} states; send it again",
+                )
+
+
 class CheckedBody:
     """The body of a request, held against the digests that its headers state.
-
-    Without a coding the body is the representation, so both headers speak of the same bytes.
 
     Parameters
     ----------
@@ -52,32 +98,22 @@ class CheckedBody:
 
     def __init__(self, request: Request) -> None:
         self._request = request
-        self._stated = [
-            (name, algorithm, value) for name in DIGEST_HEADERS for algorithm, value in _stated_digests(request, name)
-        ]
-        self._hashes = {algorithm: hashlib.new(_ALGORITHMS[algorithm]) for _, algorithm, _ in self._stated}
+        self._digests = StatedDigests("the body", request.headers.items())
 
     async def stream(self) -> AsyncIterator[bytes]:
         """Yield the body as it arrives."""
         async for chunk in self._request.stream():
-            for running in self._hashes.values():
-                running.update(chunk)
+            self._digests.update(chunk)
             yield chunk
 
     def check(self) -> None:
         """Hold what arrived against what was stated; raise ProblemError, 400, where they differ."""
-        for name, algorithm, value in self._stated:
-            if self._hashes[algorithm].digest() != value:
-                raise ProblemError(
-                    HTTPStatus.BAD_REQUEST,
-                    "digest_mismatch",
-                    f"the body that arrived has another {algorithm} than its {name.title()} states; send it again",
-                )
+        self._digests.check()
 
 
-def _stated_digests(request: Request, name: str) -> list[tuple[str, bytes]]:
+def _read_digests(name: str, field: str) -> list[tuple[str, bytes]]:
     found = []
-    for member in ",".join(request.headers.getlist(name)).split(","):
+    for member in field.split(","):
         if not member.strip():
             continue
         match = _MEMBER.fullmatch(member.strip())

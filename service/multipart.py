@@ -1,7 +1,7 @@
 """Multipart bodies as a stream of parts, a chunk at a time: nothing is kept here but headers."""
 
-from collections.abc import AsyncIterator
-from dataclasses import dataclass
+from collections.abc import AsyncIterator, Mapping
+from dataclasses import dataclass, field
 from http import HTTPStatus
 from typing import TYPE_CHECKING
 
@@ -21,10 +21,11 @@ _SLICE_BYTES = 64 << 10
 
 @dataclass(frozen=True)
 class PartStart:
-    """A part begins; `filename` is None for a plain field."""
+    """A part begins; `filename` is None for a plain field, `headers` go by names in lower case."""
 
     name: str
     filename: str | None
+    headers: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -93,7 +94,7 @@ class _Collector:
     def __init__(self, events: list[PartEvent]) -> None:
         self._events = events
         self._field, self._value = b"", b""
-        self._disposition = b""
+        self._headers: dict[bytes, bytes] = {}
         self._n_parts = 0
         self._n_outside = 0
         self.is_whole = False
@@ -123,7 +124,7 @@ class _Collector:
         }
 
     def _on_part_begin(self) -> None:
-        self._disposition = b""
+        self._headers = {}
         self._n_parts += 1
         if self._n_parts > MAX_PARTS:
             raise malformed_multipart(f"it has more than {MAX_PARTS} parts")
@@ -135,17 +136,19 @@ class _Collector:
         self._value += data[start:end]
 
     def _on_header_end(self) -> None:
-        if self._field.lower() == b"content-disposition":
-            self._disposition = self._value
+        # A header that comes twice is a list, as everywhere in HTTP.
+        name = self._field.lower()
+        self._headers[name] = b", ".join([*filter(None, [self._headers.get(name)]), self._value])
         self._field, self._value = b"", b""
 
     def _on_headers_finished(self) -> None:
-        _, options = parse_options_header(self._disposition)
+        _, options = parse_options_header(self._headers.get(b"content-disposition", b""))
         name, filename = options.get(b"name"), options.get(b"filename")
         if name is None:
             raise malformed_multipart("a part has no name")
         decoded = None if filename is None else filename.decode("utf-8", "replace")
-        self._events.append(PartStart(name.decode("utf-8", "replace"), decoded))
+        headers = {field.decode("latin-1"): value.decode("latin-1") for field, value in self._headers.items()}
+        self._events.append(PartStart(name.decode("utf-8", "replace"), decoded, headers))
 
     def _on_part_data(self, data: bytes, start: int, end: int) -> None:
         last = self._events[-1] if self._events else None

@@ -15,6 +15,7 @@ from jobkit.errors import TooLargeError
 from jobkit.strict_json import StrictJsonError, read_json
 from service.bodies import has_body
 from service.content import precondition_failed
+from service.digests import CheckedBody, refuse_coding
 from service.problems import ProblemError, invalid_request, malformed_json
 
 Handler = Callable[[Request], Coroutine[Any, Any, Response]]
@@ -70,12 +71,13 @@ class _BoundedRequest(Request):
     """A request whose JSON body is read once, up to a limit, and strictly."""
 
     async def read_json(self, max_bytes: int) -> None:
-        chunks, size = [], 0
-        async for chunk in self.stream():
+        checked, chunks, size = CheckedBody(self), [], 0
+        async for chunk in checked.stream():
             size += len(chunk)
             if size > max_bytes:
                 raise TooLargeError(f"the body has more than {max_bytes} bytes, which is the limit")
             chunks.append(chunk)
+        checked.check()
         self._body = b"".join(chunks)
         try:
             self._json = read_json(self._body) if self._body else None
@@ -86,6 +88,7 @@ class _BoundedRequest(Request):
 async def _with_json_body(request: Request, *, is_optional: bool) -> Request:
     if is_optional and not has_body(request.scope):
         return request
+    refuse_coding(request.headers)
     kind = request.headers.get("content-type", "").partition(";")[0].strip().lower()
     if kind != "application/json" and not (kind.startswith("application/") and kind.endswith("+json")):
         raise ProblemError(

@@ -11,7 +11,7 @@ from starlette.concurrency import run_in_threadpool
 
 from jobkit.errors import TooLargeError
 from jobkit.store import ObjectStore, ObjectWriter, StoredObject
-from service.digests import CheckedBody, refuse_coding
+from service.digests import CheckedBody, StatedDigests, refuse_coding
 from service.multipart import PartData, PartStart, malformed_multipart, read_parts
 from service.problems import ProblemError, invalid_request
 
@@ -64,11 +64,10 @@ async def receive_upload(request: Request, store: ObjectStore, rules: UploadRule
     TooLargeError
         If the file is larger than the limit; at once where the client has stated its size.
     ProblemError
-        415 for a body of another type or with a coding, 400 for an empty file, a broken multipart body or a digest that
-        does not fit, 422 for missing or unknown
-        parts.
+        415 for a body of another type, or a body or part with a coding, 400 for an empty file, a broken
+        multipart body or a digest that does not fit, 422 for missing or unknown parts.
     """
-    refuse_coding(request)
+    refuse_coding(request.headers)
     body = CheckedBody(request)
     kind, _ = parse_options_header(request.headers.get("content-type", ""))
     is_multipart = kind == b"multipart/form-data"
@@ -114,6 +113,8 @@ async def _receive_multipart(request: Request, body: CheckedBody, store: ObjectS
                 sorter.start(event)
             elif isinstance(event, PartData):
                 await run_in_threadpool(sorter.add, event.data)
+            else:
+                sorter.end()
         if not sorter.has_file:
             raise _part_error(rules.file_part, "Field required", "missing")
         if sorter.is_empty:
@@ -130,18 +131,21 @@ class _PartSorter:
         self._rules = rules
         self._writer = writer
         self._field: bytearray | None = None
+        self._digests = StatedDigests("the part", ())
         self.fields: dict[str, bytearray] = {}
         self.filename: str | None = None
         self.has_file = False
         self.is_empty = True
 
     def start(self, part: PartStart) -> None:
-        """Begin a part; refuse unknown and repeated ones."""
+        """Begin a part; refuse unknown, repeated and coded ones."""
         is_file = part.name == self._rules.file_part
         if not is_file and part.name not in self._rules.field_parts:
             raise _part_error(part.name, "Extra inputs are not permitted", "extra_forbidden")
         if part.name in self.fields or (is_file and self.has_file):
             raise malformed_multipart(f"it has more than one part {part.name!r}")
+        refuse_coding(part.headers)
+        self._digests = StatedDigests(f"the part {part.name!r}", part.headers.items())
         if is_file:
             self._field, self.has_file, self.filename = None, True, part.filename
         else:
@@ -149,6 +153,7 @@ class _PartSorter:
 
     def add(self, data: bytes | bytearray) -> None:
         """Take bytes of the part that began last."""
+        self._digests.update(data)
         if self._field is None:
             self.is_empty = self.is_empty and not data
             self._writer.write(bytes(data))
@@ -156,6 +161,10 @@ class _PartSorter:
         self._field += data
         if len(self._field) > MAX_FIELD_BYTES:
             raise TooLargeError(f"a field of the body has more than {MAX_FIELD_BYTES} bytes, which is the limit")
+
+    def end(self) -> None:
+        """Hold the part that began last against the digests that its headers state."""
+        self._digests.check()
 
 
 def _empty_file() -> ProblemError:

@@ -134,8 +134,9 @@ def test_what_the_scrub_found_damaged_is_refused_under_its_code(
     assert client.get(f"/v1/meshes/{mesh_id}/content").content == DATA
 
 
-def form(data: bytes) -> tuple[bytes, str]:
-    head = f'--{BOUNDARY}\r\nContent-Disposition: form-data; name="file"; filename="a.ply"\r\n\r\n'
+def form(data: bytes, name: str = "file", *headers: str) -> tuple[bytes, str]:
+    lines = (f'Content-Disposition: form-data; name="{name}"; filename="a.ply"', *headers)
+    head = f"--{BOUNDARY}\r\n" + "".join(f"{line}\r\n" for line in lines) + "\r\n"
     return head.encode() + data + f"\r\n--{BOUNDARY}--\r\n".encode(), f"multipart/form-data; boundary={BOUNDARY}"
 
 
@@ -156,9 +157,61 @@ def test_a_stated_digest_is_held_against_what_arrived(
     assert right.status_code == 201
 
 
+@pytest.mark.parametrize("header", ["Content-Digest", "Repr-Digest"])
+@pytest.mark.parametrize("algorithm", ["sha256", "sha512"])
+@pytest.mark.parametrize(
+    ("path", "name"), [("/v1/meshes", "file"), ("/v1/repairs", "mesh"), ("/v1/models/parts/versions", "artifact")]
+)
+def test_a_digest_among_the_headers_of_a_part_is_held_against_that_part(
+    client: TestClient, store: ObjectStore, header: str, algorithm: str, path: str, name: str
+) -> None:
+    wrong, media_type = form(DATA, name, f"{header}: {digest(DATA + b'x', algorithm)}")
+    answer = client.post(path, content=wrong, headers={"Content-Type": media_type})
+    assert (answer.status_code, answer.json()["code"]) == (400, "digest_mismatch")
+    assert [*store.keys("meshes"), *store.keys("models")] == []
+    right, media_type = form(DATA, name, f"{header}: md5=:AAAA:", f"{header}: {digest(DATA, algorithm)}")
+    answer = client.post(path, content=right, headers={"Content-Type": media_type})
+    taken = {"/v1/meshes": "ready", "/v1/repairs": "model_not_found", "/v1/models/parts/versions": "unusable_model"}
+    assert answer.status_code == 201 or answer.json()["code"] == taken[path]
+
+
+def test_a_field_beside_the_file_is_checked_as_well(client: TestClient) -> None:
+    mesh, media_type = form(DATA, "mesh")
+    spec = b'{"method": {"method": "smooth"}}'
+    for stated, status in ((spec, 202), (spec + b" ", 400)):
+        field, _ = form(spec, "spec", f"Content-Digest: {digest(stated)}")
+        body = mesh.removesuffix(f"--{BOUNDARY}--\r\n".encode()) + field
+        answer = client.post("/v1/repairs", content=body, headers={"Content-Type": media_type})
+        assert answer.status_code == status, answer.text
+
+
+@pytest.mark.parametrize("stated", [b'{"model": "general"}', b""])
+@pytest.mark.parametrize(("method", "path"), [("POST", "/v1/jobs"), ("PUT", "/v1/aliases/a"), ("POST", "/v1/webhooks")])
+def test_a_json_body_is_held_against_its_digest(client: TestClient, method: str, path: str, stated: bytes) -> None:
+    body, media_type = b'{"model": "general-dictionary"}', "application/json"
+    headers = {"Content-Type": media_type, "Content-Digest": digest(stated)}
+    answer = client.request(method, path, content=body, headers=headers)
+    assert (answer.status_code, answer.json()["code"]) == (400, "digest_mismatch")
+    answer = client.request(method, path, content=gzip.compress(body), headers={**headers, "Content-Encoding": "gzip"})
+    assert (answer.status_code, answer.json()["code"]) == (415, "unsupported_encoding")
+
+
+@pytest.mark.parametrize("coding", ["Content-Encoding: gzip", "Content-Transfer-Encoding: base64"])
+def test_a_coded_part_is_refused_and_never_stored(client: TestClient, store: ObjectStore, coding: str) -> None:
+    body, media_type = form(gzip.compress(DATA), "file", coding)
+    answer = client.post("/v1/meshes", content=body, headers={"Content-Type": media_type})
+    assert (answer.status_code, answer.json()["code"]) == (415, "unsupported_encoding")
+    assert list(store.keys("meshes")) == []
+    body, media_type = form(DATA, "file", "Content-Transfer-Encoding: binary", "Content-Encoding: identity")
+    assert client.post("/v1/meshes", content=body, headers={"Content-Type": media_type}).status_code == 201
+
+
 @pytest.mark.parametrize("value", ["sha-256=abc", "sha-256", ":", "sha-256=:a:", 'sha-256="x"', "sha-256=:$$$$:"])
 def test_a_digest_that_cannot_be_read_is_refused(client: TestClient, value: str) -> None:
     answer = client.post("/v1/meshes", content=DATA, headers={"Content-Digest": value})
+    assert (answer.status_code, answer.json()["code"]) == (400, "malformed_digest")
+    body, media_type = form(DATA, "file", f"Content-Digest: {value}")
+    answer = client.post("/v1/meshes", content=body, headers={"Content-Type": media_type})
     assert (answer.status_code, answer.json()["code"]) == (400, "malformed_digest")
 
 
