@@ -4,6 +4,7 @@ from collections.abc import Callable
 
 from jobkit.clock import shared_now
 from jobkit.database import Database
+from jobkit.idempotency import forget_keys
 from jobkit.missing import Missing, MissingObjects
 from jobkit.retention import expire_jobs, expire_meshes
 from jobkit.settings import Settings
@@ -18,6 +19,7 @@ def remove_expired(settings: Settings, database: Database, store: ObjectStore, i
     jobs = expire_jobs(database, store, settings.job_retention_days, now, is_over)
     # After the jobs, which hold on to their meshes.
     meshes = expire_meshes(database, settings.mesh_retention_days, now, is_over)
+    forget_keys(database, now)
     return f"removed {jobs} jobs and {meshes} meshes" if jobs or meshes else ""
 
 

@@ -1,5 +1,6 @@
 """The log of deliveries: look up, send a test message, send again, forget what is old."""
 
+from collections.abc import Callable
 from datetime import datetime
 from typing import Any
 
@@ -9,6 +10,7 @@ from sqlalchemy.orm import Session
 from jobkit.clock import utc_now
 from jobkit.database import Database
 from jobkit.errors import DeliveryNotFoundError, DeliveryPendingError, WebhookDisabledError
+from jobkit.idempotency import Idempotency, once
 from jobkit.outbox import new_delivery
 from jobkit.readable import readable
 from jobkit.schema import (
@@ -70,16 +72,41 @@ class Deliveries:
 
     def send_test(self, webhook_id: str) -> DeliveryDetail:
         """Have a test message sent; raise WebhookNotFoundError or WebhookDisabledError."""
-        with self._database.write() as session:
+        return self.send_test_once(webhook_id, None)[0]
+
+    def send_test_once(self, webhook_id: str, idempotency: Idempotency | None) -> tuple[DeliveryDetail, bool]:
+        """Have a test message sent, unless the same request has; return its delivery, and whether it is new.
+
+        Raises
+        ------
+        WebhookNotFoundError, DeliveryNotFoundError
+            If there is no such subscription, or what the first request made is gone.
+        WebhookDisabledError
+            If the subscription is switched off.
+        IdempotencyError
+            If the key came before with another request.
+        """
+
+        def make(session: Session) -> tuple[DeliveryDetail, str]:
             _enabled(session, webhook_id)
             message = Message(type="webhook.test", timestamp=utc_now(), data={"webhook_id": webhook_id})
             return _add(session, new_delivery(session, webhook_id, message))
 
+        return self._once(webhook_id, idempotency, make)
+
     def replay(self, webhook_id: str, delivery_id: str) -> DeliveryDetail:
-        """Have the message of a delivery sent again, under the same message id.
+        """Have the message of a delivery sent again, under the same message id. Raises as `replay_once`."""
+        return self.replay_once(webhook_id, delivery_id, None)[0]
+
+    def replay_once(
+        self, webhook_id: str, delivery_id: str, idempotency: Idempotency | None
+    ) -> tuple[DeliveryDetail, bool]:
+        """Have a message sent again, unless the same request has; return the new delivery, and whether it is new.
 
         Raises
         ------
+        IdempotencyError
+            If the key came before with another request.
         WebhookNotFoundError, DeliveryNotFoundError
             If there is no such thing.
         WebhookDisabledError
@@ -87,7 +114,8 @@ class Deliveries:
         DeliveryPendingError
             If the delivery has not ended yet.
         """
-        with self._database.write() as session:
+
+        def make(session: Session) -> tuple[DeliveryDetail, str]:
             row = _existing(session, webhook_id, delivery_id)
             _enabled(session, webhook_id)
             if row.state == DeliveryState.PENDING.value:
@@ -96,6 +124,8 @@ class Deliveries:
             again.payload, again.replay_of = row.payload, message_id(row)
             return _add(session, again)
 
+        return self._once(webhook_id, idempotency, make)
+
     def forget_before(self, moment: datetime, most: int = 1000) -> int:
         """Remove deliveries that ended before a moment, with their tries; return how many of at most `most`."""
         with self._database.write() as session:
@@ -103,6 +133,17 @@ class Deliveries:
             ids = list(session.scalars(select(DeliveryRow.id).where(ended).limit(most)))
             result = session.execute(delete(DeliveryRow).where(DeliveryRow.id.in_(ids)))
             return result.rowcount if isinstance(result, CursorResult) else 0
+
+    def _once(
+        self,
+        webhook_id: str,
+        idempotency: Idempotency | None,
+        make: Callable[[Session], tuple[DeliveryDetail, str]],
+    ) -> tuple[DeliveryDetail, bool]:
+        def show(session: Session, delivery_id: str) -> DeliveryDetail:
+            return _detail(session, _existing(session, webhook_id, delivery_id))
+
+        return once(self._database, idempotency, make, show)
 
 
 def message_id(row: DeliveryRow) -> str:
@@ -125,10 +166,10 @@ def _existing(session: Session, webhook_id: str, delivery_id: str) -> DeliveryRo
     return row
 
 
-def _add(session: Session, row: DeliveryRow) -> DeliveryDetail:
+def _add(session: Session, row: DeliveryRow) -> tuple[DeliveryDetail, str]:
     session.add(row)
     session.flush()
-    return _detail(session, row)
+    return _detail(session, row), row.id
 
 
 def _detail(session: Session, row: DeliveryRow) -> DeliveryDetail:

@@ -9,32 +9,15 @@ from sqlalchemy.orm import Session
 
 from jobkit.clock import shared_now, utc_now
 from jobkit.database import Database
-from jobkit.errors import IdempotencyError, JobFinishedError, JobNotFoundError, MeshNotFoundError
+from jobkit.errors import JobFinishedError, JobNotFoundError, MeshNotFoundError
 from jobkit.events import append_event, read_events
+from jobkit.idempotency import Idempotency, earlier_row, remember
 from jobkit.ids import new_job_id
 from jobkit.job_rows import existing_job, to_job
 from jobkit.readable import readable
 from jobkit.schema import EventPage, Job, JobPage, JobSpec, JobState, ResolvedModel
-from jobkit.tables import IdempotencyRow, JobRow, MeshRow
+from jobkit.tables import JobRow, MeshRow
 from jobkit.transitions import Move, make_move
-
-
-@dataclass(frozen=True)
-class Idempotency:
-    """A key that a client sent so that a repeated request starts nothing twice.
-
-    Attributes
-    ----------
-    principal : str
-        Whose key it is: two clients may use the same one.
-    key : str
-    request_sha256 : str
-        Of the request, to tell a repetition from a mix-up.
-    """
-
-    principal: str
-    key: str
-    request_sha256: str
 
 
 @dataclass(frozen=True)
@@ -198,27 +181,16 @@ class Jobs:
             session.add(row)
             session.flush()
             append_event(session, row.id, "queued", row.created_at, {"state": row.state})
-            if idempotency is not None:
-                session.add(
-                    IdempotencyRow(
-                        principal=idempotency.principal,
-                        key=idempotency.key,
-                        request_sha256=idempotency.request_sha256,
-                        job_id=row.id,
-                        created_at=row.created_at,
-                    )
-                )
+            remember(session, idempotency, job_id=row.id)
             return self._show(row), True
 
     def _show(self, row: JobRow) -> Job:
         return to_job(row, self._retention_days)
 
     def _earlier_job(self, session: Session, idempotency: Idempotency) -> Job | None:
-        earlier = session.get(IdempotencyRow, (idempotency.principal, idempotency.key))
-        if earlier is None:
+        earlier = earlier_row(session, idempotency)
+        if earlier is None or earlier.job_id is None:
             return None
-        if earlier.request_sha256 != idempotency.request_sha256:
-            raise IdempotencyError(f"the idempotency key {idempotency.key!r} came before with another request")
         return self._show(existing_job(session, earlier.job_id))
 
 

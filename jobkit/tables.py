@@ -145,13 +145,14 @@ class AliasRow(Base):
 
 
 class IdempotencyRow(Base):
-    """A key that a client sent, and the job that came of it."""
+    """A key that a client sent, and what came of it: a job, or something that `made` names."""
 
     __tablename__ = "idempotency_keys"
     principal: Mapped[str] = mapped_column(String(64), primary_key=True)
     key: Mapped[str] = mapped_column(String(255), primary_key=True)
     request_sha256: Mapped[str] = mapped_column(String(64))
-    job_id: Mapped[str] = mapped_column(String(40), ForeignKey("jobs.id"))
+    job_id: Mapped[str | None] = mapped_column(String(40), ForeignKey("jobs.id"))
+    made: Mapped[str | None] = mapped_column(String(200))
     created_at: Mapped[datetime]
 
 

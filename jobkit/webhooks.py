@@ -12,6 +12,7 @@ from sqlalchemy.orm import Session
 from jobkit.clock import utc_now
 from jobkit.database import Database
 from jobkit.errors import TooManyWebhooksError, WebhookNotFoundError
+from jobkit.idempotency import Idempotency, forget_made, is_repeated, once
 from jobkit.ids import new_webhook_id
 from jobkit.readable import readable
 from jobkit.schema import (
@@ -46,32 +47,29 @@ class Webhooks:
         self._check_url = check_url
 
     def create(self, new: NewWebhook) -> WebhookWithSecret:
-        """Make a subscription; its secret is shown this once.
+        """Make a subscription; its secret is shown this once. Raises as `create_once`."""
+        return self.create_once(new, None)[0]
+
+    def create_once(self, new: NewWebhook, idempotency: Idempotency | None) -> tuple[WebhookWithSecret, bool]:
+        """Make a subscription, or show the one that the same request made, with its secret.
+
+        Returns
+        -------
+        WebhookWithSecret, bool
+            The subscription, and whether it is new.
 
         Raises
         ------
+        IdempotencyError
+            If the key came before with another request.
         AddressRefusedError, TlsRequiredError, HostUnknownError
             If nothing may or can be sent to its URL.
         TooManyWebhooksError
             If there are too many already.
         """
-        self._check_url(new.url)
-        now = utc_now()
-        row = WebhookRow(
-            id=new_webhook_id(),
-            url=new.url,
-            secret=new_secret(),
-            events=_in_order(new.events),
-            description=new.description,
-            enabled=True,
-            created_at=now,
-            updated_at=now,
-        )
-        with self._database.write() as session:
-            if session.scalars(select(func.count()).select_from(WebhookRow)).one() >= MAX_WEBHOOKS:
-                raise TooManyWebhooksError(f"there are {MAX_WEBHOOKS} subscriptions, which is the limit")
-            session.add(row)
-        return _with_secret(row)
+        if not is_repeated(self._database, idempotency):
+            self._check_url(new.url)
+        return once(self._database, idempotency, lambda session: _create(session, new), _show_with_secret)
 
     def list_all(self) -> WebhookList:
         """Return all subscriptions, oldest first."""
@@ -110,17 +108,61 @@ class Webhooks:
 
     def rotate(self, webhook_id: str) -> WebhookWithSecret:
         """Give a new secret; messages are signed with the old one as well for a day. Raise WebhookNotFoundError."""
-        with self._database.write() as session:
-            until = utc_now() + timedelta(seconds=OLD_SECRET_S)
-            old = existing_webhook(session, webhook_id).secret
-            _write(session, webhook_id, {"secret": new_secret(), "old_secret": old, "old_secret_until": until})
-            return _with_secret(existing_webhook(session, webhook_id))
+        return self.rotate_once(webhook_id, None)[0]
+
+    def rotate_once(self, webhook_id: str, idempotency: Idempotency | None) -> tuple[WebhookWithSecret, bool]:
+        """Give a new secret, or show the present one where the same request has given one.
+
+        Returns
+        -------
+        WebhookWithSecret, bool
+            The subscription, and whether its secret is new.
+
+        Raises
+        ------
+        WebhookNotFoundError
+            If there is none.
+        IdempotencyError
+            If the key came before with another request.
+        """
+        return once(self._database, idempotency, lambda session: _rotate(session, webhook_id), _show_with_secret)
 
     def delete(self, webhook_id: str) -> None:
-        """Forget a subscription with all that is on its way to it; raise WebhookNotFoundError."""
+        """Forget a subscription with all that is on its way to it, and its keys; raise WebhookNotFoundError."""
         with self._database.write() as session:
             existing_webhook(session, webhook_id)
+            forget_made(session, webhook_id)
             session.execute(delete(WebhookRow).where(WebhookRow.id == webhook_id))
+
+
+def _create(session: Session, new: NewWebhook) -> tuple[WebhookWithSecret, str]:
+    now = utc_now()
+    row = WebhookRow(
+        id=new_webhook_id(),
+        url=new.url,
+        secret=new_secret(),
+        events=_in_order(new.events),
+        description=new.description,
+        enabled=True,
+        created_at=now,
+        updated_at=now,
+    )
+    if session.scalars(select(func.count()).select_from(WebhookRow)).one() >= MAX_WEBHOOKS:
+        raise TooManyWebhooksError(f"there are {MAX_WEBHOOKS} subscriptions, which is the limit")
+    session.add(row)
+    session.flush()
+    return _with_secret(row), row.id
+
+
+def _rotate(session: Session, webhook_id: str) -> tuple[WebhookWithSecret, str]:
+    until = utc_now() + timedelta(seconds=OLD_SECRET_S)
+    old = existing_webhook(session, webhook_id).secret
+    _write(session, webhook_id, {"secret": new_secret(), "old_secret": old, "old_secret_until": until})
+    return _show_with_secret(session, webhook_id), webhook_id
+
+
+def _show_with_secret(session: Session, webhook_id: str) -> WebhookWithSecret:
+    return _with_secret(existing_webhook(session, webhook_id))
 
 
 def existing_webhook(session: Session, webhook_id: str) -> WebhookRow:

@@ -1,11 +1,11 @@
 """From a spec to a queued job: everything that is checked before the promise of a 202."""
 
-import hashlib
 import logging
 from dataclasses import dataclass
 
 from jobkit.errors import MeshNotReadyError, MeshRejectedError, OverLimitError, QueueUnavailableError
-from jobkit.jobs import Idempotency, NewJob
+from jobkit.idempotency import Idempotency
+from jobkit.jobs import NewJob
 from jobkit.logs import current_request_id
 from jobkit.reconcile import submit_analysis, submit_job
 from jobkit.schema import Job, JobSpec, Limits, Mesh, MeshFacts, MeshState, Plan, ResolvedModel
@@ -13,6 +13,7 @@ from jobkit.selection import resolve_method
 from jobkit.settings import Settings
 from jobkit.telemetry import current_traceparent
 from service.formats import clean_filename
+from service.idempotency import idempotency_of
 from service.plan import check_hole_ids, make_plan
 from service.services import Services
 
@@ -31,10 +32,7 @@ class Submission:
     @property
     def idempotency(self) -> Idempotency | None:
         """The key with a digest of the request, None where none was sent."""
-        if self.key is None:
-            return None
-        text = f"{self.rerun_of or ''}\n{self.spec.model_dump_json()}"
-        return Idempotency(self.principal, self.key, hashlib.sha256(text.encode()).hexdigest())
+        return idempotency_of(self.principal, self.key, self.rerun_of or "", self.spec.model_dump_json())
 
 
 def submit(services: Services, submission: Submission) -> tuple[Job, bool]:

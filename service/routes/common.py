@@ -1,6 +1,7 @@
 """What routes share: parameters, documented problems, JSON responses with entity tags."""
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from http import HTTPStatus
 from typing import Annotated, Any
 
@@ -8,12 +9,15 @@ from fastapi import Depends, Header, Path, Request
 from pydantic import BaseModel
 from starlette.responses import Response
 
+from jobkit.idempotency import Idempotency
 from jobkit.ids import JOB_ID_PATTERN, SHA256_PATTERN, WEBHOOK_ID_PATTERN
 from jobkit.schema import Job, Problem
 from jobkit.schema.base import EXAMPLE_JOB_ID, EXAMPLE_SHA256, NAME_PATTERN
 from jobkit.schema.webhooks import EXAMPLE_WEBHOOK_ID
 from service.content import etag_matches
+from service.idempotency import idempotency_of
 from service.problems import RETRY_AFTER_S
+from service.services import PrincipalDep
 
 JobIdPath = Annotated[str, Path(pattern=JOB_ID_PATTERN, description="Id of a job.", examples=[EXAMPLE_JOB_ID])]
 MeshIdPath = Annotated[
@@ -34,11 +38,30 @@ IdempotencyKey = Annotated[
     Header(
         alias="Idempotency-Key",
         pattern=r"^[!-~]{1,255}$",
-        description="Any string of your own. A repeated request with the same key starts nothing twice: it gets the "
-        "job of the first time. Keys expire with their job.",
+        description="Any string of your own. A repeated request with the same key makes nothing twice: it gets "
+        "what the first one made. Keys of jobs expire with their job, others after seven days.",
         examples=["order-17-part-3"],
     ),
 ]
+
+
+@dataclass(frozen=True)
+class Caller:
+    """Who sends a request, and under which idempotency key."""
+
+    principal: str
+    key: str | None
+
+    def once(self, *request: str) -> Idempotency | None:
+        """Return the key for what the request asks for: its operation, and everything that it says."""
+        return idempotency_of(self.principal, self.key, *request)
+
+
+async def _get_caller(principal: PrincipalDep, key: IdempotencyKey = None) -> Caller:
+    return Caller(principal, key)
+
+
+CallerDep = Annotated[Caller, Depends(_get_caller)]
 IfNoneMatch = Annotated[
     str | None,
     Header(alias="If-None-Match", description="Entity tags; the answer is 304 where one still holds."),

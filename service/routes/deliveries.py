@@ -8,7 +8,7 @@ from starlette.responses import Response
 from jobkit.ids import MESSAGE_ID_PATTERN
 from jobkit.schema import DeliveryDetail, DeliveryPage, DeliveryState
 from jobkit.schema.webhooks import EXAMPLE_MESSAGE_ID
-from service.routes.common import WebhookIdPath, problems
+from service.routes.common import CallerDep, WebhookIdPath, problems
 from service.routes.webhooks import QUEUED, delivery_response
 from service.services import ServicesDep
 from service.strict import StrictRoute
@@ -51,6 +51,9 @@ def get_delivery(services: ServicesDep, webhook_id: WebhookIdPath, delivery_id: 
     response_model=None,
     responses={**QUEUED, **problems(404, 409)},
 )
-def replay_delivery(services: ServicesDep, webhook_id: WebhookIdPath, delivery_id: DeliveryIdPath) -> Response:
+def replay_delivery(
+    services: ServicesDep, caller: CallerDep, webhook_id: WebhookIdPath, delivery_id: DeliveryIdPath
+) -> Response:
     """Have a message sent again, under the same message id, so that a receiver that knows it already can tell."""
-    return delivery_response(services.deliveries.replay(webhook_id, delivery_id))
+    idempotency = caller.once("replay_delivery", webhook_id, delivery_id)
+    return delivery_response(*services.deliveries.replay_once(webhook_id, delivery_id, idempotency))

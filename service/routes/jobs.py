@@ -9,6 +9,7 @@ from starlette.responses import Response
 
 from jobkit.ids import JOB_ID_PATTERN
 from jobkit.schema import Job, JobPage, JobSpec, JobState, Plan, RepairSpec
+from service.idempotency import note_replayed
 from service.problems import invalid_request
 from service.routes.common import (
     IdempotencyKey,
@@ -160,9 +161,7 @@ async def answer_submission(services: Services, submission: Submission, prefer: 
     response = job_response(await services.board.job(job.id))
     if has_waited:
         note_applied(response, prefer)
-    if not is_new:
-        response.headers["Idempotent-Replayed"] = "true"
-    return response
+    return note_replayed(response, is_new=is_new)
 
 
 async def _wait_for_end(services: Services, job_id: str, prefer: str | None) -> bool:

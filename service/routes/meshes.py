@@ -7,15 +7,18 @@ from fastapi import APIRouter, Header, Query, Request
 from starlette.concurrency import run_in_threadpool
 from starlette.responses import Response
 
+from jobkit.idempotency import note_request, refuse_conflict
 from jobkit.removals import assure
 from jobkit.schema import Format, Mesh, MeshState
 from service.content import Content, content_response
 from service.formats import clean_filename, stated_format
+from service.idempotency import note_replayed
 from service.problems import RETRY_AFTER_S
 from service.routes.common import (
     BINARY,
     CONDITIONAL,
     FILE,
+    CallerDep,
     MeshIdPath,
     described_header,
     json_response,
@@ -74,13 +77,14 @@ WaitQuery = Annotated[
     responses={
         201: {"description": "The mesh is new; a worker will analyse it.", **_UPLOADED},
         200: {"model": Mesh, "description": "The same bytes were uploaded before.", **_UPLOADED},
-        **problems(400, 413, 415),
+        **problems(400, 409, 413, 415),
     },
     openapi_extra=_UPLOAD_BODY,
 )
 async def upload_mesh(
     request: Request,
     services: ServicesDep,
+    caller: CallerDep,
     filename: FilenameQuery = None,
     format: FormatQuery = None,  # noqa: A002 - the name of the query parameter
     disposition: Annotated[
@@ -90,8 +94,13 @@ async def upload_mesh(
     """Upload a mesh. The same bytes are the same mesh, however often they come."""
     rules = UploadRules("file", frozenset(), MESH_PREFIX, services.settings.max_upload_mb << 20)
     upload = await receive_upload(request, services.store, rules)
+    request_said = ("upload_mesh", upload.stored.sha256, filename or upload.filename or "", format or "")
+    idempotency = caller.once(*request_said)
+    await run_in_threadpool(refuse_conflict, services.database, idempotency)
     mesh, is_new = await run_in_threadpool(register_mesh, services, upload, filename, format)
-    return json_response(mesh, HTTPStatus.CREATED if is_new else HTTPStatus.OK, Location=mesh.links.self)
+    is_first = await run_in_threadpool(note_request, services.database, idempotency, mesh.links.self)
+    response = json_response(mesh, HTTPStatus.CREATED if is_new else HTTPStatus.OK, Location=mesh.links.self)
+    return note_replayed(response, is_new=is_first)
 
 
 @router.get("/v1/meshes/{mesh_id}", response_model=Mesh, responses=problems(404))

@@ -7,17 +7,20 @@ from fastapi import APIRouter, Path, Request
 from starlette.concurrency import run_in_threadpool
 from starlette.responses import Response
 
+from jobkit.idempotency import note_request, refuse_conflict
 from jobkit.model_header import Card
 from jobkit.registry import MODEL_PREFIX
 from jobkit.schema import Alias, AliasTarget, Model, ModelList, ModelVersion
 from jobkit.schema.base import NAME_PATTERN
 from jobkit.strict_json import StrictJsonError, read_json
 from service.content import OCTETS, Content, content_response
+from service.idempotency import note_replayed
 from service.problems import invalid_request
 from service.routes.common import (
     BINARY,
     CONDITIONAL,
     FILE,
+    CallerDep,
     ModelNamePath,
     VersionPath,
     described_header,
@@ -120,13 +123,18 @@ def get_model_artifact(
     },
     openapi_extra=_BODY,
 )
-async def publish_model(request: Request, services: ServicesDep, name: ModelNamePath) -> Response:
+async def publish_model(request: Request, services: ServicesDep, caller: CallerDep, name: ModelNamePath) -> Response:
     """Publish a version. Versions never change; the same bytes are the same version."""
     rules = UploadRules("artifact", frozenset({"card"}), MODEL_PREFIX, services.settings.max_upload_mb << 20)
     upload = await receive_upload(request, services.store, rules)
     card = _read_card(upload.fields.get("card"))
+    request_said = ("publish_model", name, upload.stored.sha256, upload.fields.get("card", b"").hex())
+    idempotency = caller.once(*request_said)
+    await run_in_threadpool(refuse_conflict, services.database, idempotency)
     version, is_new = await run_in_threadpool(services.registry.publish, name, upload.stored, card)
-    return json_response(version, HTTPStatus.CREATED if is_new else HTTPStatus.OK, Location=version.links.self)
+    is_first = await run_in_threadpool(note_request, services.database, idempotency, version.links.self)
+    response = json_response(version, HTTPStatus.CREATED if is_new else HTTPStatus.OK, Location=version.links.self)
+    return note_replayed(response, is_new=is_first)
 
 
 @router.put("/v1/aliases/{alias}", response_model=Alias, responses=problems(400, 404, 409, 413, 415))

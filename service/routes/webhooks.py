@@ -7,7 +7,8 @@ from fastapi import APIRouter
 from starlette.responses import Response
 
 from jobkit.schema import DeliveryDetail, NewWebhook, Webhook, WebhookChange, WebhookList, WebhookWithSecret
-from service.routes.common import WebhookIdPath, described_header, json_response, linked, problems
+from service.idempotency import note_replayed
+from service.routes.common import CallerDep, WebhookIdPath, described_header, json_response, linked, problems
 from service.services import ServicesDep
 from service.strict import StrictRoute
 
@@ -54,10 +55,11 @@ QUEUED: dict[int | str, dict[str, Any]] = {
         **problems(400, 409, 413, 415),
     },
 )
-def create_webhook(services: ServicesDep, new: NewWebhook) -> Response:
+def create_webhook(services: ServicesDep, caller: CallerDep, new: NewWebhook) -> Response:
     """Subscribe to what happens to jobs."""
-    webhook = services.webhooks.create(new)
-    return json_response(webhook, HTTPStatus.CREATED, Location=webhook.links.self, Cache_Control="no-store")
+    webhook, is_new = services.webhooks.create_once(new, caller.once("create_webhook", new.model_dump_json()))
+    response = json_response(webhook, HTTPStatus.CREATED, Location=webhook.links.self, Cache_Control="no-store")
+    return note_replayed(response, is_new=is_new)
 
 
 @router.get("/v1/webhooks", response_model=WebhookList, responses=problems())
@@ -91,17 +93,20 @@ def delete_webhook(services: ServicesDep, webhook_id: WebhookIdPath) -> Response
     response_model=None,
     responses={**QUEUED, **problems(404, 409)},
 )
-def test_webhook(services: ServicesDep, webhook_id: WebhookIdPath) -> Response:
+def test_webhook(services: ServicesDep, caller: CallerDep, webhook_id: WebhookIdPath) -> Response:
     """Have a `webhook.test` message sent."""
-    return delivery_response(services.deliveries.send_test(webhook_id))
+    return delivery_response(*services.deliveries.send_test_once(webhook_id, caller.once("test_webhook", webhook_id)))
 
 
-@router.post("/v1/webhooks/{webhook_id}/rotate", response_model=WebhookWithSecret, responses=problems(404))
-def rotate_webhook_secret(services: ServicesDep, webhook_id: WebhookIdPath) -> Response:
+@router.post("/v1/webhooks/{webhook_id}/rotate", response_model=WebhookWithSecret, responses=problems(404, 409))
+def rotate_webhook_secret(services: ServicesDep, caller: CallerDep, webhook_id: WebhookIdPath) -> Response:
     """Get a new secret. For a day messages are signed with the old one as well."""
-    return json_response(services.webhooks.rotate(webhook_id), Cache_Control="no-store")
+    idempotency = caller.once("rotate_webhook_secret", webhook_id)
+    webhook, is_new = services.webhooks.rotate_once(webhook_id, idempotency)
+    return note_replayed(json_response(webhook, Cache_Control="no-store"), is_new=is_new)
 
 
-def delivery_response(delivery: DeliveryDetail) -> Response:
-    """Answer with a delivery that was just made."""
-    return json_response(delivery, HTTPStatus.ACCEPTED, Location=delivery.links.self)
+def delivery_response(delivery: DeliveryDetail, is_new: bool) -> Response:
+    """Answer with a delivery that was just made, or was by the same request."""
+    response = json_response(delivery, HTTPStatus.ACCEPTED, Location=delivery.links.self)
+    return note_replayed(response, is_new=is_new)

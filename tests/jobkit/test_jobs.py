@@ -6,7 +6,8 @@ import pytest
 from jobkit.attempts import Attempts
 from jobkit.database import Database
 from jobkit.errors import IdempotencyError, JobFinishedError, JobNotFoundError, MeshNotFoundError
-from jobkit.jobs import Idempotency, Jobs, NewJob
+from jobkit.idempotency import Idempotency
+from jobkit.jobs import Jobs, NewJob
 from jobkit.meshes import Meshes
 from jobkit.schema import Job, JobResult, JobSpec, JobState, ResolvedModel
 from jobkit.store import StoredObject

@@ -15,7 +15,8 @@ from jobkit.clock import utc_now
 from jobkit.database import Database
 from jobkit.endings import Attempt, another_try, end_attempt
 from jobkit.errors import JobFinishedError, StaleAttemptError
-from jobkit.jobs import Idempotency, Jobs, NewJob
+from jobkit.idempotency import Idempotency
+from jobkit.jobs import Jobs, NewJob
 from jobkit.leadership import Leadership
 from jobkit.meshes import Meshes
 from jobkit.overdue import TimeLimits, end_overdue

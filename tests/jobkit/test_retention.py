@@ -14,7 +14,8 @@ from jobkit.errors import (
     MeshNotFoundError,
     StoreUnavailableError,
 )
-from jobkit.jobs import Idempotency, Jobs, NewJob
+from jobkit.idempotency import Idempotency
+from jobkit.jobs import Jobs, NewJob
 from jobkit.meshes import Meshes
 from jobkit.retention import BATCH, delete_job, delete_mesh, expire_jobs, expire_meshes, pin_job, pin_mesh
 from jobkit.schema import Job, Mesh

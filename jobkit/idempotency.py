@@ -1,0 +1,164 @@
+"""Keys that clients send so that a repeated request makes nothing twice.
+
+One key of one client names one request, whatever it is about. The key of a job goes with the job; others are forgotten
+after `KEPT`.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from datetime import datetime, timedelta
+from typing import TypeVar
+
+from sqlalchemy import CursorResult, delete
+from sqlalchemy.exc import IntegrityError
+from sqlalchemy.orm import Session
+
+from jobkit.clock import utc_now
+from jobkit.database import Database
+from jobkit.errors import IdempotencyError
+from jobkit.tables import IdempotencyRow
+
+KEPT = timedelta(days=7)
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True)
+class Idempotency:
+    """A key that a client sent so that a repeated request starts nothing twice.
+
+    Attributes
+    ----------
+    principal : str
+        Whose key it is: two clients may use the same one.
+    key : str
+    request_sha256 : str
+        Of the request, to tell a repetition from a mix-up.
+    """
+
+    principal: str
+    key: str
+    request_sha256: str
+
+
+def earlier_row(session: Session, idempotency: Idempotency) -> IdempotencyRow | None:
+    """Return what is known of the key, None where it is new; raise IdempotencyError where it named another request."""
+    row = session.get(IdempotencyRow, (idempotency.principal, idempotency.key))
+    if row is not None and row.request_sha256 != idempotency.request_sha256:
+        raise IdempotencyError(f"the idempotency key {idempotency.key!r} came before with another request")
+    return row
+
+
+def remember(
+    session: Session, idempotency: Idempotency | None, *, job_id: str | None = None, made: str | None = None
+) -> None:
+    """Write down what came of the key, in the transaction that makes it.
+
+    Parameters
+    ----------
+    session : Session
+    idempotency : Idempotency, optional
+        None: nothing is written.
+    job_id : str, optional
+        The job that was made.
+    made : str, optional
+        What names the thing otherwise.
+    """
+    if idempotency is not None:
+        session.add(
+            IdempotencyRow(
+                principal=idempotency.principal,
+                key=idempotency.key,
+                request_sha256=idempotency.request_sha256,
+                job_id=job_id,
+                made=made,
+                created_at=utc_now(),
+            )
+        )
+
+
+def is_repeated(database: Database, idempotency: Idempotency | None) -> bool:
+    """Tell whether the key came before with the same request; raise IdempotencyError where it named another one."""
+    if idempotency is None:
+        return False
+    with database.read() as session:
+        return earlier_row(session, idempotency) is not None
+
+
+def refuse_conflict(database: Database, idempotency: Idempotency | None) -> None:
+    """Raise IdempotencyError where the key came before with another request."""
+    is_repeated(database, idempotency)
+
+
+def once(
+    database: Database,
+    idempotency: Idempotency | None,
+    make: Callable[[Session], tuple[T, str]],
+    show: Callable[[Session, str], T],
+) -> tuple[T, bool]:
+    """Make something, or show what the same request has made before.
+
+    Parameters
+    ----------
+    database : Database
+    idempotency : Idempotency, optional
+        None: it is made in any case.
+    make : callable
+        Makes it in a session; returns it, and what `show` knows it by.
+    show : callable
+
+    Returns
+    -------
+    thing, bool
+        And whether it is new.
+
+    Raises
+    ------
+    IdempotencyError
+        If the key came before with another request.
+    """
+    try:
+        return _once(database, idempotency, make, show)
+    except IntegrityError:
+        # Two requests with one key at the same moment: the other one has won, so what it made is the answer.
+        return _once(database, idempotency, make, show)
+
+
+def note_request(database: Database, idempotency: Idempotency | None, made: str) -> bool:
+    """Write down a request that made what the same one makes again; return whether its key is new.
+
+    Raises
+    ------
+    IdempotencyError
+        If the key came before with another request.
+    """
+    return idempotency is None or once(database, idempotency, lambda _: (made, made), lambda _, seen: seen)[1]
+
+
+def forget_made(session: Session, made: str) -> None:
+    """Forget the keys of what is deleted in this transaction."""
+    session.execute(delete(IdempotencyRow).where(IdempotencyRow.made == made))
+
+
+def forget_keys(database: Database, now: datetime) -> int:
+    """Forget keys older than `KEPT` that no job takes with it; return how many."""
+    old = (IdempotencyRow.job_id.is_(None)) & (IdempotencyRow.created_at < now - KEPT)
+    with database.write() as session:
+        result = session.execute(delete(IdempotencyRow).where(old))
+        return result.rowcount if isinstance(result, CursorResult) else 0
+
+
+def _once(
+    database: Database,
+    idempotency: Idempotency | None,
+    make: Callable[[Session], tuple[T, str]],
+    show: Callable[[Session, str], T],
+) -> tuple[T, bool]:
+    with database.write() as session:
+        earlier = None if idempotency is None else earlier_row(session, idempotency)
+        if earlier is not None:
+            return show(session, earlier.made or ""), False
+        thing, made = make(session)
+        remember(session, idempotency, made=made)
+        session.flush()
+        return thing, True
