@@ -126,8 +126,8 @@ def _field_error(detail: Mapping[str, Any], root: str | None) -> FieldError:
     where = [str(step) for step in detail["loc"]]
     location = root or where.pop(0)
     is_body = location == "body"
-    if where[:1] == ["method"]:
-        where[1:2] = []  # the tag of the union, which stands in no document
+    method = where.index("method") + 1 if where[:1] == ["method"] or where[:2] == ["spec", "method"] else len(where)
+    where[method : method + 1] = []  # the tag of the union, which stands in no document
     pointer = "".join("/" + step.replace("~", "~0").replace("/", "~1") for step in where) if is_body else where[-1]
     message = printable(str(detail["msg"]))
     return FieldError(location=location, pointer=printable(pointer), message=message, code=str(detail["type"]))
