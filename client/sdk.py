@@ -216,8 +216,16 @@ class Client:
         download(self._transport, link, target, file.sha256, progress)
 
     def models(self) -> ModelList:
-        """Return all models and aliases."""
-        return parse(ModelList, self._transport.request("GET", "/v1/models"))
+        """Return all models and aliases, fetched page by page; of each model its newest versions."""
+        found = ModelList(models=[], aliases=[])
+        params = {"limit": str(_PAGE)}
+        while True:
+            page = parse(ModelList, self._transport.request("GET", "/v1/models", params=params))
+            found.models += page.models
+            found.aliases += page.aliases
+            if page.next_cursor is None:
+                return found
+            params["cursor"] = page.next_cursor
 
     def jobs(self, limit: int | None = None, state: JobState | None = None) -> Iterator[Job]:
         """Yield jobs, newest first, fetched page by page."""

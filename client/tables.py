@@ -6,7 +6,7 @@ from datetime import UTC
 from rich.console import Console
 from rich.table import Table
 
-from jobkit.schema import Job, MeshFacts, ModelList, Plan
+from jobkit.schema import Job, MeshFacts, ModelList, ModelVersion, Plan
 
 
 def print_holes(console: Console, facts: MeshFacts, plan: Plan) -> None:
@@ -39,7 +39,7 @@ def print_holes(console: Console, facts: MeshFacts, plan: Plan) -> None:
 def print_models(console: Console, models: ModelList) -> None:
     """Print every version of every model."""
     table = _table(None)
-    for name in ("model", "kind", "patch", "size", "aliases", "description"):
+    for name in ("model", "kind", "patch", "size", "aliases", "state", "description"):
         table.add_column(name, overflow="fold")
     for version in (version for model in models.models for version in model.versions):
         resolution = version.card.patch_resolution
@@ -49,9 +49,17 @@ def print_models(console: Console, models: ModelList) -> None:
             f"{resolution} × {resolution}" if resolution else "",
             f"{version.size_bytes / 1e6:.1f} MB",
             ", ".join(version.aliases),
+            _standing(version),
             version.card.description,
         )
     console.print(table if table.row_count else "no models")
+
+
+def _standing(version: ModelVersion) -> str:
+    """Say whether a version may be used, and why not."""
+    if version.problem is not None:
+        return f"{version.state}: {version.problem.message}"
+    return "deprecated" if version.deprecated is not None else str(version.state)
 
 
 def print_jobs(console: Console, jobs: Iterable[Job]) -> None:

@@ -9,14 +9,14 @@ from sqlalchemy.orm import Session
 
 from jobkit.clock import shared_now, utc_now
 from jobkit.database import Database
-from jobkit.errors import JobFinishedError, JobNotFoundError, MeshNotFoundError
+from jobkit.errors import JobFinishedError, JobNotFoundError, MeshNotFoundError, ModelNotFoundError
 from jobkit.events import append_event, read_events
 from jobkit.idempotency import Idempotency, earlier_row, remember
 from jobkit.ids import new_job_id
 from jobkit.job_rows import existing_job, to_job
 from jobkit.readable import readable
 from jobkit.schema import EventPage, Job, JobPage, JobSpec, JobState, ResolvedModel
-from jobkit.tables import JobRow, MeshRow
+from jobkit.tables import JobRow, MeshRow, ModelRow
 from jobkit.transitions import Move, make_move
 
 
@@ -76,8 +76,8 @@ class Jobs:
         ------
         IdempotencyError
             If the key came before with another request.
-        MeshNotFoundError
-            If the mesh is not there.
+        MeshNotFoundError, ModelNotFoundError
+            If the mesh, or the version of the model, is not there.
         """
         try:
             return self._create(new, idempotency)
@@ -177,6 +177,7 @@ class Jobs:
             mesh = session.get(MeshRow, new.spec.mesh_id)
             if mesh is None:
                 raise MeshNotFoundError(f"there is no mesh {new.spec.mesh_id}")
+            _hold_model(session, new.model)
             row = _new_row(new, mesh.filename)
             session.add(row)
             session.flush()
@@ -192,6 +193,15 @@ class Jobs:
         if earlier is None or earlier.job_id is None:
             return None
         return self._show(existing_job(session, earlier.job_id))
+
+
+def _hold_model(session: Session, model: ResolvedModel) -> None:
+    """Keep the version from being deleted until the job is written; raise ModelNotFoundError where it was."""
+    if model.name is None or model.version is None:
+        return
+    shared = {"read": True}
+    if session.get(ModelRow, (model.name, model.version), with_for_update=shared) is None:
+        raise ModelNotFoundError(f"there is no model {model.name}@{model.version}")
 
 
 def _new_row(new: NewJob, latest_name: str | None) -> JobRow:

@@ -1,10 +1,11 @@
 """Queue adapter: RQ as an executor only. The database is the truth; a lost queue is refilled from it.
 
-There is one queue for both kinds of tasks: RQ loses a job when a worker that listens to two queues is killed right
-after the pop. Both stand in it by age, since a file says nothing of how long its analysis takes; only jobs whose
+There is one queue for all kinds of tasks: RQ loses a job when a worker that listens to two queues is killed right
+after the pop. All stand in it by age, since a file says nothing of how long its analysis takes; only jobs whose
 attempt was lost go to the front, they have waited already.
 """
 
+import hashlib
 from collections.abc import Iterator
 from contextlib import contextmanager
 
@@ -19,6 +20,7 @@ from jobkit.errors import QueueUnavailableError
 
 RUN_JOB = "worker.jobs.run_job"
 INSPECT_MESH = "worker.jobs.inspect_mesh"
+PROVE_MODEL = "worker.jobs.prove_model"
 # The engine has limits of its own; this one only frees a worker whose watch over the engine failed.
 _MARGIN_S = 60
 _SOCKET_TIMEOUT_S = 5.0
@@ -57,6 +59,10 @@ class TaskQueue:
     def enqueue_inspection(self, mesh_id: str, attempt: int) -> None:
         """Ask for the analysis of a mesh; raise QueueUnavailableError."""
         self._enqueue(INSPECT_MESH, mesh_id, mesh_entry(mesh_id, attempt), at_front=False)
+
+    def enqueue_proof(self, reference: str, attempt: int) -> None:
+        """Ask for the proof of a model version, `name@version`; raise QueueUnavailableError."""
+        self._enqueue(PROVE_MODEL, reference, model_entry(reference, attempt), at_front=False)
 
     def waiting(self) -> set[str]:
         """Return the entries that wait in the queue; raise QueueUnavailableError."""
@@ -114,6 +120,14 @@ def job_entry(job_id: str, attempt: int) -> str:
 def mesh_entry(mesh_id: str, attempt: int) -> str:
     """Return the name of the queue's entry for that attempt at an analysis."""
     return f"mesh_{mesh_id}-{attempt}"
+
+
+def model_entry(reference: str, attempt: int) -> str:
+    """Return the name of the queue's entry for that attempt at a proof.
+
+    RQ takes letters, digits, underscores and dashes only; names of models hold dots as well.
+    """
+    return f"model_{hashlib.sha256(reference.encode()).hexdigest()[:32]}-{attempt}"
 
 
 @contextmanager

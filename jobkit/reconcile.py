@@ -13,9 +13,10 @@ from jobkit.clock import shared_now
 from jobkit.database import Database
 from jobkit.meshes import MAX_ANALYSES
 from jobkit.overdue import TimeLimits, end_overdue
-from jobkit.queue import TaskQueue, job_entry, mesh_entry
-from jobkit.schema import JobState, MeshProblem, MeshState
-from jobkit.tables import JobRow, MeshRow
+from jobkit.proofs import give_up_proofs, parts_of, reference_of
+from jobkit.queue import TaskQueue, job_entry, mesh_entry, model_entry
+from jobkit.schema import JobState, MeshProblem, MeshState, ModelState
+from jobkit.tables import JobRow, MeshRow, ModelRow
 
 # Of jobs that something may still have to be done about.
 _OPEN_STATES = tuple(state.value for state in JobState if not state.is_terminal)
@@ -30,6 +31,7 @@ class Reconciled:
     ended: int
     enqueued_jobs: int
     enqueued_meshes: int
+    enqueued_models: int = 0
 
 
 def reconcile(
@@ -37,8 +39,8 @@ def reconcile(
 ) -> Reconciled:
     """End what is overdue and refill the queue; without `takes_leases`, leases that ran out are left alone for once.
 
-    Where no job and no analysis is open, one query says so, and nothing else is asked: an idle dispatcher looks every
-    second, for years.
+    Where no job, no analysis and no proof is open, one query says so, and nothing else is asked: an idle dispatcher
+    looks every second, for years.
 
     Raises
     ------
@@ -50,10 +52,13 @@ def reconcile(
     moment = now or _shared_moment(database)
     ended = end_overdue(database, limits, moment, takes_leases=takes_leases)
     _give_up_analyses(database, moment)
+    with database.write() as session:
+        give_up_proofs(session, moment)
     waiting = queue.waiting()
     jobs = _enqueue_jobs(database, queue, waiting, moment)
     meshes = _enqueue_meshes(database, queue, waiting, moment)
-    return Reconciled(ended, jobs, meshes)
+    models = _enqueue_models(database, queue, waiting, moment)
+    return Reconciled(ended, jobs, meshes, models)
 
 
 def submit_job(database: Database, queue: TaskQueue, job_id: str, attempt: int) -> None:
@@ -85,11 +90,26 @@ def submit_analysis(database: Database, queue: TaskQueue, mesh_id: str) -> None:
         session.execute(update(MeshRow).where(MeshRow.id == mesh_id).values(enqueued_at=shared_now(session)))
 
 
+def submit_proof(database: Database, queue: TaskQueue, reference: str) -> None:
+    """Put a version that waits for its proof into the queue; nothing happens where none is due. Raises like above."""
+    name, version = parts_of(reference)
+    is_version = (ModelRow.name == name) & (ModelRow.version == version)
+    with database.read() as session:
+        query = select(ModelRow.attempt).where(is_version, ModelRow.state == ModelState.PROVING.value)
+        attempt = session.scalars(query).one_or_none()
+    if attempt is None:
+        return
+    queue.enqueue_proof(reference, attempt + 1)
+    with database.write() as session:
+        session.execute(update(ModelRow).where(is_version).values(enqueued_at=shared_now(session)))
+
+
 def _is_anything_open(database: Database) -> bool:
     job = exists().where(JobRow.state.in_(_OPEN_STATES))
     mesh = exists().where(MeshRow.state == MeshState.ANALYSING.value)
+    model = exists().where(ModelRow.state == ModelState.PROVING.value)
     with database.read() as session:
-        return bool(session.scalar(select(or_(job, mesh))))
+        return bool(session.scalar(select(or_(job, mesh, model))))
 
 
 def _enqueue_jobs(database: Database, queue: TaskQueue, waiting: set[str], now: datetime) -> int:
@@ -120,6 +140,22 @@ def _enqueue_meshes(database: Database, queue: TaskQueue, waiting: set[str], now
     ]
     for mesh_id in lost:
         submit_analysis(database, queue, mesh_id)
+    return len(lost)
+
+
+def _enqueue_models(database: Database, queue: TaskQueue, waiting: set[str], now: datetime) -> int:
+    with database.read() as session:
+        query = select(ModelRow).where(ModelRow.state == ModelState.PROVING.value)
+        rows = list(session.scalars(query))
+    lost = [
+        reference_of(row.name, row.version)
+        for row in rows
+        if model_entry(reference_of(row.name, row.version), row.attempt + 1) not in waiting
+        and _is_overdue(row.enqueued_at, now)
+        and (row.lease_until is None or row.lease_until < now)
+    ]
+    for reference in lost:
+        submit_proof(database, queue, reference)
     return len(lost)
 
 

@@ -1,10 +1,12 @@
 """Registry of models: versions never change, aliases move.
 
 Versions of a name count up from 1. The same bytes under the same name are the same version. Names and aliases share
-one namespace, so a reference means one thing only.
+one namespace, so a reference means one thing only. What clients publish is looked at here without opening it, and used
+once a worker has proven it (`jobkit.proofs`).
 """
 
 from dataclasses import dataclass
+from datetime import datetime
 from pathlib import Path
 from typing import Literal, cast
 
@@ -14,18 +16,23 @@ from sqlalchemy.orm import Session
 
 from jobkit.clock import utc_now
 from jobkit.database import Database
-from jobkit.errors import ModelKindError, ModelNotFoundError, NameTakenError
+from jobkit.errors import ModelKindError, NameTakenError
+from jobkit.model_errors import ModelDeprecatedError
 from jobkit.model_header import Card, artifact_format, read_dictionary_card, to_wire_card
+from jobkit.model_rows import check_proven, meant_row, to_alias, to_model, to_version, version_row
 from jobkit.network_header import check_network, read_network_card
 from jobkit.readable import readable
 from jobkit.removals import assure
-from jobkit.schema import SELF, Alias, Model, ModelKind, ModelLinks, ModelList, ModelVersion
+from jobkit.schema import SELF, Alias, Model, ModelKind, ModelList, ModelState, ModelVersion
 from jobkit.store import CHUNK_BYTES, ObjectStore, StoredObject
-from jobkit.tables import AliasRow, ModelRow
+from jobkit.tables import AliasRow, DeletedModelRow, ModelRow
 
 MODEL_PREFIX = "models"
 # Of one name, published at the same moment.
 _MOST_RIVALS = 20
+# Of one model: when it is asked for, and in the list of all; a card has up to 64 KiB.
+MOST_VERSIONS = 100
+MOST_LISTED_VERSIONS = 20
 # What specs mean that name no model.
 DEFAULT_KINDS: dict[str, ModelKind] = {"default": "dictionary", "default-network": "autoencoder"}
 RESERVED_NAMES = frozenset({SELF, "smooth", "none", "latest"})
@@ -39,6 +46,7 @@ class Artifact:
     format: Literal["safetensors", "onnx"]
     sha256: str
     size_bytes: int
+    deprecated_at: datetime | None = None
 
 
 class Registry:
@@ -49,9 +57,15 @@ class Registry:
         self._store = store
 
     def publish(
-        self, name: str, stored: StoredObject, card: Card | None = None, version: int | None = None
+        self,
+        name: str,
+        stored: StoredObject,
+        card: Card | None = None,
+        version: int | None = None,
+        *,
+        is_proven: bool = False,
     ) -> tuple[ModelVersion, bool]:
-        """Make bytes that lie in the store a version of a model.
+        """Make bytes that lie in the store a version of a model; one that was refused is to be proven anew.
 
         Parameters
         ----------
@@ -63,6 +77,8 @@ class Registry:
             Of a network, in place of the one in its metadata; a dictionary always brings its own.
         version : int, optional
             Number to take; None: the next one.
+        is_proven : bool
+            Whether the caller answers for the bytes; otherwise a worker has to prove them.
 
         Returns
         -------
@@ -87,6 +103,9 @@ class Registry:
             size_bytes=stored.size_bytes,
             key=stored.key,
             card=wire_card,
+            state=(ModelState.READY if is_proven else ModelState.PROVING).value,
+            attempt=0,
+            forgiven=0,
             created_at=utc_now(),
         )
         for _ in range(_MOST_RIVALS):
@@ -99,43 +118,71 @@ class Registry:
     def publish_file(
         self, name: str, path: Path, card: Card | None = None, version: int | None = None
     ) -> tuple[ModelVersion, bool]:
-        """Store a local file and publish it; returns and raises as `publish`."""
+        """Store a local file, for which the caller answers, and publish it; returns and raises as `publish`."""
         with path.open("rb") as source, self._store.writer(MODEL_PREFIX) as writer:
             while chunk := source.read(CHUNK_BYTES):
                 writer.write(chunk)
             stored = writer.commit()
-        return self.publish(name, stored, card, version)
+        return self.publish(name, stored, card, version, is_proven=True)
 
     def resolve(self, reference: str) -> ModelVersion:
         """Return the version that `name@version`, `name` or an alias means now; raise ModelNotFoundError."""
         with self._database.read() as session:
-            return _to_version(session, _resolve(session, reference))
+            return to_version(session, meant_row(session, reference))
 
-    def get(self, name: str) -> Model:
-        """Return a model with all its versions; raise ModelNotFoundError."""
+    def usable(self, reference: str) -> ModelVersion:
+        """Return the version that the reference means now, for a job.
+
+        Raises
+        ------
+        ModelNotFoundError
+            If it means nothing.
+        ModelNotProvenError, ModelRefusedError
+            If the version is not proven.
+        """
         with self._database.read() as session:
-            return _to_model(session, name)
+            row = meant_row(session, reference)
+            check_proven(row)
+            return to_version(session, row)
+
+    def get(self, name: str, limit: int = MOST_VERSIONS, cursor: int | None = None) -> Model:
+        """Return a model with its newest versions, of those below the `cursor`; raise ModelNotFoundError."""
+        with self._database.read() as session:
+            return to_model(session, name, limit, cursor)
 
     def artifact(self, name: str, version: int) -> Artifact:
         """Return where the bytes of a version lie; raise ModelNotFoundError."""
         with self._database.read() as session:
-            row = _version_row(session, name, version)
-            return Artifact(row.key, cast('Literal["safetensors", "onnx"]', row.format), row.sha256, row.size_bytes)
+            row = version_row(session, name, version)
+            form = cast('Literal["safetensors", "onnx"]', row.format)
+            return Artifact(row.key, form, row.sha256, row.size_bytes, row.deprecated_at)
 
-    def list_all(self) -> ModelList:
-        """Return all models and aliases."""
+    def page(self, limit: int, cursor: str | None = None) -> ModelList:
+        """Return models by name with their newest versions, and the aliases that point to them.
+
+        Parameters
+        ----------
+        limit : int
+            Most models on the page.
+        cursor : str, optional
+            `next_cursor` of the page before.
+        """
+        query = select(ModelRow.name).distinct().order_by(ModelRow.name).limit(limit + 1)
         with self._database.read() as session:
-            names = session.scalars(select(ModelRow.name).distinct().order_by(ModelRow.name)).all()
-            aliases = session.scalars(select(AliasRow).order_by(AliasRow.alias))
+            names = list(session.scalars(query if cursor is None else query.where(ModelRow.name > cursor)))
+            shown = names[:limit]
+            aliases = session.scalars(select(AliasRow).where(AliasRow.name.in_(shown)).order_by(AliasRow.alias))
             return ModelList(
-                models=list(readable(names, lambda name: _to_model(session, name))),
-                aliases=[_to_alias(row) for row in aliases],
+                models=list(readable(shown, lambda name: to_model(session, name, MOST_LISTED_VERSIONS))),
+                aliases=[to_alias(row) for row in aliases],
+                next_cursor=shown[-1] if len(names) > limit else None,
             )
 
     def has_kind(self, kind: ModelKind) -> bool:
-        """Return whether any model of that kind is registered."""
+        """Return whether any model of that kind is registered, refused ones left aside."""
+        is_there = (ModelRow.kind == kind) & (ModelRow.state != ModelState.REFUSED.value)
         with self._database.read() as session:
-            return session.scalars(select(ModelRow.name).where(ModelRow.kind == kind).limit(1)).first() is not None
+            return session.scalars(select(ModelRow.name).where(is_there).limit(1)).first() is not None
 
     def set_alias(self, alias: str, reference: str) -> Alias:
         """Point an alias to the version that the reference means now.
@@ -148,9 +195,16 @@ class Registry:
             If a model has that name, or the name is reserved.
         ModelKindError
             If the alias means models of the other kind: specs that name it would break.
+        ModelNotProvenError, ModelRefusedError, ModelDeprecatedError
+            If the version is not to be used.
         """
         with self._database.write() as session:
-            target = _resolve(session, reference)
+            meant = meant_row(session, reference)
+            # Locked: it may be deprecated or deleted at the same moment.
+            target = version_row(session, meant.name, meant.version, locked=True)
+            check_proven(target)
+            if target.deprecated_at is not None:
+                raise ModelDeprecatedError(f"{target.name}@{target.version} is deprecated; no alias may point to it")
             if alias in RESERVED_NAMES or session.scalars(select(ModelRow).where(ModelRow.name == alias)).first():
                 raise NameTakenError(f"{alias!r} is the name of a model, or reserved")
             row = session.get(AliasRow, alias, with_for_update=True) or AliasRow(alias=alias)
@@ -161,7 +215,7 @@ class Registry:
                 )
             row.name, row.version, row.updated_at = target.name, target.version, utc_now()
             session.add(row)
-            return _to_alias(row)
+            return to_alias(row)
 
     def _inspect(self, stored: StoredObject, card: Card | None) -> tuple[ModelKind, Artifact, Card]:
         with self._store.local_file(stored.key) as path:
@@ -176,66 +230,46 @@ class Registry:
         with self._database.write() as session:
             if row.name in RESERVED_NAMES or session.get(AliasRow, row.name) is not None:
                 raise NameTakenError(f"{row.name!r} is an alias, or reserved")
-            same = session.scalars(
-                select(ModelRow).where(ModelRow.name == row.name, ModelRow.sha256 == row.sha256)
-            ).one_or_none()
+            is_same = (ModelRow.name == row.name) & (ModelRow.sha256 == row.sha256)
+            same = session.scalars(select(ModelRow).where(is_same).with_for_update()).one_or_none()
             if same is not None:
-                return _to_version(session, same), False
-            if version is None:
-                latest = session.scalar(select(func.max(ModelRow.version)).where(ModelRow.name == row.name))
-                version = (latest or 0) + 1
-            elif session.get(ModelRow, (row.name, version)) is not None:
-                raise NameTakenError(f"{row.name}@{version} is taken by other bytes; versions never change")
-            fresh = ModelRow(**{c.key: getattr(row, c.key) for c in ModelRow.__table__.columns} | {"version": version})
+                _publish_again(same, row)
+                return to_version(session, same), False
+            number = _free_number(session, row.name, version)
+            fresh = ModelRow(**{c.key: getattr(row, c.key) for c in ModelRow.__table__.columns} | {"version": number})
             session.add(fresh)
             session.flush()
-            return _to_version(session, fresh), True
+            return to_version(session, fresh), True
 
 
 def _kind_of_alias(session: Session, row: AliasRow) -> str | None:
     """Return the kind of model that an alias keeps to: that of its first target; None where it is free."""
     if row.name is None:
         return DEFAULT_KINDS.get(row.alias)
-    return _version_row(session, row.name, row.version).kind
+    return version_row(session, row.name, row.version).kind
 
 
-def _resolve(session: Session, reference: str) -> ModelRow:
-    name, _, number = reference.partition("@")
-    if number:
-        return _version_row(session, name, int(number))
-    alias = session.get(AliasRow, name)
-    if alias is not None:
-        return _version_row(session, alias.name, alias.version)
-    query = select(ModelRow).where(ModelRow.name == name).order_by(ModelRow.version.desc()).limit(1)
-    row = session.scalars(query).first()
-    if row is None:
-        raise ModelNotFoundError(f"there is no model and no alias {name!r}")
-    return row
+def _free_number(session: Session, name: str, wanted: int | None) -> int:
+    """Return the number for a new version; those of deleted versions never come back, since jobs name them."""
+    deleted = session.get(DeletedModelRow, name)
+    first = 1 if deleted is None else deleted.version + 1
+    if wanted is None:
+        latest = session.scalar(select(func.max(ModelRow.version)).where(ModelRow.name == name))
+        return max(first, (latest or 0) + 1)
+    if session.get(ModelRow, (name, wanted)) is not None:
+        raise NameTakenError(f"{name}@{wanted} is taken by other bytes; versions never change")
+    if wanted < first:
+        raise NameTakenError(f"{name}@{deleted and deleted.version} was deleted; no version up to it comes back")
+    return wanted
 
 
-def _version_row(session: Session, name: str, version: int) -> ModelRow:
-    row = session.get(ModelRow, (name, version))
-    if row is None:
-        raise ModelNotFoundError(f"there is no model {name}@{version}")
-    return row
-
-
-def _to_model(session: Session, name: str) -> Model:
-    rows = session.scalars(select(ModelRow).where(ModelRow.name == name).order_by(ModelRow.version.desc())).all()
-    if not rows:
-        raise ModelNotFoundError(f"there is no model {name!r}")
-    versions = list(readable(rows, lambda row: _to_version(session, row)))
-    return Model(name=name, latest=rows[0].version, versions=versions)
-
-
-def _to_version(session: Session, row: ModelRow) -> ModelVersion:
-    path = f"/v1/models/{row.name}/versions/{row.version}"
-    query = select(AliasRow.alias).where(AliasRow.name == row.name, AliasRow.version == row.version)
-    aliases = session.scalars(query.order_by(AliasRow.alias)).all()
-    values = {name: getattr(row, name) for name in ModelVersion.model_fields.keys() - {"aliases", "links"}}
-    links = ModelLinks(self=path, artifact=f"{path}/artifact")
-    return ModelVersion.model_validate({**values, "aliases": list(aliases), "links": links})
-
-
-def _to_alias(row: AliasRow) -> Alias:
-    return Alias(alias=row.alias, name=row.name, version=row.version, updated_at=row.updated_at)
+def _publish_again(row: ModelRow, again: ModelRow) -> None:
+    """Let a version that was not usable be used, or be proven anew by the card that came now."""
+    if row.state == ModelState.READY.value:
+        return
+    if again.state == ModelState.READY.value or row.state == ModelState.REFUSED.value:
+        row.state, row.card, row.problem = again.state, again.card, None
+        row.lease_until = row.enqueued_at = None
+        # As many tries as a new one; one that is under way may write no more.
+        row.attempt += 1
+        row.forgiven = row.attempt

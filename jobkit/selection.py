@@ -28,6 +28,8 @@ def resolve_method(registry: Registry, method: Method) -> ResolvedModel:
     ModelKindError
         If it means a model of the other kind, one learned for another recipe than the method's, or one that is taken
         as it is while the method says how long to fit it.
+    ModelNotProvenError, ModelRefusedError
+        If the version is not to be used.
     NoNetworkError
         If a network is asked for while none is registered.
     """
@@ -53,7 +55,7 @@ def resolve_method(registry: Registry, method: Method) -> ResolvedModel:
 
 
 def _of_kind(registry: Registry, reference: str, kind: ModelKind) -> ModelVersion:
-    version = registry.resolve(reference)
+    version = registry.usable(reference)
     if version.kind != kind:
         raise ModelKindError(
             f"{version.name}@{version.version} is of kind {version.kind}; this method needs kind {kind}"
@@ -71,6 +73,12 @@ def _check_recipe(version: ModelVersion, recipe: Recipe) -> None:
 
 
 def _pinned(reference: str, version: ModelVersion) -> ResolvedModel:
+    deprecated = version.deprecated
     return ResolvedModel(
-        requested=reference, kind=version.kind, name=version.name, version=version.version, sha256=version.sha256
+        requested=reference,
+        kind=version.kind,
+        name=version.name,
+        version=version.version,
+        sha256=version.sha256,
+        deprecated_at=None if deprecated is None else deprecated.at,
     )

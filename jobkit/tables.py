@@ -117,7 +117,7 @@ class EventRow(Base):
 
 
 class ModelRow(Base):
-    """One immutable version of a model."""
+    """One immutable version of a model, and its proof: `attempt` fences and `forgiven` forgives as in an analysis."""
 
     __tablename__ = "models"
     name: Mapped[str] = mapped_column(String(64), primary_key=True)
@@ -128,9 +128,26 @@ class ModelRow(Base):
     size_bytes: Mapped[int] = mapped_column(BigInteger)
     key: Mapped[str] = mapped_column(String(200))
     card: Mapped[dict[str, Any]]
+    state: Mapped[str] = mapped_column(String(32), default="proving")
+    problem: Mapped[dict[str, Any] | None]
+    attempt: Mapped[int] = mapped_column(default=0)
+    forgiven: Mapped[int] = mapped_column(default=0)
+    worker: Mapped[str | None] = mapped_column(String(128))
+    lease_until: Mapped[datetime | None]
+    enqueued_at: Mapped[datetime | None]
+    deprecated_at: Mapped[datetime | None]
+    deprecation: Mapped[str | None] = mapped_column(String(500))
     created_at: Mapped[datetime]
     checked_at: Mapped[datetime | None]
     __table_args__ = (UniqueConstraint("name", "sha256"),)
+
+
+class DeletedModelRow(Base):
+    """The highest version of a name that was deleted: numbers up to it never come back."""
+
+    __tablename__ = "deleted_models"
+    name: Mapped[str] = mapped_column(String(64), primary_key=True)
+    version: Mapped[int]
 
 
 class AliasRow(Base):

@@ -66,7 +66,8 @@ def check_parts(data: bytes, name: str) -> None:
 
 
 def _check_field(kind: str, number: int, value: int | memoryview, name: str) -> None:
-    if kind == "node" and number == _NODE_DOMAIN and value not in _STANDARD_DOMAINS:
+    domain = bytes(value) if kind == "node" and number == _NODE_DOMAIN and isinstance(value, memoryview) else b""
+    if domain not in _STANDARD_DOMAINS:
         raise ModelError(f"{name}: the network uses operators that are not ONNX's own")
     is_outside = number == _TENSOR_EXTERNAL_DATA or (number == _TENSOR_DATA_LOCATION and value != 0)
     if kind == "tensor" and is_outside:

@@ -76,7 +76,7 @@ class _Server(uvicorn.Server):
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
         """Stop serving."""
         services = cast(FastAPI, self.config.app).state.services
-        for held in (services.streams, services.job_waiters, services.mesh_waiters):
+        for held in (services.streams, services.job_waiters, services.mesh_waiters, services.model_waiters):
             held.close()
         await super().shutdown(sockets)
 

@@ -24,6 +24,7 @@ from service.routes import (
     jobs,
     meshes,
     metrics,
+    model_lifetime,
     models,
     repairs,
     results,
@@ -64,7 +65,8 @@ def create_app(settings: Settings, telemetry: Telemetry | None = None) -> FastAP
     app.state.readiness = Kept(KEPT_S)
     app.state.documents = {}
     app.state.telemetry = telemetry or Telemetry()
-    modules = (meshes, jobs, events, results, repairs, retention, models, webhooks, deliveries, health, metrics)
+    about_jobs = (meshes, jobs, events, results, repairs, retention)
+    modules = (*about_jobs, models, model_lifetime, webhooks, deliveries, health, metrics)
     routers = [module.router for module in modules]
     for router in routers:
         app.include_router(router)
@@ -90,6 +92,7 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
             yield
             services.job_waiters.close()
             services.mesh_waiters.close()
+            services.model_waiters.close()
     finally:
         app.state.registry.unregister(collector)
         services.close()

@@ -11,7 +11,7 @@ from jobkit.attempts import AT_WORK
 from jobkit.clock import shared_now
 from jobkit.damage import OBJECT_KINDS
 from jobkit.database import Database
-from jobkit.schema import DeliveryState, JobState, MeshState
+from jobkit.schema import DeliveryState, JobState, MeshState, ModelState
 from jobkit.scrub_due import oldest_look
 from jobkit.tables import (
     AliasRow,
@@ -69,6 +69,8 @@ def _states(session: Session) -> Iterator[Metric]:
     mesh_states = [state.value for state in MeshState]
     yield _by("quadpatch_jobs", "Jobs that are kept, by state.", _counts(session, JobRow.state), job_states)
     yield _by("quadpatch_meshes", "Meshes that are kept, by state.", _counts(session, MeshRow.state), mesh_states)
+    models, proof_states = _counts(session, ModelRow.state), [state.value for state in ModelState]
+    yield _by("quadpatch_models", "Versions of models, by state.", models, proof_states)
     deliveries, states = _counts(session, DeliveryRow.state), [state.value for state in DeliveryState]
     yield _by("quadpatch_webhook_deliveries", "Messages to subscribers that are kept, by state.", deliveries, states)
 
@@ -82,6 +84,8 @@ def _waiting(session: Session, now: datetime) -> Iterator[Metric]:
     working = session.scalars(select(func.count()).where(JobRow.state.in_(AT_WORK))).one()
     analysed = (MeshRow.state == MeshState.ANALYSING.value) & (MeshRow.lease_until >= now)
     inspecting = session.scalars(select(func.count()).where(analysed)).one()
+    n_models, first_model = _count_and_first(session, ModelRow.created_at, _is_proving() & ~_is_leased(now))
+    proven = session.scalars(select(func.count()).where(_is_proving() & _is_leased(now))).one()
     length = GaugeMetricFamily("quadpatch_queue_length", "Tasks that wait for a worker, by kind.", labels=["kind"])
     oldest = GaugeMetricFamily(
         "quadpatch_queue_oldest_age_seconds", "How long the longest of them has waited; 0: none waits.", labels=["kind"]
@@ -90,11 +94,20 @@ def _waiting(session: Session, now: datetime) -> Iterator[Metric]:
     for kind, n_waiting, first, n_working in (
         ("repair", n_jobs, first_job, working),
         ("analysis", n_meshes, first_mesh, inspecting),
+        ("proof", n_models, first_model, proven),
     ):
         length.add_metric([kind], n_waiting)
         oldest.add_metric([kind], 0 if first is None else max(0.0, (now - first).total_seconds()))
         at_work.add_metric([kind], n_working)
     yield from (length, oldest, at_work)
+
+
+def _is_proving() -> ColumnElement[bool]:
+    return ModelRow.state == ModelState.PROVING.value
+
+
+def _is_leased(now: datetime) -> ColumnElement[bool]:
+    return ModelRow.lease_until.is_not(None) & (ModelRow.lease_until >= now)
 
 
 def _leases(session: Session, now: datetime, lease_s: float) -> Iterator[Metric]:

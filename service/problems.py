@@ -10,7 +10,7 @@ from typing import Any
 from starlette.requests import Request
 from starlette.responses import JSONResponse
 
-from jobkit import errors
+from jobkit import errors, model_errors
 from jobkit.schema import PROBLEM_MEDIA_TYPE, FieldError, Problem
 from jobkit.text import printable
 
@@ -32,6 +32,7 @@ STATUS_BY_ERROR: Mapping[type[errors.JobkitError], HTTPStatus] = {
 _RETRY_LATER = (
     errors.MeshNotReadyError,
     errors.JobNotFinishedError,
+    model_errors.ModelNotProvenError,
     errors.QueueUnavailableError,
     errors.DatabaseUnavailableError,
     errors.StoreUnavailableError,

@@ -14,6 +14,7 @@ from jobkit.deliveries import Deliveries
 from jobkit.estimates import Estimates
 from jobkit.jobs import Jobs
 from jobkit.meshes import Meshes
+from jobkit.proofs import Proofs
 from jobkit.queue import TaskQueue
 from jobkit.registry import Registry
 from jobkit.settings import Settings
@@ -37,6 +38,7 @@ class Services:
     attempts: Attempts
     meshes: Meshes
     registry: Registry
+    proofs: Proofs
     webhooks: Webhooks
     deliveries: Deliveries
     estimates: Estimates
@@ -44,6 +46,7 @@ class Services:
     board: Board
     job_waiters: Waiters
     mesh_waiters: Waiters
+    model_waiters: Waiters
 
     def close(self) -> None:
         """Close all connections."""
@@ -66,6 +69,7 @@ def open_services(settings: Settings) -> Services:
     seed_shipped(registry, settings.models_dir or shipped_models_folder())
     redis_url = settings.redis_url.get_secret_value()
     queue = TaskQueue(redis_url, settings.queue_name, settings.job_time_limit_s)
+    proofs = Proofs(database)
     jobs, meshes = Jobs(database, settings.job_retention_days), Meshes(database, settings.mesh_retention_days)
     estimates = Estimates(database)
     return Services(
@@ -77,6 +81,7 @@ def open_services(settings: Settings) -> Services:
         Attempts(database),
         meshes,
         registry,
+        proofs,
         Webhooks(database, partial(check_url, allowed=settings.webhook_networks)),
         Deliveries(database),
         estimates,
@@ -84,6 +89,7 @@ def open_services(settings: Settings) -> Services:
         Board(jobs, estimates),
         Waiters(jobs.unfinished, settings.max_waiters),
         Waiters(meshes.analysing, settings.max_waiters),
+        Waiters(proofs.proving, settings.max_waiters),
     )
 
 

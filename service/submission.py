@@ -7,7 +7,7 @@ from jobkit.errors import MeshNotReadyError, MeshRejectedError, OverLimitError, 
 from jobkit.idempotency import Idempotency
 from jobkit.jobs import NewJob
 from jobkit.logs import current_request_id
-from jobkit.reconcile import submit_analysis, submit_job
+from jobkit.reconcile import submit_analysis, submit_job, submit_proof
 from jobkit.schema import Job, JobSpec, Limits, Mesh, MeshFacts, MeshState, Plan, ResolvedModel
 from jobkit.selection import resolve_method
 from jobkit.settings import Settings
@@ -47,7 +47,7 @@ def submit(services: Services, submission: Submission) -> tuple[Job, bool]:
     ------
     MeshNotFoundError, MeshRejectedError, UnknownHoleError
         If the mesh can't be repaired as asked.
-    ModelNotFoundError, ModelKindError, NoNetworkError
+    ModelNotFoundError, ModelKindError, NoNetworkError, ModelNotProvenError, ModelRefusedError
         If the method's model can't be used.
     OverLimitError
         If the spec asks for more time or memory than the service grants.
@@ -89,6 +89,14 @@ def request_analysis(services: Services, mesh_id: str) -> None:
         submit_analysis(services.database, services.queue, mesh_id)
     except QueueUnavailableError as error:
         _logger.warning("mesh %s waits for the queue: %s", mesh_id, error)
+
+
+def request_proof(services: Services, reference: str) -> None:
+    """Put a published version of a model into the queue for its proof."""
+    try:
+        submit_proof(services.database, services.queue, reference)
+    except QueueUnavailableError as error:
+        _logger.warning("model %s waits for the queue: %s", reference, error)
 
 
 def _check(services: Services, spec: JobSpec) -> ResolvedModel:

@@ -31,10 +31,10 @@ PreferHeader = Annotated[
 ]
 
 
-def preferred_wait_s(prefer: str | None) -> float:
-    """Return the seconds that a Prefer header asks to wait; 0 where it does not."""
+def preferred_wait_s(prefer: str | None, otherwise: float = 0.0) -> float:
+    """Return the seconds that a Prefer header asks to wait; `otherwise` where it does not ask."""
     match = _WAIT.search(prefer or "")
-    return float(match[1]) if match else 0.0
+    return float(match[1]) if match else otherwise
 
 
 def note_applied(response: Response, prefer: str | None) -> None:

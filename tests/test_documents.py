@@ -84,8 +84,15 @@ def test_every_code_of_the_method_stands_in_the_table() -> None:
 def test_every_code_that_service_and_worker_write_out_stands_in_the_table() -> None:
     codes = codes_in_calls("service", "ProblemError")
     codes |= codes_in_calls("worker", "Failure", "JobError")
-    codes |= codes_in_calls("jobkit", "JobError", "MeshProblem")
-    assert {"unauthorized", "internal_error", "engine_crashed", "worker_lost", "analysis_failed"} <= codes
+    codes |= codes_in_calls("jobkit", "JobError", "MeshProblem", "ModelProblem")
+    assert {
+        "proof_failed",
+        "unauthorized",
+        "internal_error",
+        "engine_crashed",
+        "worker_lost",
+        "analysis_failed",
+    } <= codes
     assert codes <= set(rows(read("docs/api.md")))
 
 

@@ -10,6 +10,7 @@ from jobkit.schema import ModelVersion
 from jobkit.settings import load_settings
 from jobkit.store import open_store
 from quadpatch.errors import OptionError
+from quadpatch.proof import prove_model
 
 
 def parse_reference(text: str) -> tuple[str, int | None]:
@@ -36,7 +37,10 @@ def publish(name: str, version: int | None, path: Path) -> ModelVersion:
     ------
     JobkitError
         If a setting is wrong, the name or the version is taken, or the registry can't be reached.
+    ModelError
+        If the file is no model that a repair can use.
     """
+    prove_model(path)
     settings = load_settings()
     settings.data_dir.mkdir(parents=True, exist_ok=True)
     database = Database(settings.effective_database_url)

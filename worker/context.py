@@ -17,6 +17,7 @@ from jobkit.attempts import Attempts
 from jobkit.database import Database
 from jobkit.jobs import Jobs
 from jobkit.meshes import Meshes
+from jobkit.proofs import Proofs
 from jobkit.queue import TaskQueue
 from jobkit.registry import Registry
 from jobkit.settings import Settings
@@ -63,6 +64,11 @@ class Context:
     def meshes(self) -> Meshes:
         """Uploaded meshes."""
         return Meshes(self.database)
+
+    @property
+    def proofs(self) -> Proofs:
+        """Proofs of models."""
+        return Proofs(self.database)
 
     @property
     def registry(self) -> Registry:

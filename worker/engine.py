@@ -1,7 +1,8 @@
-"""The engine child: reads a mesh, repairs or inspects it, and tells how it went.
+"""The engine child: repairs or inspects a mesh, or proves a model, and tells how it went.
 
-Meshes come from strangers and are parsed here and nowhere else, under limits, in a process that may be killed at any
-moment. It talks to the worker through one pipe, see `worker.engine_reports`. Results lie in the request's folder.
+Meshes and models come from strangers and are parsed here and nowhere else, under limits, in a process that may be
+killed at any moment. It talks to the worker through one pipe, see `worker.engine_reports`. Results lie in the
+request's folder.
 """
 
 import json
@@ -12,6 +13,7 @@ from typing import Any
 from quadpatch.drawing import add_picture
 from quadpatch.files import write_whole
 from quadpatch.options import RepairOptions
+from quadpatch.proof import prove_model
 from quadpatch.repair import inspect_file, repair_and_keep
 from worker.engine_frame import run_framed
 from worker.engine_reports import Reporter
@@ -40,7 +42,16 @@ def _inspect(folder: Path, request: EngineRequest, reporter: Reporter) -> None:
     _write_json(folder / FACTS_NAME, inspect_file(folder / request.source))
 
 
-_TASKS: dict[str, Callable[[Path, EngineRequest, Reporter], None]] = {"repair": _repair, "inspect": _inspect}
+def _prove(_folder: Path, request: EngineRequest, reporter: Reporter) -> None:
+    reporter.progress("prove", 0.0)
+    prove_model(request.model, request.model_card)
+
+
+_TASKS: dict[str, Callable[[Path, EngineRequest, Reporter], None]] = {
+    "repair": _repair,
+    "inspect": _inspect,
+    "prove": _prove,
+}
 
 
 def _write_json(path: Path, values: dict[str, Any]) -> None:

@@ -1,7 +1,7 @@
 """What a worker reads out of the queue: a task's name and one id, and nothing else that RQ would act on.
 
 An entry of RQ names functions by their dotted paths: the task, callbacks, an object to call it on. RQ imports and calls
-them, so an entry with `os.system` would be a command. Here a name is looked up among the two tasks instead. Callbacks,
+them, so an entry with `os.system` would be a command. Here a name is looked up among the tasks instead. Callbacks,
 webhooks, retries and repeats of an entry are left unread, for the same reason; the database decides about retries.
 """
 
@@ -12,11 +12,13 @@ from typing import Any
 from rq.exceptions import NoSuchJobError
 from rq.job import Job
 
-from jobkit.queue import INSPECT_MESH, RUN_JOB
-from worker.jobs import inspect_mesh, run_job
+from jobkit.ids import MODEL_NAME
+from jobkit.queue import INSPECT_MESH, PROVE_MODEL, RUN_JOB
+from worker.jobs import inspect_mesh, prove_model, run_job
 
-TASKS: dict[str, Callable[[str], None]] = {RUN_JOB: run_job, INSPECT_MESH: inspect_mesh}
-_ID = re.compile(r"[0-9A-Za-z_-]{1,100}")
+TASKS: dict[str, Callable[[str], None]] = {RUN_JOB: run_job, INSPECT_MESH: inspect_mesh, PROVE_MODEL: prove_model}
+# Of a job or a mesh, or the reference to a version of a model.
+_ID = re.compile(rf"[0-9A-Za-z_-]{{1,100}}|{MODEL_NAME}@[1-9][0-9]{{0,9}}")
 
 
 class UnknownTaskError(Exception):

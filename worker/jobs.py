@@ -1,4 +1,4 @@
-"""The two tasks that the queue names by their dotted path.
+"""The tasks that the queue names by their dotted path.
 
 A task that comes twice, or too late, does nothing: only one can start an attempt.
 """
@@ -14,6 +14,7 @@ from jobkit.reconcile import GRACE_S
 from jobkit.schema import JobState
 from worker.analyses import analyse
 from worker.context import Context, current_context
+from worker.proofs import prove
 from worker.repairs import repair
 
 _PAUSE_S = 0.5
@@ -58,6 +59,18 @@ def inspect_mesh(mesh_id: str) -> None:
         return
     with log_about(mesh_id=mesh_id, attempt=analysis.attempt):
         analyse(context, analysis)
+
+
+def prove_model(reference: str) -> None:
+    """Prove a published version of a model, `name@version`."""
+    context = current_context()
+    try:
+        proof = _patiently(context, lambda: context.proofs.start(reference, context.name, context.settings.lease_s))
+    except (StaleAttemptError, NotFoundError, DatabaseUnavailableError) as error:
+        _log.info("nothing to do: %s", error)
+        return
+    with log_about(model=reference, attempt=proof.attempt):
+        prove(context, proof)
 
 
 def _patiently(context: Context, start: Callable[[], T]) -> T:

@@ -9,7 +9,7 @@ from typing import Any
 from jobkit.digests import sha256_of
 from jobkit.errors import NotFoundError
 from jobkit.registry import Registry
-from jobkit.schema import ResolvedModel
+from jobkit.schema import Deprecation, ResolvedModel
 from jobkit.store import CHUNK_BYTES, ObjectStore
 from worker.failures import EngineFailedError, Failure
 
@@ -64,6 +64,13 @@ def network_card(model: ResolvedModel, registry: Registry) -> dict[str, Any] | N
     if card.patch_resolution is None:
         return None
     return {**card.extra, **card.model_dump(exclude={"extra"}, exclude_defaults=True), "kind": "autoencoder"}
+
+
+def deprecation(model: ResolvedModel, registry: Registry) -> Deprecation | None:
+    """Return what is said against the use of the version, None where nothing is; raise ModelNotFoundError."""
+    if model.name is None or model.version is None:
+        return None
+    return registry.resolve(f"{model.name}@{model.version}").deprecated
 
 
 def _fetch(store: ObjectStore, key: str, sha256: str, path: Path) -> None:

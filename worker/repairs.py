@@ -27,11 +27,11 @@ from quadpatch.optional import failure_of
 from worker.context import Context
 from worker.failures import OUTAGE_DELAY_S, Failure, StopReason
 from worker.limits import EngineLimits
-from worker.models import model_argument, network_card
+from worker.models import deprecation, model_argument, network_card
 from worker.outcomes import folder_with_mesh, outcome_of
 from worker.pulse import PATIENCE_S, Pulse, Vitals
 from worker.request import LOG_NAME, PREVIEW_NAME
-from worker.results import drop_result, note_lost_picture, stage_seconds, store_result
+from worker.results import drop_result, note_deprecation, note_lost_picture, stage_seconds, store_result
 from worker.spec import repair_request
 from worker.watch import Observer, log_last_words, run_engine
 
@@ -114,6 +114,7 @@ def _work(context: Context, started: StartedAttempt, pulse: Pulse) -> _Repaired:
     job, began = started.job, time.monotonic()
     source = context.meshes.source(job.mesh_id)
     model = model_argument(job.model, context.registry, context.store, context.cache_folder)
+    note = deprecation(job.model, context.registry)
     settings = context.settings
     limits = EngineLimits(settings.job_time_limit_s, settings.job_memory_limit_mb, n_threads=context.n_threads)
     request = replace(
@@ -127,6 +128,8 @@ def _work(context: Context, started: StartedAttempt, pulse: Pulse) -> _Repaired:
             note_lost_picture(folder, failure)
         elif request.with_preview and not (folder / PREVIEW_NAME).exists():
             log_last_words(folder / LOG_NAME)
+        if note is not None:
+            note_deprecation(folder, f"{job.model.name}@{job.model.version}", note.reason)
         result = store_result(folder, request, started.attempt, context.store, time.monotonic() - began)
         return _Repaired(result, stage_seconds(folder, job.spec.method.method))
 

@@ -32,9 +32,9 @@ class EngineRequest:
 
     Attributes
     ----------
-    task : "repair" or "inspect"
+    task : "repair", "inspect" or "prove"
     source : str
-        Path of the mesh file in the request's folder.
+        Path of the mesh file in the request's folder; empty where a model is proven.
     limits : EngineLimits
     output : str
         Name of the repaired file.
@@ -48,7 +48,7 @@ class EngineRequest:
         Whether to draw a before/after picture.
     """
 
-    task: Literal["repair", "inspect"]
+    task: Literal["repair", "inspect", "prove"]
     source: str
     limits: EngineLimits
     output: str = ""

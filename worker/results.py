@@ -68,6 +68,11 @@ def note_lost_picture(folder: Path, failure: Failure) -> None:
     _add_warning(folder, f"there is no picture: {failure.message}")
 
 
+def note_deprecation(folder: Path, reference: str, reason: str) -> None:
+    """Write into the report that the model should be used no more."""
+    _add_warning(folder, f"the model {reference} is deprecated" + (f": {reason}" if reason else ""))
+
+
 def _store_preview(folder: Path, attempt: Attempt, store: ObjectStore) -> list[ResultFile]:
     """Store the picture where there is one; a repair whose picture can't be stored is still a repair."""
     stored: list[ResultFile] = []

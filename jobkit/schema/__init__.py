@@ -20,11 +20,14 @@ from jobkit.schema.meshes import BoundingBox, Hole, Mesh, MeshFacts, MeshLinks, 
 from jobkit.schema.models import (
     Alias,
     AliasTarget,
+    Deprecation,
+    DeprecationReason,
     Model,
     ModelCard,
     ModelKind,
     ModelLinks,
     ModelList,
+    ModelProblem,
     ModelVersion,
     ResolvedModel,
 )
@@ -51,7 +54,7 @@ from jobkit.schema.spec import (
     RepairSpec,
     SmoothMethod,
 )
-from jobkit.schema.states import TRANSITIONS, JobState, MeshState
+from jobkit.schema.states import TRANSITIONS, JobState, MeshState, ModelState
 from jobkit.schema.webhooks import (
     Delivery,
     DeliveryDetail,
@@ -87,6 +90,8 @@ __all__ = [
     "DeliveryPage",
     "DeliveryState",
     "DeliveryTry",
+    "Deprecation",
+    "DeprecationReason",
     "DictionaryMethod",
     "Event",
     "EventPage",
@@ -121,6 +126,8 @@ __all__ = [
     "ModelKind",
     "ModelLinks",
     "ModelList",
+    "ModelProblem",
+    "ModelState",
     "ModelVersion",
     "NewWebhook",
     "Output",

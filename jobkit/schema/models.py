@@ -4,7 +4,8 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
-from jobkit.schema.base import AliasName, ModelName, ModelReference, Moment, Request, Response, Sha256
+from jobkit.schema.base import TEXT_PATTERN, AliasName, ModelName, ModelReference, Moment, Request, Response, Sha256
+from jobkit.schema.states import ModelState
 
 ModelKind = Literal["dictionary", "autoencoder"]
 ShortText = Annotated[str, Field(max_length=2000)]
@@ -43,6 +44,35 @@ class ModelLinks(Response):
     artifact: str = Field(description="Its bytes.", examples=["/v1/models/general-dictionary/versions/1/artifact"])
 
 
+class ModelProblem(Response):
+    """Why a model version was refused."""
+
+    code: str = Field(description="Stable code.", examples=["unusable_model"])
+    message: str = Field(
+        description="A sentence for people, which says which check failed.",
+        examples=["copy@1 answers 1 patches by values that are not finite"],
+    )
+
+
+class Deprecation(Response):
+    """That a model version should be used no more."""
+
+    at: Moment = Field(description="Since when, RFC 3339.")
+    reason: str = Field(default="", description="A sentence for people.", examples=["parts@2 closes thin ribs better"])
+
+
+class DeprecationReason(Request):
+    """Why a model version should be used no more."""
+
+    reason: str = Field(
+        default="",
+        max_length=500,
+        pattern=TEXT_PATTERN,
+        description="A sentence for people.",
+        examples=["parts@2 closes thin ribs better"],
+    )
+
+
 class ModelVersion(Response):
     """One immutable version of a model."""
 
@@ -53,6 +83,14 @@ class ModelVersion(Response):
     size_bytes: int = Field(ge=0, description="Size of the artifact, in bytes.", examples=[1_180_208])
     format: Literal["safetensors", "onnx"] = Field(description="Format of the artifact.", examples=["safetensors"])
     card: ModelCard = Field(description="What is known about it.")
+    state: ModelState = Field(
+        default=ModelState.READY,
+        description="`proving`: a worker is yet to open it; `ready`: jobs and aliases may use it; `refused`: they may "
+        "not, `problem` says why.",
+        examples=["ready"],
+    )
+    problem: ModelProblem | None = Field(default=None, description="Set once the state is `refused`.")
+    deprecated: Deprecation | None = Field(default=None, description="Set where it should be used no more.")
     aliases: list[AliasName] = Field(default_factory=list, description="Aliases that point here.")
     created_at: Moment = Field(description="When it was published, RFC 3339.")
     links: ModelLinks = Field(description="Paths on this service.")
@@ -62,8 +100,17 @@ class Model(Response):
     """A model with all its versions."""
 
     name: ModelName
-    latest: int = Field(ge=1, description="The highest version.", examples=[2])
+    latest: int = Field(
+        ge=1,
+        description="The version that the name alone means: the highest that is ready and not deprecated.",
+        examples=[2],
+    )
     versions: list[ModelVersion] = Field(description="Newest first.")
+    next_cursor: int | None = Field(
+        default=None,
+        description="Pass as `cursor` to `GET /v1/models/{name}` for older versions; null where there are none.",
+        examples=[12],
+    )
 
 
 class Alias(Response):
@@ -82,10 +129,13 @@ class AliasTarget(Request):
 
 
 class ModelList(Response):
-    """All models and aliases."""
+    """One page of models."""
 
-    models: list[Model] = Field(description="By name.")
-    aliases: list[Alias] = Field(description="By alias.")
+    models: list[Model] = Field(description="By name, each with its newest versions.")
+    aliases: list[Alias] = Field(description="Aliases that point to the models of this page, by alias.")
+    next_cursor: str | None = Field(
+        default=None, description="Pass as `cursor` to go on; null on the last page.", examples=["general-residual"]
+    )
 
 
 class ResolvedModel(Response):
@@ -100,3 +150,6 @@ class ResolvedModel(Response):
     name: str | None = Field(default=None, description="Name of the version.", examples=["general-dictionary"])
     version: int | None = Field(default=None, description="Its number.", examples=[1])
     sha256: str | None = Field(default=None, description="sha256 of its artifact, in hex.")
+    deprecated_at: Moment | None = Field(
+        default=None, description="Since when it should be used no more, RFC 3339; null: it may be."
+    )

@@ -1,4 +1,4 @@
-r"""The life of a job and of a mesh, written once.
+r"""The life of a job, of a mesh and of a model version, written once.
 
 ::
 
@@ -60,3 +60,11 @@ class MeshState(StrEnum):
     ANALYSING = "analysing"
     READY = "ready"
     REJECTED = "rejected"
+
+
+class ModelState(StrEnum):
+    """Where the proof of a model version stands."""
+
+    PROVING = "proving"
+    READY = "ready"
+    REFUSED = "refused"

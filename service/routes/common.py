@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from datetime import datetime
 from http import HTTPStatus
 from typing import Annotated, Any
 
@@ -32,6 +33,7 @@ WebhookIdPath = Annotated[
 ModelNamePath = Annotated[
     str, Path(pattern=NAME_PATTERN, description="Name of a model.", examples=["general-dictionary"])
 ]
+AliasPath = Annotated[str, Path(pattern=NAME_PATTERN, description="An alias.", examples=["candidate"])]
 VersionPath = Annotated[int, Path(ge=1, le=2**31 - 1, description="Number of a version.", examples=[1])]
 IdempotencyKey = Annotated[
     str | None,
@@ -122,6 +124,12 @@ def described_header(description: str) -> dict[str, Any]:
     return {"description": description, "required": True, "schema": {"type": "string"}}
 
 
+def deprecation_described() -> dict[str, Any]:
+    """Document the header of a version that should be used no more."""
+    text = "Since when the model version is deprecated (RFC 9745); only where it is."
+    return {"Deprecation": {"description": text, "schema": {"type": "string"}}}
+
+
 def linked(operation: str, expression: str, parameter: str) -> dict[str, Any]:
     """Document which operation follows from a response, and where its parameter stands."""
     return {"operationId": operation, "parameters": {parameter: expression}}
@@ -137,6 +145,8 @@ def job_response(job: Job, status: HTTPStatus | None = None, **headers: str) -> 
     """Write a job: 200 once it has ended, 202 before, with what a poller needs."""
     if not job.state.is_terminal:
         headers["Retry_After"] = RETRY_AFTER_S
+    if job.model.deprecated_at is not None:
+        headers |= deprecation_header(job.model.deprecated_at)
     usual = HTTPStatus.OK if job.state.is_terminal else HTTPStatus.ACCEPTED
     return json_response(job, status or usual, ETag=job_etag(job), Location=job.links.self, **headers)
 
@@ -144,6 +154,11 @@ def job_response(job: Job, status: HTTPStatus | None = None, **headers: str) -> 
 def job_etag(job: Job) -> str:
     """Return the entity tag of a job."""
     return etag_of(job.revision, job.queue_position, job.pinned)
+
+
+def deprecation_header(since: datetime) -> dict[str, str]:
+    """Return the header that tells of a deprecation (RFC 9745)."""
+    return {"Deprecation": f"@{int(since.timestamp())}"}
 
 
 def etag_of(revision: int, queue_position: int | None, is_pinned: bool) -> str:

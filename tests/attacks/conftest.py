@@ -1,5 +1,5 @@
 """The app in this process, as the tests of the service have it."""
 
-from tests.service.conftest import client, finish, job_id, mesh_id, services
+from tests.service.conftest import client, finish, job_id, mesh_id, publish, services
 
-__all__ = ["client", "finish", "job_id", "mesh_id", "services"]
+__all__ = ["client", "finish", "job_id", "mesh_id", "publish", "services"]

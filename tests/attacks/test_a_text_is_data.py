@@ -19,7 +19,7 @@ from jobkit.deliveries import Deliveries
 from jobkit.errors import JobkitError
 from jobkit.logs import JsonFormatter, TextFormatter
 from jobkit.network_header import read_network_card
-from jobkit.schema import DeliveryState, NewWebhook
+from jobkit.schema import DeliveryState, ModelVersion, NewWebhook
 from jobkit.settings import Settings
 from jobkit.strict_json import MOST_LEVELS, StrictJsonError, read_json
 from jobkit.text import LONGEST_MESSAGE, has_surrogate, printable
@@ -222,10 +222,13 @@ def test_the_poller_of_all_streams_outlives_a_look_that_fails(
 
 
 def test_lists_of_models_and_webhooks_go_on_too(
-    client: TestClient, spoil: Callable[..., None], dictionary_bytes: Callable[[int], bytes]
+    client: TestClient,
+    spoil: Callable[..., None],
+    dictionary_bytes: Callable[[int], bytes],
+    publish: Callable[..., ModelVersion],
 ) -> None:
     for seed in (1, 2):
-        assert client.post("/v1/models/mine/versions", content=dictionary_bytes(seed)).status_code == 201
+        publish("mine", dictionary_bytes(seed))
     spoil("models", "card", json.dumps({"description": ["none"]}), "name = 'mine' AND version = 1")
     spoil("models", "card", json.dumps({"description": "\ud800"}), "name = 'mine' AND version = 2")
     (mine,) = [model for model in client.get("/v1/models").json()["models"] if model["name"] == "mine"]

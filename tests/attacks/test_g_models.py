@@ -1,12 +1,14 @@
 """Letter G: what a published model, its card and an alias may be."""
 
 import json
+import random
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
 from onnx import TensorProto, helper
+from sqlalchemy import text
 from starlette.testclient import TestClient
 
 from jobkit.database import Database
@@ -14,8 +16,11 @@ from jobkit.errors import ModelKindError, UnusableModelError
 from jobkit.jobs import Jobs, NewJob
 from jobkit.meshes import Meshes
 from jobkit.model_header import MAX_CARD_BYTES
-from jobkit.registry import Registry
-from jobkit.schema import JobSpec, ResolvedModel
+from jobkit.overdue import TimeLimits
+from jobkit.queue import TaskQueue, model_entry
+from jobkit.reconcile import reconcile
+from jobkit.registry import MODEL_PREFIX, Registry
+from jobkit.schema import JobSpec, ModelState, ResolvedModel
 from jobkit.settings import Settings
 from jobkit.store import ObjectStore
 from quadpatch.model_file import SHIPPED_MODELS
@@ -23,7 +28,7 @@ from service.app import create_app
 from tests.integration.conftest import ply_bytes, punched_relief
 from tests.quadpatch.inpainters.test_autoencoder import N, write_network
 from tests.worker.test_repairs import working
-from worker.jobs import run_job
+from worker.jobs import prove_model, run_job
 
 CARD = {"patch_resolution": N, "recipe": "paper", "height_low": -0.5, "height_high": 0.5}
 
@@ -39,7 +44,8 @@ def test_the_card_beside_a_network_reaches_the_engine(
     network = write_network(tmp_path / "copy.onnx", None, 1)
     with TestClient(create_app(settings), base_url="http://127.0.0.1") as client:
         files = {"artifact": ("copy.onnx", network.read_bytes()), "card": (None, json.dumps(CARD), "application/json")}
-        assert client.post("/v1/models/copy/versions", files=files).status_code == 201
+        answer = client.post("/v1/models/copy/versions", files=files, headers={"Prefer": "wait=0"})
+        assert answer.status_code == 202
     with store.writer("meshes") as writer:
         writer.write(ply_bytes(*punched_relief(40, 1)))
         mesh = Meshes(database).add(writer.commit(), "scan.ply", "ply")[0]
@@ -48,6 +54,8 @@ def test_the_card_beside_a_network_reaches_the_engine(
     pinned = ResolvedModel(requested="copy@1", kind="autoencoder", name="copy", version=1)
     job = Jobs(database).create(NewJob(spec, pinned, 3))[0]
     with working(settings, database, store) as context:
+        prove_model("copy@1")
+        assert context.registry.usable("copy@1").version == 1
         run_job(job.id)
         ended = context.jobs.get(job.id)
     assert ended.state.has_result, ended.error
@@ -71,7 +79,7 @@ def test_a_card_that_would_break_the_list_of_models_is_refused(
     network = write_network(tmp_path / "copy.onnx", None, 1)
     with pytest.raises(UnusableModelError):
         registry.publish_file("copy", network, {**CARD, **card})
-    assert registry.list_all().models == []
+    assert registry.page(100).models == []
 
 
 @pytest.mark.parametrize("alias", ["default", "default-network", "ours"])
@@ -125,7 +133,7 @@ def test_what_only_begins_like_a_network_is_not_published(registry: Registry, tm
     path.write_bytes(NO_NETWORKS[case])
     with pytest.raises(UnusableModelError):
         registry.publish_file("junk", path, CARD)
-    assert registry.list_all().models == []
+    assert registry.page(100).models == []
 
 
 def test_a_network_of_standard_operators_is_published(registry: Registry, tmp_path: Path) -> None:
@@ -137,3 +145,90 @@ def test_a_network_of_standard_operators_is_published(registry: Registry, tmp_pa
 @pytest.mark.parametrize("path", sorted(SHIPPED_MODELS.glob("*.onnx")), ids=lambda path: str(path.stem))
 def test_every_network_that_ships_is_published(registry: Registry, path: Path) -> None:
     assert registry.publish_file("shipped", path)[1]
+
+
+def wide_network() -> bytes:
+    """Return what passes for a network, and answers by two channels."""
+    shapes = {"patches": ["batch", 1, N, N], "clean": ["batch", 2, N, N]}
+    values = [helper.make_tensor_value_info(name, TensorProto.FLOAT, shape) for name, shape in shapes.items()]
+    nodes = [helper.make_node("Concat", ["patches", "patches"], ["clean"], axis=1)]
+    model = helper.make_model(
+        helper.make_graph(nodes, "g", values[:1], values[1:]), opset_imports=[helper.make_opsetid("", 17)], ir_version=8
+    )
+    return bytes(model.SerializeToString())
+
+
+# A header in order, and no model behind it.
+UNPROVEN = {
+    "a graph of nothing": b"\x08\x0a\x3a\x03\x12\x01g\x42\x02\x10\x11",
+    "a vector": GOOD,
+    "an operator that is none": helper_model("", functions=False).replace(b"Identity", b"Idendity"),
+    "two channels": wide_network(),
+}
+
+
+@pytest.mark.parametrize("case", UNPROVEN)
+def test_what_a_worker_cannot_prove_is_never_used(
+    settings: Settings, database: Database, store: ObjectStore, case: str
+) -> None:
+    files = {"artifact": ("a.onnx", UNPROVEN[case]), "card": (None, json.dumps(CARD), "application/json")}
+    with TestClient(create_app(settings), base_url="http://127.0.0.1") as client:
+        published = client.post("/v1/models/copy/versions", files=files, headers={"Prefer": "wait=0"})
+        assert published.json()["state"] == "proving"
+        with working(settings, database, store):
+            prove_model("copy@1")
+        again = client.get("/v1/models/copy/versions/1").json()
+        assert (again["state"], again["problem"]["code"]) == ("refused", "unusable_model")
+        mesh = client.post("/v1/meshes?filename=a.ply", content=b"ply").json()["id"]
+        for reference in ("copy", "copy@1"):
+            job = {"mesh_id": mesh, "method": {"method": "cnn", "model": reference}}
+            assert client.post("/v1/jobs", json=job).status_code == 409
+            for alias in ("default-network", "ours"):
+                refused = client.put(f"/v1/aliases/{alias}", json={"model": reference})
+                assert (refused.status_code, refused.json()["code"]) == (409, "model_refused")
+        assert client.get("/v1/models").json()["aliases"] == []
+
+
+@pytest.mark.parametrize("n_bytes", [1, 10, 64, 200])
+def test_a_network_that_is_cut_off_or_flipped_is_refused_and_ends_no_engine(
+    settings: Settings, database: Database, store: ObjectStore, tmp_path: Path, n_bytes: int
+) -> None:
+    data = bytearray(write_network(tmp_path / "copy.onnx", CARD | {"kind": "autoencoder"}, 1).read_bytes())
+    rng = random.Random(n_bytes)
+    for _ in range(n_bytes):
+        data[rng.randrange(len(data))] = rng.randrange(256)
+    registry = Registry(database, store)
+    with store.writer(MODEL_PREFIX) as writer:
+        writer.write(bytes(data))
+        stored = writer.commit()
+    try:
+        registry.publish("copy", stored, CARD)
+    except UnusableModelError:
+        return
+    with working(settings, database, store) as context:
+        prove_model("copy@1")
+        proven = context.registry.resolve("copy@1")
+    assert proven.state is not ModelState.PROVING
+    assert proven.problem is None or proven.problem.code == "unusable_model"
+
+
+def test_versions_of_earlier_releases_are_proven_after_an_upgrade(
+    settings: Settings, database: Database, store: ObjectStore, tmp_path: Path
+) -> None:
+    database.migrate("0003")
+    columns = "name, version, kind, format, sha256, size_bytes, key, card, created_at"
+    moment = "2026-11-22 10:00:00+00:00" if database.engine.dialect.name == "postgresql" else "2026-11-22 10:00:00"
+    with store.writer(MODEL_PREFIX) as writer:
+        writer.write(b"\x08\x07")
+        stored = writer.commit()
+    with database.engine.begin() as connection:
+        row = f"'junk', 1, 'autoencoder', 'onnx', '{stored.sha256}', 2, '{stored.key}', '{{}}', '{moment}'"
+        connection.execute(text(f"INSERT INTO models ({columns}) VALUES ({row})"))
+    database.migrate()
+    queue = TaskQueue(settings.redis_url.get_secret_value(), settings.queue_name, 60)
+    assert reconcile(database, queue, TimeLimits(60.0, 60.0, 1024)).enqueued_models == 1
+    assert queue.waiting() == {model_entry("junk@1", 1)}
+    queue.close()
+    with working(settings, database, store) as context:
+        prove_model("junk@1")
+        assert context.registry.resolve("junk@1").state is ModelState.REFUSED

@@ -11,6 +11,7 @@ import pytest
 
 from jobkit.attempts import Attempts
 from jobkit.database import Database
+from jobkit.proofs import Proofs
 from jobkit.schema import JobResult, ResultFile
 from jobkit.settings import Settings
 from jobkit.store import open_store, result_key
@@ -89,10 +90,20 @@ def subscribe(url: str) -> tuple[str, str]:
     return webhook["id"], delivery["id"]
 
 
+def prove(settings: Settings, reference: str) -> None:
+    """Do what a worker does with a model that can be used."""
+    database = Database(settings.effective_database_url)
+    proofs = Proofs(database)
+    proofs.accept(proofs.start(reference, "test", 60))
+    database.close()
+
+
 def furnish(url: str, settings: Settings, dictionary: bytes) -> str:
     """Publish a model, and bring one job to its end as a worker does; return its id."""
     with httpx.Client(base_url=url, headers=HEADERS, timeout=GUARD_S) as client:
-        client.post("/v1/models/general-dictionary/versions", content=dictionary).raise_for_status()
+        path = "/v1/models/general-dictionary/versions"
+        client.post(path, content=dictionary, headers={"Prefer": "wait=0"}).raise_for_status()
+        prove(settings, "general-dictionary@1")
         client.put("/v1/aliases/default", json={"model": "general-dictionary@1"}).raise_for_status()
         mesh = client.post("/v1/meshes?filename=scan.ply", content=b"ply").raise_for_status().json()
         job_id = str(client.post("/v1/jobs", json={"mesh_id": mesh["id"]}).raise_for_status().json()["id"])

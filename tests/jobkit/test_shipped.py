@@ -47,9 +47,9 @@ def test_registering_again_changes_nothing(registry: Registry, folder: Path, dic
     (folder.parent / "own").write_bytes(dictionary_bytes(2))
     registry.publish_file("own", folder.parent / "own")
     registry.set_alias("default", "own")
-    before = registry.list_all()
+    before = registry.page(100)
     seed_shipped(registry, folder)
-    assert registry.list_all() == before
+    assert registry.page(100) == before
 
 
 def test_a_changed_file_without_a_new_number_is_left_out(

@@ -2,11 +2,12 @@
 
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 from starlette.testclient import TestClient
 
-from jobkit.schema import BoundingBox, Hole, HoleCounts, Job, JobResult, MeshFacts, ResultFile
+from jobkit.schema import BoundingBox, Hole, HoleCounts, Job, JobResult, MeshFacts, ModelVersion, ResultFile
 from jobkit.settings import Settings
 from jobkit.store import result_key
 from service.app import create_app
@@ -60,6 +61,21 @@ def finish(services: Services, tmp_path: Path) -> Callable[[str], Job]:
             files.append(ResultFile.model_validate({"role": role, "name": name, **facts}))
         services.attempts.publish(attempt, JobResult(format="ply", holes=HoleCounts(found=1), files=files))
         return services.jobs.get(job_id)
+
+    return run
+
+
+@pytest.fixture
+def publish(client: TestClient, services: Services) -> Callable[..., ModelVersion]:
+    """Publish a model, and do what a worker does with one that can be used; keywords as `client.post` takes them."""
+
+    def run(name: str, content: bytes | None = None, **rest: Any) -> ModelVersion:
+        answer = client.post(f"/v1/models/{name}/versions", content=content, headers={"Prefer": "wait=0"}, **rest)
+        assert answer.status_code == 202, answer.text
+        published = ModelVersion.model_validate(answer.json())
+        reference = f"{name}@{published.version}"
+        services.proofs.accept(services.proofs.start(reference, "test", 30))
+        return services.registry.resolve(reference)
 
     return run
 

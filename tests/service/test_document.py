@@ -76,7 +76,11 @@ def test_every_route_of_the_design_is_there(document: dict[str, Any]) -> None:
         "GET /v1/models/{name}/versions/{version}",
         "GET /v1/models/{name}/versions/{version}/artifact",
         "POST /v1/models/{name}/versions",
+        "DELETE /v1/models/{name}/versions/{version}",
+        "PUT /v1/models/{name}/versions/{version}/deprecation",
+        "DELETE /v1/models/{name}/versions/{version}/deprecation",
         "PUT /v1/aliases/{alias}",
+        "DELETE /v1/aliases/{alias}",
         "GET /healthz",
         "GET /readyz",
     }

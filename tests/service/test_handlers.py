@@ -86,7 +86,7 @@ def test_every_error_is_a_problem_document(
         ("/v1/jobs", "GET, HEAD, POST"),
         ("/v1/meshes", "POST"),
         ("/v1/jobs/job_01jd7z3v5qk8m2x4c6b8n0a9de/cancel", "POST"),
-        ("/v1/aliases/default", "PUT"),
+        ("/v1/aliases/default", "DELETE, PUT"),
     ],
 )
 def test_a_wrong_method_is_told_all_right_ones(client: TestClient, path: str, allowed: str) -> None:

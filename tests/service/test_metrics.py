@@ -11,7 +11,7 @@ from starlette.testclient import TestClient
 
 from jobkit.clock import utc_now
 from jobkit.leadership import DISPATCHER, Leadership
-from jobkit.schema import HoleCounts, Job, JobError, JobResult
+from jobkit.schema import HoleCounts, Job, JobError, JobResult, ModelVersion
 from jobkit.scrub import Scrub, ScrubLimits
 from jobkit.settings import Settings
 from jobkit.stages import StageSeconds
@@ -109,13 +109,15 @@ def test_a_leader_whose_lease_ran_out_leads_no_more(services: Services) -> None:
 
 
 def test_models_and_what_aliases_point_to_are_told(
-    client: TestClient, services: Services, dictionary_bytes: Callable[[int], bytes]
+    client: TestClient,
+    services: Services,
+    dictionary_bytes: Callable[[int], bytes],
+    publish: Callable[..., ModelVersion],
 ) -> None:
-    answer = client.post("/v1/models/parts/versions", content=dictionary_bytes(1))
-    assert answer.status_code == 201
+    version = publish("parts", dictionary_bytes(1))
     client.put("/v1/aliases/default", json={"model": "parts@1"})
     found = figures(services)
-    labels = {"name": "parts", "version": "1", "kind": "dictionary", "sha256": answer.json()["sha256"]}
+    labels = {"name": "parts", "version": "1", "kind": "dictionary", "sha256": version.sha256}
     assert found[sample("model_info", **labels)] == 1
     assert found[sample("model_alias_info", alias="default", name="parts", version="1")] == 1
 

@@ -12,7 +12,7 @@ from prometheus_client.parser import text_string_to_metric_families
 from starlette.testclient import TestClient
 
 from jobkit.leadership import DISPATCHER, Leadership
-from jobkit.schema import HoleCounts, JobResult
+from jobkit.schema import HoleCounts, JobResult, ModelVersion
 from jobkit.stages import StageSeconds
 from service.services import Services
 
@@ -31,9 +31,15 @@ Families = dict[str, set[str]]
 
 
 @pytest.fixture
-def samples(client: TestClient, services: Services, job_id: str, dictionary_bytes: Callable[[int], bytes]) -> Families:
+def samples(
+    client: TestClient,
+    services: Services,
+    job_id: str,
+    dictionary_bytes: Callable[[int], bytes],
+    publish: Callable[..., ModelVersion],
+) -> Families:
     """Labels of every sample by its name, from a service in which everything has happened once."""
-    client.post("/v1/models/parts/versions", content=dictionary_bytes(1))
+    publish("parts", dictionary_bytes(1))
     client.put("/v1/aliases/default", json={"model": "parts@1"})
     Leadership(services.database, DISPATCHER, "d-1", 60).lead()
     attempt = services.attempts.start(job_id, "w", 30).attempt

@@ -1,4 +1,4 @@
-"""The engine as it is, until it draws: then native code takes it down, as embree might."""
+"""The engine as it is, until it draws or proves: then native code takes it down, as embree might."""
 
 import ctypes
 
@@ -10,4 +10,5 @@ def _die(*_: object) -> None:
 
 
 engine.add_picture = _die  # type: ignore[assignment]
+engine.prove_model = _die  # type: ignore[assignment]
 run_request = engine.run_request

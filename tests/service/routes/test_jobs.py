@@ -5,12 +5,13 @@ from typing import Any
 import pytest
 from starlette.testclient import TestClient
 
-from jobkit.schema import Job, JobError, JobState
+from jobkit.schema import Job, JobError, JobState, ModelVersion
 from service.services import Services
 from tests.jobkit.test_registry import NETWORK
 from tests.waiting import wait_until
 
 SMOOTH = {"method": "smooth"}
+Publish = Callable[..., ModelVersion]
 
 
 def test_a_job_is_promised_with_its_place_and_its_defaults(
@@ -27,15 +28,15 @@ def test_a_job_is_promised_with_its_place_and_its_defaults(
 
 
 def test_a_mesh_id_alone_is_a_job_for_the_default_dictionary(
-    client: TestClient, mesh_id: str, dictionary_bytes: Callable[[int], bytes]
+    client: TestClient, mesh_id: str, dictionary_bytes: Callable[[int], bytes], publish: Publish
 ) -> None:
     missing = client.post("/v1/jobs", json={"mesh_id": mesh_id})
     assert (missing.status_code, missing.json()["code"]) == (404, "model_not_found")
-    client.post("/v1/models/reliefs/versions", content=dictionary_bytes(1))
+    publish("reliefs", dictionary_bytes(1))
     client.put("/v1/aliases/default", json={"model": "reliefs@1"})
     job = client.post("/v1/jobs", json={"mesh_id": mesh_id}).json()
     assert (job["model"]["name"], job["model"]["version"], job["model"]["requested"]) == ("reliefs", 1, "default")
-    client.post("/v1/models/reliefs/versions", content=dictionary_bytes(2))
+    publish("reliefs", dictionary_bytes(2))
     client.put("/v1/aliases/default", json={"model": "reliefs@2"})
     assert client.get(f"/v1/jobs/{job['id']}").json()["model"] == job["model"]
 
@@ -59,9 +60,9 @@ def test_a_job_that_cannot_work_is_refused_at_once(
 
 
 def test_a_network_can_be_fitted_to_the_mesh_and_one_that_is_taken_as_it_is_can_not(
-    client: TestClient, mesh_id: str
+    client: TestClient, mesh_id: str, publish: Publish
 ) -> None:
-    client.post("/v1/models/small/versions", content=NETWORK, headers={"Content-Type": "application/octet-stream"})
+    publish("small", NETWORK)
     fitting = {"steps": 30, "seconds": 20.0}
     method = {"method": "cnn", "model": "self", "fitting": fitting}
     accepted = client.post("/v1/jobs", json={"mesh_id": mesh_id, "method": method})
@@ -120,13 +121,13 @@ def test_a_repeated_key_starts_nothing_twice(client: TestClient, mesh_id: str) -
 
 
 def test_a_key_is_honoured_even_after_its_model_is_gone(
-    client: TestClient, mesh_id: str, dictionary_bytes: Callable[[int], bytes]
+    client: TestClient, mesh_id: str, dictionary_bytes: Callable[[int], bytes], publish: Publish
 ) -> None:
-    client.post("/v1/models/reliefs/versions", content=dictionary_bytes(1))
+    publish("reliefs", dictionary_bytes(1))
     client.put("/v1/aliases/default", json={"model": "reliefs@1"})
     headers = {"Idempotency-Key": "order-18"}
     first = client.post("/v1/jobs", json={"mesh_id": mesh_id}, headers=headers).json()
-    client.post("/v1/models/reliefs/versions", content=dictionary_bytes(2))
+    publish("reliefs", dictionary_bytes(2))
     client.put("/v1/aliases/default", json={"model": "reliefs@2"})
     assert client.post("/v1/jobs", json={"mesh_id": mesh_id}, headers=headers).json() == first
 
