@@ -251,15 +251,15 @@ def _kind_of_alias(session: Session, row: AliasRow) -> str | None:
 
 def _free_number(session: Session, name: str, wanted: int | None) -> int:
     """Return the number for a new version; those of deleted versions never come back, since jobs name them."""
-    deleted = session.get(DeletedModelRow, name)
-    first = 1 if deleted is None else deleted.version + 1
-    if wanted is None:
-        latest = session.scalar(select(func.max(ModelRow.version)).where(ModelRow.name == name))
-        return max(first, (latest or 0) + 1)
-    if session.get(ModelRow, (name, wanted)) is not None:
+    if wanted is not None and session.get(ModelRow, (name, wanted)) is not None:
         raise NameTakenError(f"{name}@{wanted} is taken by other bytes; versions never change")
-    if wanted < first:
-        raise NameTakenError(f"{name}@{deleted and deleted.version} was deleted; no version up to it comes back")
+    latest = session.scalar(select(func.max(ModelRow.version)).where(ModelRow.name == name)) or 0
+    # Read last: a version that is deleted at this moment is seen among the rows above, or here.
+    deleted = session.scalar(select(DeletedModelRow.version).where(DeletedModelRow.name == name)) or 0
+    if wanted is None:
+        return max(latest, deleted) + 1
+    if wanted <= deleted:
+        raise NameTakenError(f"{name}@{deleted} was deleted; no version up to it comes back")
     return wanted
 
 

@@ -11,17 +11,20 @@ from onnx import TensorProto, helper, numpy_helper
 
 from jobkit.database import Database
 from jobkit.errors import ModelNotFoundError, StaleAttemptError
-from jobkit.model_lifetime import delete_version
+from jobkit.jobs import NewJob
+from jobkit.model_lifetime import delete_version, deprecate_version
 from jobkit.proofs import MAX_PROOFS
 from jobkit.reconcile import submit_proof
 from jobkit.registry import MODEL_PREFIX, Registry
-from jobkit.schema import ModelProblem, ModelState, ModelVersion
+from jobkit.schema import JobSpec, ModelProblem, ModelState, ModelVersion
+from jobkit.selection import resolve_method
 from jobkit.settings import Settings
 from jobkit.store import ObjectStore
+from tests.integration.conftest import ply_bytes, punched_relief
 from tests.quadpatch.inpainters.test_autoencoder import PAPER, N, write_network
 from tests.worker.test_repairs import working
 from worker.context import Context
-from worker.jobs import prove_model
+from worker.jobs import prove_model, run_job
 
 
 @pytest.fixture
@@ -144,3 +147,22 @@ def test_a_version_that_is_deleted_meanwhile_is_left_alone(
     submit_proof(context.database, context.queue, "parts@1")
     with pytest.raises(ModelNotFoundError):
         context.registry.resolve("parts@1")
+
+
+def test_a_job_with_a_deprecated_model_ends_with_a_warning(
+    context: Context, dictionary_bytes: Callable[[int], bytes]
+) -> None:
+    publish(context.registry, context.store, dictionary_bytes(1))
+    prove_model("parts@1")
+    deprecate_version(context.database, "parts", 1, "parts@2 does better")
+    with context.store.writer("meshes") as writer:
+        writer.write(ply_bytes(*punched_relief(20, 1)))
+        mesh = context.meshes.add(writer.commit(), "scan.ply", "ply")[0]
+    method = {"method": "dictionary", "model": "parts@1"}
+    spec = JobSpec.model_validate({"mesh_id": mesh.id, "method": method, "output": {"preview": False}})
+    job = context.jobs.create(NewJob(spec, resolve_method(context.registry, spec.method), 3))[0]
+    assert job.model.deprecated_at is not None
+    run_job(job.id)
+    ended = context.jobs.get(job.id)
+    assert ended.result is not None, ended.error
+    assert "the model parts@1 is deprecated: parts@2 does better" in ended.result.warnings
