@@ -78,7 +78,7 @@ def test_holes_lists_every_hole_and_what_would_be_filled(
 
 def test_jobs_and_models_are_listed(run: Callable[..., Result]) -> None:
     assert isinstance(json.loads(run("jobs", "--limit", "2", "--json").stdout), list)
-    assert set(json.loads(run("models", "--json").stdout)) == {"models", "aliases"}
+    assert set(json.loads(run("models", "--json").stdout)) == {"models", "aliases", "next_cursor"}
     assert run("jobs").exit_code == run("models").exit_code == ExitCode.OK
 
 

@@ -28,6 +28,11 @@ def test_only_a_whole_number_of_seconds_is_a_wait(header: str | None, seconds: f
     assert preferred_wait_s(header) == seconds
 
 
+@pytest.mark.parametrize(("header", "seconds"), [(None, 10), ("respond-async", 10), ("wait=0", 0), ("wait=3", 3)])
+def test_who_prefers_nothing_waits_as_the_route_says(header: str | None, seconds: float) -> None:
+    assert preferred_wait_s(header, 10.0) == seconds
+
+
 def test_all_that_wait_share_one_look_and_each_is_woken_by_its_own_end() -> None:
     looks: list[list[str]] = []
 
