@@ -17,9 +17,10 @@ _logger = logging.getLogger(__name__)
 def seed_shipped(registry: Registry, folder: Path) -> list[ModelVersion]:
     """Register every `name@version.safetensors` and `name@version.onnx` of a folder.
 
-    Models bring their cards; a network without one may have it beside it as `name@version.json`. Where the aliases
-    `default` and `default-network` point to nothing yet, they are pointed to the latest version of the first
-    dictionary and of the first network.
+    Models bring their cards; a network without one may have it beside it as `name@version.json`. They are taken as
+    proven: tests prove those that ship, and for others the operator answers. Where the aliases `default` and
+    `default-network` point to nothing yet, they are pointed to the latest version of the first dictionary and of the
+    first network that are not deprecated. A version that was deleted stays deleted.
 
     Parameters
     ----------
@@ -60,6 +61,7 @@ def _point_default(registry: Registry, alias: str, versions: list[ModelVersion])
     try:
         registry.resolve(alias)
     except ModelNotFoundError:
-        if versions:
-            latest = max(version.version for version in versions if version.name == versions[0].name)
-            registry.set_alias(alias, f"{versions[0].name}@{latest}")
+        usable = [version for version in versions if version.deprecated is None]
+        if usable:
+            latest = max(version.version for version in usable if version.name == usable[0].name)
+            registry.set_alias(alias, f"{usable[0].name}@{latest}")

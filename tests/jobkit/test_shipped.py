@@ -5,7 +5,10 @@ from pathlib import Path
 import pytest
 
 from jobkit.database import Database
-from jobkit.registry import Registry
+from jobkit.errors import ModelNotFoundError
+from jobkit.model_lifetime import delete_version, deprecate_version
+from jobkit.registry import MODEL_PREFIX, Registry
+from jobkit.schema import ModelState
 from jobkit.shipped import seed_shipped
 from jobkit.store import ObjectStore
 from tests.jobkit.test_registry import NETWORK
@@ -66,3 +69,30 @@ def test_a_changed_file_without_a_new_number_is_left_out(
 
 def test_a_folder_that_is_not_there_ships_nothing(registry: Registry, tmp_path: Path) -> None:
     assert seed_shipped(registry, tmp_path / "none") == []
+
+
+def test_versions_that_were_deprecated_or_deleted_stay_so(
+    database: Database, registry: Registry, folder: Path, dictionary_bytes: Make
+) -> None:
+    for number in (2, 3):
+        path = folder / f"general-dictionary@{number}.safetensors"
+        path.write_bytes(dictionary_bytes(number))
+        registry.publish_file("general-dictionary", path, version=number)
+    deprecate_version(database, "general-dictionary", 2, "")
+    delete_version(database, "general-dictionary", 3)
+    for path in folder.glob("*@1.*"):
+        path.unlink()
+    seed_shipped(registry, folder)
+    with pytest.raises(ModelNotFoundError):
+        registry.resolve("default")
+    assert [version.version for version in registry.get("general-dictionary").versions] == [2]
+
+
+def test_what_ships_is_ready_even_where_it_was_uploaded_before(
+    registry: Registry, store: ObjectStore, folder: Path, dictionary_bytes: Make
+) -> None:
+    with store.writer(MODEL_PREFIX) as writer:
+        writer.write(dictionary_bytes(1))
+        assert registry.publish("general-dictionary", writer.commit())[0].state is ModelState.PROVING
+    seed_shipped(registry, folder)
+    assert registry.usable("default").state is ModelState.READY
