@@ -24,8 +24,9 @@ serve: $(READY)           ## one box on http://127.0.0.1:8000 until Ctrl-C
 
 # One thread for each of the two processes: where four share two cores, each waits for the others. At most 8 minutes on
 # two idle cores: what is slow is listed, so that it is made cheaper or gets a target of its own, such as `faults`.
+# The tests start some hundred interpreters: with PYTHONDONTWRITEBYTECODE each would compile all modules again.
 test: $(READY)            ## every test, with the real Valkey
-	@OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadfile --durations 10
+	@PYTHONDONTWRITEBYTECODE= OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadfile --durations 10
 
 test-postgres: $(READY)   ## the tests of service and workers on PostgreSQL and S3, both started by the tests
 	@TEST_BACKEND=postgres-s3 OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadfile \

@@ -56,14 +56,17 @@ def wait_until_answered(url: str, process: "Popen[bytes]", log: Path) -> None:
         What it writes.
     """
 
-    def answers() -> bool:
-        try:
-            httpx.get(url, timeout=GUARD_S, trust_env=False)
-        except httpx.TransportError:
-            return False
-        return True
+    # One client for all looks, and without certificates: to load them takes as long as a service needs to start.
+    with httpx.Client(timeout=GUARD_S, trust_env=False, verify=False) as client:
 
-    wait_until(answers, process, log)
+        def answers() -> bool:
+            try:
+                client.get(url)
+            except httpx.TransportError:
+                return False
+            return True
+
+        wait_until(answers, process, log)
 
 
 def end(process: "Popen[bytes]") -> None:

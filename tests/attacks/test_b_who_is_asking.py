@@ -2,8 +2,7 @@
 
 import ast
 import tomllib
-from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager
+from collections.abc import Iterator
 from http.client import HTTPResponse
 from pathlib import Path
 from socket import create_connection
@@ -63,12 +62,6 @@ def exchange(url: str, request: bytes) -> tuple[int, bytes]:
 
 
 @pytest.fixture
-def open_box(serve: Callable[..., AbstractContextManager[RunningService]]) -> Iterator[str]:
-    with serve() as running:
-        yield running.url
-
-
-@pytest.fixture
 def guarded(settings: Settings) -> Iterator[TestClient]:
     keyed = settings.model_copy(update={"api_keys": SecretStr(KEY), "host": "0.0.0.0"})
     with TestClient(create_app(keyed), base_url="http://scanner.example") as client:
@@ -91,7 +84,8 @@ def test_any_text_parses_or_names_nothing(text: str) -> None:
         assert found is None or (set(found.host).isdisjoint("/@?#{}[] \\") and found.port <= 65_535)
 
 
-def test_a_box_without_keys_answers_to_its_own_names_alone(open_box: str) -> None:
+def test_a_box_without_keys_answers_to_its_own_names_alone(shared_service: RunningService) -> None:
+    open_box = shared_service.url
     for host in ("127.0.0.1", "localhost:1", "[::1]:8000"):
         assert exchange(open_box, f"GET /v1/jobs HTTP/1.1\r\nHost: {host}\r\n\r\n".encode())[0] == 200
     for host in ("attacker.example", "127.0.0.1.attacker.example", "localhost.", "127.0.0.2"):

@@ -4,7 +4,6 @@ import asyncio
 import json
 import resource
 from collections.abc import Callable
-from contextlib import AbstractContextManager
 from http.client import HTTPResponse
 from socket import create_connection, socket
 
@@ -21,7 +20,6 @@ from tests.conftest import RunningService
 from tests.waiting import GUARD_S, wait_until
 
 HOST = b"Host: 127.0.0.1\r\n"
-Serve = Callable[..., AbstractContextManager[RunningService]]
 
 
 def connect(url: str) -> socket:
@@ -52,14 +50,14 @@ def answer_of(connection: socket) -> tuple[int, dict[str, object]]:
     ],
 )
 def test_what_never_becomes_a_request_is_answered_with_a_problem(
-    serve: Serve, sent: bytes, status: int, code: str
+    shared_service: RunningService, sent: bytes, status: int, code: str
 ) -> None:
-    with serve() as running, connect(running.url) as connection:
+    with connect(shared_service.url) as connection:
         connection.sendall(sent)
         found, problem = answer_of(connection)
         assert (found, problem.get("code")) == (status, code)
         assert problem["type"] == f"urn:quadpatch:problem:{code}"
-        assert httpx.get(f"{running.url}/healthz", timeout=GUARD_S).status_code == 200
+        assert httpx.get(f"{shared_service.url}/healthz", timeout=GUARD_S).status_code == 200
 
 
 async def _with_server(limits: ConnectionLimits, work: Callable[[int], object]) -> None:
@@ -194,22 +192,21 @@ def test_a_flood_of_analyses_does_not_pass_a_job_that_came_before(client: TestCl
     assert all(name.startswith("mesh_") for name in names[2:])
 
 
-def test_healthz_answers_while_clients_wait_and_stall(serve: Serve) -> None:
+def test_healthz_answers_while_clients_wait_and_stall(shared_service: RunningService) -> None:
     """A small edition of the flood: waiters, half-open requests and endless heads at once."""
-    with serve() as running:
-        mesh = httpx.post(f"{running.url}/v1/meshes", content=b"ply", timeout=GUARD_S).json()["id"]
-        spec = {"mesh_id": mesh, "method": {"method": "smooth"}}
-        job = httpx.post(f"{running.url}/v1/jobs", json=spec, timeout=GUARD_S).json()["id"]
-        held: list[socket] = []
-        wait = b"GET /v1/jobs/%s HTTP/1.1\r\nHost: 127.0.0.1\r\nPrefer: wait=30\r\n\r\n" % job.encode()
-        half = b"POST /v1/meshes HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: 9\r\n\r\n"
-        try:
-            for count, sent in ((300, wait), (300, half), (20, b"GET / HTTP/1.1\r\nX: 1\r\n")):
-                for _ in range(count):
-                    held.append(connect(running.url))
-                    held[-1].sendall(sent)
-            with httpx.Client(base_url=running.url, timeout=GUARD_S) as client:
-                assert {client.get("/healthz").status_code for _ in range(50)} == {200}
-        finally:
-            for connection in held:
-                connection.close()
+    mesh = httpx.post(f"{shared_service.url}/v1/meshes", content=b"ply", timeout=GUARD_S).json()["id"]
+    spec = {"mesh_id": mesh, "method": {"method": "smooth"}}
+    job = httpx.post(f"{shared_service.url}/v1/jobs", json=spec, timeout=GUARD_S).json()["id"]
+    held: list[socket] = []
+    wait = b"GET /v1/jobs/%s HTTP/1.1\r\nHost: 127.0.0.1\r\nPrefer: wait=30\r\n\r\n" % job.encode()
+    half = b"POST /v1/meshes HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: 9\r\n\r\n"
+    try:
+        for count, sent in ((300, wait), (300, half), (20, b"GET / HTTP/1.1\r\nX: 1\r\n")):
+            for _ in range(count):
+                held.append(connect(shared_service.url))
+                held[-1].sendall(sent)
+        with httpx.Client(base_url=shared_service.url, timeout=GUARD_S) as client:
+            assert {client.get("/healthz").status_code for _ in range(50)} == {200}
+    finally:
+        for connection in held:
+            connection.close()
