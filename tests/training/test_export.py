@@ -1,6 +1,8 @@
+import copy
 import hashlib
 import json
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import onnx
@@ -30,6 +32,21 @@ def tiny(seed: int = 0) -> nn.Sequential:
     return network
 
 
+@pytest.fixture(scope="module")
+def exported() -> tuple[nn.Sequential, Any]:
+    """A network and what it is exported to; an export takes seconds."""
+    network = tiny()
+    return network, to_onnx(network, 1, 20)
+
+
+@pytest.fixture(scope="module")
+def small() -> Any:
+    """The smallest network of the paper, exported."""
+    architecture = ARCHITECTURES["small_4x"]
+    torch.manual_seed(0)
+    return to_onnx(nn.Sequential(architecture.build(), architecture.output()), 1, 24)
+
+
 class Noisy(nn.Module):
     """Answers otherwise once it is exported."""
 
@@ -37,9 +54,10 @@ class Noisy(nn.Module):
         return patches if torch.compiler.is_exporting() else patches + 2 * PARITY
 
 
-def test_the_exported_network_gives_what_torch_gives_for_any_count_of_patches() -> None:
-    network = tiny()
-    model = to_onnx(network, 1, 20)
+def test_the_exported_network_gives_what_torch_gives_for_any_count_of_patches(
+    exported: tuple[nn.Sequential, Any],
+) -> None:
+    network, model = exported
     for count in (1, 2, 7):
         patches = torch.rand(count, 1, 20, 20)
         with torch.inference_mode():
@@ -48,11 +66,13 @@ def test_the_exported_network_gives_what_torch_gives_for_any_count_of_patches() 
     assert "ConvTranspose" not in {node.op_type for node in model.graph.node}
 
 
-def test_the_same_weights_give_the_same_bytes_and_nothing_of_this_machine(tmp_path: Path) -> None:
+def test_the_same_weights_give_the_same_bytes_and_nothing_of_this_machine(
+    exported: tuple[nn.Sequential, Any], tmp_path: Path
+) -> None:
     digests = set()
-    for folder in ("one", "other"):
+    for folder, model in (("one", copy.deepcopy(exported[1])), ("other", to_onnx(tiny(), 1, 20))):
         (tmp_path / folder).mkdir()
-        write_network(tmp_path / folder / "network.onnx", to_onnx(tiny(), 1, 20), CARD)
+        write_network(tmp_path / folder / "network.onnx", model, CARD)
         data = (tmp_path / folder / "network.onnx").read_bytes()
         digests.add(hashlib.sha256(data).digest())
     assert len(digests) == 1
@@ -60,8 +80,8 @@ def test_the_same_weights_give_the_same_bytes_and_nothing_of_this_machine(tmp_pa
         assert word.encode() not in data
 
 
-def test_the_card_is_the_only_metadata(tmp_path: Path) -> None:
-    model = to_onnx(tiny(), 1, 20)
+def test_the_card_is_the_only_metadata(exported: tuple[nn.Sequential, Any], tmp_path: Path) -> None:
+    model = copy.deepcopy(exported[1])
     write_network(tmp_path / "network.onnx", model, {"name": "old"})
     write_network(tmp_path / "network.onnx", model, CARD)
     (entry,) = onnx.load(tmp_path / "network.onnx").metadata_props
@@ -81,24 +101,24 @@ def test_numbers_that_are_none_are_refused() -> None:
 
 
 @pytest.mark.parametrize("name", ["small_4x", "long_12x_SC"])
-def test_networks_of_the_paper_are_read_by_the_code_of_repairs(tmp_path: Path, name: str) -> None:
+def test_networks_of_the_paper_are_read_by_the_code_of_repairs(small: Any, tmp_path: Path, name: str) -> None:
     architecture = ARCHITECTURES[name]
     module = nn.Sequential(architecture.build(), architecture.output())
-    card = {**CARD, "patch_resolution": architecture.resolution}
+    is_small = name == "small_4x"
+    model = copy.deepcopy(small) if is_small else to_onnx(module, architecture.channels, architecture.resolution)
     path = tmp_path / "network.onnx"
-    write_network(path, to_onnx(module, architecture.channels, architecture.resolution), card)
+    write_network(path, model, {**CARD, "patch_resolution": architecture.resolution})
     inpainter = AutoencoderInpainter.load(path)
     assert (inpainter.resolution, inpainter.recipe) == (architecture.resolution, "paper")
 
 
-def test_whole_numbers_take_a_third_of_the_room_and_cost_little_accuracy(tmp_path: Path) -> None:
-    architecture = ARCHITECTURES["small_4x"]
-    torch.manual_seed(0)
-    model = to_onnx(nn.Sequential(architecture.build(), architecture.output()), 1, 24)
+def test_whole_numbers_take_a_third_of_the_room_and_cost_little_accuracy(small: Any) -> None:
+    model = copy.deepcopy(small)
     patches = np.random.default_rng(0).random((100, 1, 24, 24), dtype=np.float32)
-    small = to_int8(model, patches)
-    assert small.ByteSize() < model.ByteSize() / 3
-    exact, rounded = run_onnx(model, patches), run_onnx(small, patches)
+    rounded_model = to_int8(model, patches)
+    assert rounded_model.ByteSize() < model.ByteSize() / 3
+    exact, rounded = run_onnx(model, patches), run_onnx(rounded_model, patches)
     assert np.abs(rounded - exact).max() < 0.1
     assert np.corrcoef(rounded.ravel(), exact.ravel())[0, 1] > 0.99
-    assert to_int8(model, patches).SerializeToString(deterministic=True) == small.SerializeToString(deterministic=True)
+    one, again = (model.SerializeToString(deterministic=True) for model in (rounded_model, to_int8(model, patches)))
+    assert one == again
