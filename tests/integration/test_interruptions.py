@@ -13,7 +13,7 @@ import pytest
 from client.errors import JobCanceledError, JobFailedError
 from client.sdk import Client
 from jobkit.schema import Job, JobSpec, JobState
-from onebox.demo import find_scan, running_box
+from onebox.demo import running_box
 from tests.waiting import GUARD_S, wait_until
 
 # Learns from the mesh itself, which takes seconds: time enough to interrupt it.
@@ -92,10 +92,13 @@ def test_a_killed_worker_takes_its_engine_along_and_another_attempt_succeeds(
     wait_until(lambda: box.requests() == [])
 
 
-def test_a_stopped_worker_hands_its_job_back(client: Client, box: Any) -> None:
-    job = start_long_job(client, box, find_scan())
+def test_a_stopped_worker_hands_its_job_back(client: Client, box: Any, large_relief: Path) -> None:
+    job = start_long_job(client, box, large_relief)
     (engine,) = box.engines()
-    engine.parent().parent().terminate()
+    worker = engine.parent().parent()
+    # A job that is nearly done may still end in the stopped worker; this one stands still.
+    engine.suspend()
+    worker.terminate()
     finished = client.wait(job.id, timeout_s=GUARD_S)
     assert finished.state.has_result
     assert finished.attempt == 2
