@@ -1,8 +1,19 @@
-"""Which tests run in the same process of `pytest -n`: those of a file, and all that share the one box."""
+"""Which tests run in one process of `pytest -n`: those of a file, and all that share the one box. Longest first."""
+
+from typing import Any
 
 from xdist.scheduler import LoadFileScheduling
 
 _BOX = "tests/integration/"
+# What takes longest has few tests, so that xdist would begin it last, and one core would wait for it in the end.
+LONGEST = (
+    _BOX,
+    "tests/faults/test_faults.py",
+    "tests/contract/test_schemathesis.py",
+    "tests/quadpatch/test_repair_by_fitting.py",
+    "tests/training/test_network_run.py",
+    "tests/training/test_processes.py",
+)
 
 
 class SharingScheduling(LoadFileScheduling):
@@ -10,3 +21,11 @@ class SharingScheduling(LoadFileScheduling):
 
     def _split_scope(self, nodeid: str) -> str:
         return _BOX if nodeid.startswith(_BOX) else str(super()._split_scope(nodeid))
+
+    def _assign_work_unit(self, node: Any) -> None:
+        self.workqueue.move_to_end(min(self.workqueue, key=_place), last=False)
+        super()._assign_work_unit(node)
+
+
+def _place(scope: str) -> int:
+    return LONGEST.index(scope) if scope in LONGEST else len(LONGEST)
