@@ -19,7 +19,7 @@ pytestmark = pytest.mark.faults
 @pytest.fixture(scope="module")
 def outcome(tmp_path_factory: pytest.TempPathFactory) -> Outcome:
     campaign = Campaign(
-        Plan(seed=5, n_jobs=25, n_stations=5),
+        Plan(seed=5, n_jobs=25, n_stations=5, long_width=60),
         "sqlite-local",
         rounds=1,
         pause_s=(0.2, 1.0),
