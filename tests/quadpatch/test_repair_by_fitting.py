@@ -3,6 +3,7 @@
 import json
 import subprocess
 import sys
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -42,31 +43,63 @@ def error_of(output: Path) -> float:
     return float(distance_to_mesh(new, WHOLE).mean())
 
 
+@dataclass(frozen=True)
+class Fitted:
+    """A repair by a fitted network: its output, its report, and the shares of the stage `learn` that were told."""
+
+    output: Path
+    report: dict[str, Any]
+    shares: list[float]
+
+
+@pytest.fixture(scope="module")
+def fitted(scan_file: Path, unlearned_models: Path, tmp_path_factory: pytest.TempPathFactory) -> Fitted:
+    output, shares = tmp_path_factory.mktemp("fitted") / "fitted.ply", list[float]()
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(model_file, "SHIPPED_MODELS", unlearned_models)
+        report = repair_file(
+            scan_file,
+            output,
+            SELF_NETWORK,
+            OPTIONS,
+            lambda stage, share: shares.append(share) if stage == "learn" else None,
+        )
+    return Fitted(output, report, shares)
+
+
 @pytest.mark.slow
-@pytest.mark.usefixtures("unlearned")
-def test_a_network_that_is_fitted_to_a_relief_fills_it_better_than_geometry_and_repeats(
-    scan_file: Path, tmp_path: Path
+def test_a_network_that_is_fitted_to_a_relief_fills_it_better_than_geometry(
+    fitted: Fitted, scan_file: Path, tmp_path: Path
 ) -> None:
-    fitted, again, smooth = (tmp_path / name for name in ("fitted.ply", "again.ply", "smooth.ply"))
-    heard: list[float] = []
-    report = repair_file(
-        scan_file, fitted, SELF_NETWORK, OPTIONS, lambda stage, share: heard.append(share) if stage == "learn" else None
-    )
-    repair_file(scan_file, smooth, "smooth")
+    repair_file(scan_file, tmp_path / "smooth.ply", "smooth")
+    report = fitted.report
     assert report["counts"]["filled"] == 2
     assert report["patches"]["believed_share"] >= 0.5
-    assert error_of(fitted) < 0.8 * error_of(smooth)
+    assert error_of(fitted.output) < 0.8 * error_of(tmp_path / "smooth.ply")
 
-    before, after = read_scan(scan_file), read_scan(fitted)
+    before, after = read_scan(scan_file), read_scan(fitted.output)
     assert after.vertices[: len(before.vertices)].tobytes() == before.vertices.tobytes()
     assert after.triangles[: len(before.triangles)].tobytes() == before.triangles.tobytes()
 
     assert report["model"] == {"name": SELF_NETWORK, "fitted_from": f"{BASE_NETWORK}@1"}
     assert report["options"]["network"] == {"steps": 40, "seconds": 1e6}
-    assert len(set(heard)) > 35
+    assert len(set(fitted.shares)) > 35
 
-    assert repair_file(scan_file, again, SELF_NETWORK, OPTIONS)["model"] == report["model"]
-    assert again.read_bytes() == fitted.read_bytes()
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("unlearned")
+def test_the_command_line_says_how_long_to_fit_and_what_was_fitted_and_repeats_it(
+    fitted: Fitted, scan_file: Path, tmp_path: Path
+) -> None:
+    output, told = tmp_path / "out.ply", tmp_path / "report.json"
+    flags = ["--model", SELF_NETWORK, "--fit-steps", "40", "--fit-seconds", "1000000", "--overlap", "1"]
+    ended = CliRunner().invoke(app, ["fill", str(scan_file), "-o", str(output), "--report", str(told), *flags])
+    assert ended.exit_code == 0, ended.output
+    assert f"filled by {BASE_NETWORK}@1, fitted to this mesh" in " ".join(ended.stderr.split())
+    report = json.loads(told.read_text())
+    assert report["options"]["network"] == {"steps": 40, "seconds": 1e6}
+    assert report["model"] == fitted.report["model"]
+    assert output.read_bytes() == fitted.output.read_bytes()
 
 
 @pytest.mark.usefixtures("unlearned")
@@ -78,16 +111,6 @@ def test_without_time_to_learn_the_fill_stays_as_it_is(scan_file: Path, tmp_path
     assert {hole["code"] for hole in report["holes"] if hole["verdict"] == "filled_smooth"} == {"no_gain"}
     new, smooth = (read_scan(tmp_path / name).vertices for name in ("out.ply", "smooth.ply"))
     np.testing.assert_array_equal(new, smooth)
-
-
-@pytest.mark.usefixtures("unlearned")
-def test_the_command_line_says_how_long_to_fit_and_what_was_fitted(scan_file: Path, tmp_path: Path) -> None:
-    files = ["fill", str(scan_file), "-o", str(tmp_path / "out.ply"), "--report", str(tmp_path / "report.json")]
-    flags = ["--model", SELF_NETWORK, "--fit-steps", "2", "--fit-seconds", "90", "--overlap", "0"]
-    ended = CliRunner().invoke(app, [*files, *flags])
-    assert ended.exit_code == 0, ended.output
-    assert f"filled by {BASE_NETWORK}@1, fitted to this mesh" in " ".join(ended.stderr.split())
-    assert json.loads((tmp_path / "report.json").read_text())["options"]["network"] == {"steps": 2, "seconds": 90.0}
 
 
 @pytest.mark.parametrize("model", ["smooth", "self", "general-dictionary@1"])
