@@ -6,6 +6,7 @@ import os
 import signal
 import subprocess
 import sys
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -113,13 +114,28 @@ def test_a_network_repairs_a_scan(made: Path, tmp_path: Path) -> None:
     assert report["patches"]["resolution"] == 24
 
 
-def test_a_run_that_was_stopped_goes_on_to_the_same_bytes(corpus: Path, tmp_path: Path) -> None:
+@dataclass(frozen=True)
+class Registered:
+    """A folder with `own.onnx`, the checkpoint that was asked for and the data of a registry; what was said."""
+
+    folder: Path
+    said: str
+
+
+@pytest.fixture(scope="module")
+def registered(corpus: Path, tmp_path_factory: pytest.TempPathFactory) -> Registered:
+    folder = tmp_path_factory.mktemp("registered")
+    files = ["--output", folder / "own.onnx", "--checkpoint", folder / "run.checkpoint"]
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("QUADPATCH_DATA_DIR", str(folder / "data"))
+        return Registered(folder, call(*network(corpus, "--name", "own", *files, "--register")))
+
+
+def test_a_run_that_was_stopped_goes_on_to_the_same_bytes(corpus: Path, registered: Registered, tmp_path: Path) -> None:
     """Stopped by running out of a smaller budget of the same schedule: see `test_trainer` for any step."""
-    straight, resumed = tmp_path / "straight.onnx", tmp_path / "resumed.onnx"
-    checkpoint = tmp_path / "run.checkpoint"
-    call(*network(corpus, "--name", "x", "--output", straight, "--checkpoint", checkpoint))
-    call(*network(corpus, "--name", "x", "--output", resumed, "--resume", checkpoint))
-    assert straight.read_bytes() == resumed.read_bytes()
+    checkpoint, resumed = registered.folder / "run.checkpoint", tmp_path / "resumed.onnx"
+    call(*network(corpus, "--name", "own", "--output", resumed, "--resume", checkpoint))
+    assert (registered.folder / "own.onnx").read_bytes() == resumed.read_bytes()
     assert checkpoint.is_file()
 
 
@@ -141,14 +157,11 @@ def test_ctrl_c_writes_a_checkpoint_and_says_how_to_go_on(corpus: Path, tmp_path
     assert AutoencoderInpainter.load(tmp_path / "x.onnx").resolution == 24
 
 
-def test_networks_are_registered_with_the_card_of_their_file(
-    corpus: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setenv("QUADPATCH_DATA_DIR", str(tmp_path / "data"))
-    file = tmp_path / "own.onnx"
-    assert "registered as own@1" in call(*network(corpus, "--name", "own", "--output", file, "--register"))
-    database = Database(f"sqlite:///{tmp_path / 'data' / 'quadpatch.db'}")
-    version = Registry(database, open_store(f"file://{tmp_path / 'data' / 'objects'}")).resolve("own")
+def test_networks_are_registered_with_the_card_of_their_file(registered: Registered) -> None:
+    assert "registered as own@1" in registered.said
+    file, data = registered.folder / "own.onnx", registered.folder / "data"
+    database = Database(f"sqlite:///{data / 'quadpatch.db'}")
+    version = Registry(database, open_store(f"file://{data / 'objects'}")).resolve("own")
     database.close()
     assert (version.kind, version.format) == ("autoencoder", "onnx")
     assert version.sha256 == hashlib.sha256(file.read_bytes()).hexdigest()
