@@ -29,7 +29,7 @@ test: $(READY)            ## every test, with the real Valkey
 	@PYTHONDONTWRITEBYTECODE= OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadfile --durations 10
 
 test-postgres: $(READY)   ## the tests of service and workers on PostgreSQL and S3, both started by the tests
-	@TEST_BACKEND=postgres-s3 OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadfile \
+	@PYTHONDONTWRITEBYTECODE= TEST_BACKEND=postgres-s3 OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadfile \
 		tests/jobkit tests/service tests/worker tests/dispatcher tests/integration tests/contract tests/onebox
 
 # Network namespaces and disks that fill up need root; without it the suite says what it left out.
