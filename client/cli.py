@@ -15,6 +15,7 @@ from client.options import (
     OUTPUT,
     AllButLargestOption,
     CapOption,
+    CloseupsOption,
     HoleChoice,
     HoleOption,
     IncludeBordersOption,
@@ -111,6 +112,7 @@ def repair(  # noqa: PLR0913 - one parameter per option of the command line
     ] = None,
     report: ReportOption = None,
     preview: PreviewOption = None,
+    closeups: CloseupsOption = None,
     overwrite: Annotated[
         bool, typer.Option("--overwrite", help="Let OUTPUT take the place of MESH.", rich_help_panel=OUTPUT)
     ] = False,
@@ -137,10 +139,15 @@ def repair(  # noqa: PLR0913 - one parameter per option of the command line
                 "seed": seed,
                 "weld_tolerance": tolerance(weld_tolerance),
                 "label": label,
-                "output": {"format": format_ or format_of(output), "preview": preview is not None},
+                "output": {
+                    "format": format_ or format_of(output),
+                    "preview": preview is not None,
+                    "closeups": closeups is not None,
+                },
             },
             report=report,
             preview=preview,
+            closeups=closeups,
             timeout_s=timeout,
             may_overwrite=overwrite,
             again=again,

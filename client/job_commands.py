@@ -1,5 +1,6 @@
 """Commands on a job that is there already, by its id."""
 
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -7,6 +8,7 @@ import typer
 from client.connection import connected, print_json
 from client.options import (
     DEFAULT_URL,
+    OUTPUT,
     JsonOption,
     KeyOption,
     OutputOption,
@@ -16,7 +18,7 @@ from client.options import (
     UrlOption,
 )
 from client.outputs import check_stdout
-from client.repairing import Files, check_apart
+from client.repairing import Files
 from client.repairing import fetch as fetch_files
 from client.screen import Screen
 
@@ -50,6 +52,12 @@ def fetch(  # noqa: PLR0913 - one parameter per option of the command line
     output: OutputOption,
     report: ReportOption = None,
     preview: PreviewOption = None,
+    closeups: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="DIR", help="Folder for the pictures of chosen holes, if the job drew them.", rich_help_panel=OUTPUT
+        ),
+    ] = None,
     timeout: TimeoutOption = None,
     url: UrlOption = DEFAULT_URL,
     api_key: KeyOption = None,
@@ -59,11 +67,12 @@ def fetch(  # noqa: PLR0913 - one parameter per option of the command line
     """Wait for a job that was started before, and fetch what it made."""
     screen = Screen(quiet)
     with connected(screen, url, api_key) as client:
-        check_apart([], [output, report, preview])
+        Files("", output, report, preview, closeups).check()
         check_stdout([output, report, preview], as_json)
         with screen.repair() as on_change:
             ended = client.wait(job, on_change, timeout)
-        fetch_files(client, screen, Files(ended.mesh_name or "the mesh", output, report, preview), ended)
+        files = Files(ended.mesh_name or "the mesh", output, report, preview, closeups)
+        fetch_files(client, screen, files, ended)
     if as_json:
         print_json(ended)
 

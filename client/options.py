@@ -81,6 +81,14 @@ ReportOption = Annotated[
 PreviewOption = Annotated[
     Path | None, typer.Option(help="Where to put the before/after picture, a PNG.", rich_help_panel=OUTPUT)
 ]
+CloseupsOption = Annotated[
+    Path | None,
+    typer.Option(
+        metavar="DIR",
+        help="Draw every chosen hole before and after, as hole_<id>.png in this folder.",
+        rich_help_panel=OUTPUT,
+    ),
+]
 
 
 @dataclass(frozen=True)

@@ -33,6 +33,17 @@ def descriptor_of(path: Path) -> int | None:
     return int(match[1]) if match else _DESCRIPTORS.get(str(path))
 
 
+def is_same_file(one: Path, other: Path) -> bool:
+    """Tell whether two paths lead to one file: by another spelling, a symbolic link or a hard link."""
+    if is_stdout(one) or is_stdout(other):
+        return is_stdout(one) and is_stdout(other)
+    try:
+        return one.samefile(other)
+    except OSError:
+        # One of them is not there yet.
+        return one.resolve() == other.resolve()
+
+
 def folder_of(path: Path) -> Path | None:
     """Return the folder in which a file is put together before it appears; None for a stream: any will do."""
     return None if is_stream(path) else path.resolve().parent
@@ -77,6 +88,13 @@ def check_stdout(outputs: Iterable[Path | None], as_json: bool) -> None:
 def shown(path: Path) -> str:
     """Name an output for people."""
     return "standard output" if is_stdout(path) else str(path)
+
+
+def current_umask() -> int:
+    """Return the umask; it can only be read by setting it."""
+    mask = os.umask(0o077)
+    os.umask(mask)
+    return mask
 
 
 def _copy(whole: Path, opened: Callable[[], int]) -> None:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Literal, cast, get_args
 
+from client.closeups import check_closeups_folder
 from client.errors import (
     ClientError,
     JobFailedError,
@@ -17,7 +18,7 @@ from client.errors import (
     WaitTimeoutError,
 )
 from client.options import HoleChoice, MethodChoice, make_spec
-from client.outputs import check_place, is_stdout, is_stream, shown
+from client.outputs import check_place, is_same_file, is_stream, shown
 from client.screen import Screen
 from client.sdk import Client
 from client.summary import paragraph
@@ -42,6 +43,8 @@ class Task:
         Further fields of the job spec.
     report, preview : Path, optional
         Where to put the report and the picture.
+    closeups : Path, optional
+        Folder for a picture of each chosen hole.
     timeout_s : float, optional
         How long to wait for the job.
     may_overwrite : bool
@@ -57,6 +60,7 @@ class Task:
     rest: dict[str, Any] = field(default_factory=dict)
     report: Path | None = None
     preview: Path | None = None
+    closeups: Path | None = None
     timeout_s: float | None = None
     may_overwrite: bool = False
     again: bool = False
@@ -70,6 +74,15 @@ class Files:
     output: Path
     report: Path | None = None
     preview: Path | None = None
+    closeups: Path | None = None
+
+    def check(self, *others: Path) -> None:
+        """Raise UsageError where one can't be written, or would overwrite another one or one of the others."""
+        check_place(self.output)
+        check_apart([*others, self.output], [self.report, self.preview])
+        if self.closeups is not None:
+            files = [self.output, self.report, self.preview, *others]
+            check_closeups_folder(self.closeups, [path for path in files if path is not None])
 
 
 def repair(client: Client, screen: Screen, task: Task) -> Job:
@@ -91,7 +104,7 @@ def repair(client: Client, screen: Screen, task: Task) -> Job:
     spec = make_spec(mesh.id, task.holes, task.method, mesh_name=sent_name(task.source) or None, **task.rest)
     job = client.create_job(spec) if task.again else client.create_job_once(spec)
     job = _wait(client, screen, job, task.timeout_s)
-    fetch(client, screen, Files(task.source.name, task.output, task.report, task.preview), job)
+    fetch(client, screen, _files(task), job)
     return job
 
 
@@ -100,7 +113,11 @@ def check_outputs(task: Task) -> None:
     check_place(task.output)
     if is_same_file(task.output, task.source) and not task.may_overwrite:
         raise UsageError(f"{task.output} is the scan itself: name another file, or say --overwrite")
-    check_apart([task.source, task.output], [task.report, task.preview])
+    _files(task).check(task.source)
+
+
+def _files(task: Task) -> Files:
+    return Files(task.source.name, task.output, task.report, task.preview, task.closeups)
 
 
 def check_apart(taken: list[Path], others: list[Path | None]) -> None:
@@ -113,17 +130,6 @@ def check_apart(taken: list[Path], others: list[Path | None]) -> None:
         if any(is_same_file(path, other) for other in seen):
             raise UsageError(f"{path} is named twice: mesh, report and preview need files of their own")
         seen.append(path)
-
-
-def is_same_file(one: Path, other: Path) -> bool:
-    """Tell whether two paths lead to one file: by another spelling, a symbolic link or a hard link."""
-    if is_stdout(one) or is_stdout(other):
-        return is_stdout(one) and is_stdout(other)
-    try:
-        return one.samefile(other)
-    except OSError:
-        # One of them is not there yet.
-        return one.resolve() == other.resolve()
 
 
 def format_of(output: Path) -> OutputFormat | None:
@@ -195,6 +201,8 @@ def fetch(client: Client, screen: Screen, files: Files, job: Job) -> None:
         written.append(files.report)
     if files.preview is not None and _is_fetched(client, screen, job, "preview", files.preview):
         written.append(files.preview)
+    if files.closeups is not None:
+        written += _fetch_closeups(client, screen, job, files.closeups)
     with tempfile.TemporaryDirectory() as folder:
         # What went into a stream can't be read again.
         is_kept = files.report is not None and not is_stream(files.report)
@@ -213,6 +221,15 @@ def _is_fetched(client: Client, screen: Screen, job: Job, role: Literal["report"
         screen.complain(f"there is no {role}: {error}")
         return False
     return True
+
+
+def _fetch_closeups(client: Client, screen: Screen, job: Job, folder: Path) -> list[Path]:
+    """Fetch close-ups, which are optional too; return what was written."""
+    try:
+        return client.download_closeups(job, folder)
+    except (ClientError, OSError) as error:
+        screen.complain(f"there are no close-ups: {error}")
+        return []
 
 
 def _size(n_bytes: int) -> str:

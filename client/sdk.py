@@ -11,13 +11,15 @@
 
 import hashlib
 import json
+import tempfile
 import uuid
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Literal, Self
+from typing import Self
 
 import httpx
 
+from client.closeups import unpack_closeups
 from client.errors import (
     ClientError,
     DamagedTransferError,
@@ -32,7 +34,7 @@ from client.polling import parse, poll
 from client.transfers import ByteProgress, download, file_chunks, no_progress, sent_name, sha256_of
 from client.transport import Transport
 from client.watching import watch
-from jobkit.schema import Job, JobPage, JobSpec, JobState, Mesh, MeshState, ModelList, Plan
+from jobkit.schema import FileRole, Job, JobPage, JobSpec, JobState, Mesh, MeshState, ModelList, Plan
 
 _PAGE = 100
 # Of failed and canceled jobs with the same spec that are passed over.
@@ -197,7 +199,7 @@ class Client:
     def download(
         self,
         job: Job,
-        role: Literal["result", "report", "preview"],
+        role: FileRole,
         target: Path,
         progress: ByteProgress = no_progress,
     ) -> None:
@@ -214,6 +216,22 @@ class Client:
         if file is None or link is None:
             raise ClientError(f"job {job.id} has no {role}")
         download(self._transport, link, target, file.sha256, progress)
+
+    def download_closeups(self, job: Job, folder: Path) -> list[Path]:
+        """Fetch the pictures of the chosen holes and unpack them into a folder; return the files, `hole_<id>.png`.
+
+        The folder is made where it is missing. Nothing is written outside of it.
+
+        Raises
+        ------
+        ClientError
+            If the job has none, or what came holds anything but such pictures.
+        DamagedTransferError
+        """
+        with tempfile.TemporaryDirectory() as scratch:
+            archive = Path(scratch) / "closeups.zip"
+            self.download(job, "closeups", archive)
+            return unpack_closeups(archive, folder)
 
     def models(self) -> ModelList:
         """Return all models and aliases, fetched page by page; of each model its newest versions."""

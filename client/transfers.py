@@ -10,7 +10,7 @@ from pathlib import Path
 import httpx
 
 from client.errors import DamagedTransferError
-from client.outputs import deliver, folder_of
+from client.outputs import current_umask, deliver, folder_of
 from client.transport import Transport
 
 CHUNK_BYTES = 1 << 18
@@ -71,7 +71,7 @@ def download(transport: Transport, path: str, target: Path, sha256: str, progres
         transport.patiently(lambda: _fetch_rest(transport, path, partial, progress), lambda: partial.stat().st_size)
         if sha256_of(partial) != sha256:
             raise DamagedTransferError(f"{path} arrived damaged: its sha256 is not {sha256}")
-        partial.chmod(0o666 & ~_umask())
+        partial.chmod(0o666 & ~current_umask())
         deliver(partial, target)
     finally:
         partial.unlink(missing_ok=True)
@@ -91,10 +91,3 @@ def _fetch_rest(transport: Transport, path: str, partial: Path, progress: BytePr
                 file.write(chunk)
                 done += len(chunk)
                 progress(done, max(done, total))
-
-
-def _umask() -> int:
-    """Return the umask; it can only be read by setting it."""
-    mask = os.umask(0o077)
-    os.umask(mask)
-    return mask

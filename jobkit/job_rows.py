@@ -42,4 +42,5 @@ def _links(row: JobRow) -> JobLinks:
         result=f"{path}/result" if "result" in roles else None,
         report=f"{path}/report" if "report" in roles else None,
         preview=f"{path}/preview.png" if "preview" in roles else None,
+        closeups=f"{path}/closeups.zip" if "closeups" in roles else None,
     )

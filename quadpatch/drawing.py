@@ -4,18 +4,31 @@ They are optional: the repaired mesh has been written when this runs, and what g
 report.
 """
 
+import io
 import time
-from collections.abc import Iterator
+import zipfile
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+from quadpatch.files import write_whole
 from quadpatch.mesh.holes import Hole
 from quadpatch.optional import failure_of
 from quadpatch.picture.hole_pictures import NumberedHole, draw_hole
 from quadpatch.picture.pair import Pair, prepare
 from quadpatch.picture.sheet import render_before_after
 from quadpatch.repair import RepairedFile
+from quadpatch.types import Progress, no_progress
+
+# Of an archive of close-ups. A close-up takes about half a second and a hundred kilobytes.
+MOST_CLOSE_UPS = 100
+MOST_CLOSE_UP_BYTES = 32 << 20
+
+# The earliest moment that the format can state: equal pictures make equal archives.
+_ZIP_EPOCH = (1980, 1, 1, 0, 0, 0)
+_UNIX = 3
+_READABLE_FILE = 0o100644 << 16
 
 
 def add_picture(repaired: RepairedFile, picture: Path) -> None:
@@ -46,20 +59,90 @@ def add_close_ups(repaired: RepairedFile, folder: Path) -> None:
     folder : Path
         Made where it is missing.
     """
-    filled, pairs = repaired.repair.filled, list[Pair]()
+
+    def save(name: str, picture: bytes) -> None:
+        write_whole(folder / name, picture)
+
     with _stage(repaired.report, "closeups"):
-        failure = failure_of(
-            lambda: pairs.append(prepare(repaired.measured, filled.mesh, filled.invented_triangles))
-        ) or failure_of(lambda: folder.mkdir(parents=True, exist_ok=True))
-        warnings = [] if failure is None else [f"there are no close-ups: {failure}"]
-        for hole in repaired.repair.chosen if failure is None else []:
-            warnings += _close_up(pairs[0], repaired, hole, folder)
-    repaired.report["warnings"] += warnings
+        failure = failure_of(lambda: folder.mkdir(parents=True, exist_ok=True))
+        if failure is None:
+            _draw_each(repaired, repaired.repair.chosen, save, no_progress)
+        else:
+            repaired.report["warnings"].append(f"there are no close-ups: {failure}")
 
 
-def _close_up(pair: Pair, repaired: RepairedFile, hole: Hole, folder: Path) -> list[str]:
+def add_close_up_archive(
+    repaired: RepairedFile, archive: Path, progress: Progress = no_progress, most: int = MOST_CLOSE_UPS
+) -> None:
+    """Draw the widest chosen holes before and after, as `hole_<id>.png` in one ZIP file.
+
+    Parameters
+    ----------
+    repaired : RepairedFile
+        Its report gets the seconds of the stage `closeups`, and a warning for what is left out.
+    archive : Path
+        Empty where no hole was chosen, not written where none could be drawn. Equal repairs give equal bytes.
+    progress : callable
+    most : int
+        At most so many holes, in at most `MOST_CLOSE_UP_BYTES`.
+    """
+    with _stage(repaired.report, "closeups"):
+        failure = failure_of(lambda: _write_archive(repaired, archive, progress, most))
+    if failure is not None:
+        repaired.report["warnings"].append(f"there are no close-ups: {failure}")
+
+
+def _write_archive(repaired: RepairedFile, archive: Path, progress: Progress, most: int) -> None:
+    chosen = sorted(repaired.repair.chosen, key=lambda hole: (-hole.diameter, hole.id))
+    packed, n_packed, is_full = io.BytesIO(), 0, False
+    with zipfile.ZipFile(packed, "w", zipfile.ZIP_STORED) as pack:
+
+        def save(name: str, picture: bytes) -> None:
+            nonlocal n_packed, is_full
+            is_full = is_full or packed.tell() + len(picture) > MOST_CLOSE_UP_BYTES
+            if not is_full:
+                pack.writestr(_entry(name), picture)
+                n_packed += 1
+
+        _draw_each(repaired, chosen[:most], save, progress, lambda: is_full)
+    if is_full or len(chosen) > most:
+        repaired.report["warnings"].append(f"close-ups show {n_packed} of {len(chosen)} holes, the widest")
+    if n_packed or not chosen:
+        write_whole(archive, packed.getvalue())
+
+
+def _entry(name: str) -> zipfile.ZipInfo:
+    entry = zipfile.ZipInfo(name, _ZIP_EPOCH)
+    entry.create_system, entry.external_attr = _UNIX, _READABLE_FILE
+    return entry
+
+
+def _draw_each(
+    repaired: RepairedFile,
+    holes: list[Hole],
+    save: Callable[[str, bytes], None],
+    progress: Progress,
+    is_full: Callable[[], bool] = lambda: False,
+) -> None:
+    """Draw holes one by one until it is enough, and add a warning for each that could not be drawn."""
+    filled, pairs = repaired.repair.filled, list[Pair]()
+    warnings = repaired.report["warnings"]
+    if not holes:
+        return
+    failure = failure_of(lambda: pairs.append(prepare(repaired.measured, filled.mesh, filled.invented_triangles)))
+    if failure is not None:
+        warnings.append(f"there are no close-ups: {failure}")
+        return
+    for i, hole in enumerate(holes):
+        if is_full():
+            return
+        progress("closeups", i / len(holes))
+        warnings += _close_up(pairs[0], repaired, hole, save)
+
+
+def _close_up(pair: Pair, repaired: RepairedFile, hole: Hole, save: Callable[[str, bytes], None]) -> list[str]:
     numbered = NumberedHole(hole.id, repaired.measured.vertices[hole.loop])
-    failure = failure_of(lambda: draw_hole(pair, numbered, folder / f"hole_{hole.id}.png"))
+    failure = failure_of(lambda: save(f"hole_{hole.id}.png", draw_hole(pair, numbered)))
     return [] if failure is None else [f"there is no close-up of hole {hole.id}: {failure}"]
 
 

@@ -10,14 +10,14 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from quadpatch.drawing import add_picture
+from quadpatch.drawing import add_close_up_archive, add_picture
 from quadpatch.files import write_whole
 from quadpatch.options import RepairOptions
 from quadpatch.proof import prove_model
 from quadpatch.repair import inspect_file, repair_and_keep
 from worker.engine_frame import run_framed
 from worker.engine_reports import Reporter
-from worker.request import FACTS_NAME, PREVIEW_NAME, REPORT_NAME, EngineRequest
+from worker.request import CLOSE_UPS_NAME, FACTS_NAME, PREVIEW_NAME, REPORT_NAME, EngineRequest
 
 
 def run_request(folder: Path, descriptor: int) -> None:
@@ -34,6 +34,10 @@ def _repair(folder: Path, request: EngineRequest, reporter: Reporter) -> None:
     if request.with_preview:
         reporter.progress("preview", 0.0)
         add_picture(repaired, folder / PREVIEW_NAME)
+        _write_json(folder / REPORT_NAME, repaired.report)
+    if request.with_close_ups:
+        reporter.progress("closeups", 0.0)
+        add_close_up_archive(repaired, folder / CLOSE_UPS_NAME, reporter.progress)
         _write_json(folder / REPORT_NAME, repaired.report)
 
 

@@ -13,7 +13,8 @@ _SHARES = {
     "reconstruct": 8,
     "judge": 4,
     "write": 4,
-    "preview": 5,
+    "preview": 2,
+    "closeups": 3,
 }
 
 

@@ -30,8 +30,15 @@ from worker.limits import EngineLimits
 from worker.models import deprecation, model_argument, network_card
 from worker.outcomes import folder_with_mesh, outcome_of
 from worker.pulse import PATIENCE_S, Pulse, Vitals
-from worker.request import LOG_NAME, PREVIEW_NAME
-from worker.results import drop_result, note_deprecation, note_lost_picture, stage_seconds, store_result
+from worker.request import LOG_NAME
+from worker.results import (
+    drop_result,
+    missing_pictures,
+    note_deprecation,
+    note_lost_pictures,
+    stage_seconds,
+    store_result,
+)
 from worker.spec import repair_request
 from worker.watch import Observer, log_last_words, run_engine
 
@@ -125,8 +132,8 @@ def _work(context: Context, started: StartedAttempt, pulse: Pulse) -> _Repaired:
             observer = Observer(_both(pulse, spans), _StopRule(context, pulse), pulse.note_memory)
             failure = run_engine(context.nursery, request, folder, observer)
         if failure is not None:
-            note_lost_picture(folder, failure)
-        elif request.with_preview and not (folder / PREVIEW_NAME).exists():
+            note_lost_pictures(folder, request, failure)
+        elif missing_pictures(folder, request):
             log_last_words(folder / LOG_NAME)
         if note is not None:
             note_deprecation(folder, f"{job.model.name}@{job.model.version}", note.reason)

@@ -7,6 +7,7 @@
     repaired.ply     the repaired mesh
     report.json      what was done to every hole
     preview.png      the before/after picture
+    closeups.zip     a picture of each chosen hole
     facts.json       what an inspection found
     engine.log       all that the child prints
 """
@@ -23,6 +24,7 @@ MESH_FOLDER = "mesh"
 REPORT_NAME = "report.json"
 FACTS_NAME = "facts.json"
 PREVIEW_NAME = "preview.png"
+CLOSE_UPS_NAME = "closeups.zip"
 LOG_NAME = "engine.log"
 
 
@@ -46,6 +48,8 @@ class EngineRequest:
         Of a network, in place of the one in its file.
     with_preview : bool
         Whether to draw a before/after picture.
+    with_close_ups : bool
+        Whether to draw each chosen hole.
     """
 
     task: Literal["repair", "inspect", "prove"]
@@ -55,6 +59,7 @@ class EngineRequest:
     model: str = ""
     options: dict[str, Any] = field(default_factory=dict)
     with_preview: bool = False
+    with_close_ups: bool = False
     model_card: dict[str, Any] | None = None
 
     def save(self, folder: Path) -> None:

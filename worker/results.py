@@ -1,17 +1,18 @@
 """From the files that an engine left to what the contract publishes."""
 
 import json
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 from jobkit.endings import Attempt
-from jobkit.schema import HoleCounts, JobResult, ResultFile
+from jobkit.schema import FileRole, HoleCounts, JobResult, ResultFile
 from jobkit.stages import StageSeconds
 from jobkit.store import ObjectStore, result_key
 from quadpatch.files import write_whole
 from quadpatch.optional import failure_of
 from worker.failures import Failure
-from worker.request import PREVIEW_NAME, REPORT_NAME, EngineRequest
+from worker.request import CLOSE_UPS_NAME, PREVIEW_NAME, REPORT_NAME, EngineRequest
 
 _MEDIA_TYPES = {
     "stl": "model/stl",
@@ -20,7 +21,22 @@ _MEDIA_TYPES = {
     "3mf": "model/3mf",
     "json": "application/json",
     "png": "image/png",
+    "zip": "application/zip",
 }
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A file that a repair may do without; `stage` draws it, `words` say that it is missing."""
+
+    role: FileRole
+    name: str
+    stage: str
+    words: str
+
+
+_PREVIEW = Picture("preview", PREVIEW_NAME, "preview", "there is no picture")
+_CLOSE_UPS = Picture("closeups", CLOSE_UPS_NAME, "closeups", "there are no close-ups")
 
 
 def store_result(
@@ -39,7 +55,7 @@ def store_result(
         Wall-clock time of the repair.
     """
     mesh = _store_file(folder / request.output, "result", attempt, store)
-    pictures = _store_preview(folder, attempt, store)
+    pictures = [file for picture in (_PREVIEW, _CLOSE_UPS) for file in _store_picture(picture, folder, attempt, store)]
     report = _read_report(folder)
     files = [mesh, _store_file(folder / REPORT_NAME, "report", attempt, store), *pictures]
     counts = HoleCounts.model_validate(report["counts"])
@@ -62,10 +78,10 @@ def stage_seconds(folder: Path, method: str) -> StageSeconds:
     return StageSeconds(method, {str(stage["name"]): float(stage["seconds"]) for stage in stages})
 
 
-def note_lost_picture(folder: Path, failure: Failure) -> None:
-    """Write into the report of an engine that ended while it drew why there is no picture."""
-    (folder / PREVIEW_NAME).unlink(missing_ok=True)
-    _add_warning(folder, f"there is no picture: {failure.message}")
+def missing_pictures(folder: Path, request: EngineRequest) -> list[Picture]:
+    """Return the pictures that were asked for and are not there; one that is there is whole."""
+    asked = [(request.with_preview, _PREVIEW), (request.with_close_ups, _CLOSE_UPS)]
+    return [picture for is_asked, picture in asked if is_asked and not (folder / picture.name).exists()]
 
 
 def note_deprecation(folder: Path, reference: str, reason: str) -> None:
@@ -73,14 +89,25 @@ def note_deprecation(folder: Path, reference: str, reason: str) -> None:
     _add_warning(folder, f"the model {reference} is deprecated" + (f": {reason}" if reason else ""))
 
 
-def _store_preview(folder: Path, attempt: Attempt, store: ObjectStore) -> list[ResultFile]:
-    """Store the picture where there is one; a repair whose picture can't be stored is still a repair."""
+def note_lost_pictures(folder: Path, request: EngineRequest, failure: Failure) -> None:
+    """Write into the report of an engine that ended while it drew why pictures are missing.
+
+    The report has the stage of a picture already where the engine itself has said why.
+    """
+    drawn = {stage["name"] for stage in _read_report(folder).get("stages", [])}
+    for picture in missing_pictures(folder, request):
+        if picture.stage not in drawn:
+            _add_warning(folder, f"{picture.words}: {failure.message}")
+
+
+def _store_picture(picture: Picture, folder: Path, attempt: Attempt, store: ObjectStore) -> list[ResultFile]:
+    """Store a picture where there is one; a repair whose picture can't be stored is still a repair."""
     stored: list[ResultFile] = []
-    path = folder / PREVIEW_NAME
+    path = folder / picture.name
     if path.exists():
-        failure = failure_of(lambda: stored.append(_store_file(path, "preview", attempt, store)))
+        failure = failure_of(lambda: stored.append(_store_file(path, picture.role, attempt, store)))
         if failure is not None:
-            _add_warning(folder, "there is no picture: it could not be stored")
+            _add_warning(folder, f"{picture.words}: the store failed")
     return stored
 
 
@@ -101,9 +128,7 @@ def drop_result(attempt: Attempt, store: ObjectStore) -> None:
     store.delete_prefix(f"results/{attempt.job_id}/{attempt.number}")
 
 
-def _store_file(
-    path: Path, role: Literal["result", "report", "preview"], attempt: Attempt, store: ObjectStore
-) -> ResultFile:
+def _store_file(path: Path, role: FileRole, attempt: Attempt, store: ObjectStore) -> ResultFile:
     stored = store.put_file(result_key(attempt.job_id, attempt.number, path.name), path)
     media_type = _MEDIA_TYPES.get(path.suffix.removeprefix("."), "application/octet-stream")
     return ResultFile(

@@ -56,6 +56,7 @@ def repair_request(spec: JobSpec, source: MeshSource, model: str, limits: Engine
         options=method_options(spec, allowed.time_s),
         limits=allowed,
         with_preview=spec.output.preview,
+        with_close_ups=spec.output.closeups,
     )
 
 

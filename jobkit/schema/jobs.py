@@ -10,6 +10,7 @@ from jobkit.schema.models import ResolvedModel
 from jobkit.schema.spec import HoleAction, JobSpec, Limits, OutputFormat
 from jobkit.schema.states import JobState
 
+FileRole = Literal["result", "report", "preview", "closeups"]
 STAGES = (
     "read",
     "holes",
@@ -47,7 +48,7 @@ class HoleCounts(Response):
 class ResultFile(Response):
     """One file of a result."""
 
-    role: Literal["result", "report", "preview"] = Field(description="What it is.", examples=["result"])
+    role: FileRole = Field(description="What it is.", examples=["result"])
     name: str = Field(pattern=r"^[A-Za-z0-9._-]{1,100}$", description="Name in the store.", examples=["repaired.ply"])
     media_type: str = Field(description="Media type.", examples=["application/octet-stream"])
     size_bytes: int = Field(ge=0, description="Size, in bytes.", examples=[3_300_000])
@@ -81,6 +82,7 @@ class JobLinks(Response):
     result: str | None = Field(default=None, description="The repaired mesh.")
     report: str | None = Field(default=None, description="The JSON report.")
     preview: str | None = Field(default=None, description="The before/after picture.")
+    closeups: str | None = Field(default=None, description="Pictures of the chosen holes, a ZIP file.")
 
 
 class Job(Response):

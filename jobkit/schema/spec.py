@@ -182,6 +182,11 @@ class Output(Request):
         default=None, description="Format of the repaired mesh; null: that of the upload.", examples=["ply"]
     )
     preview: bool = Field(default=True, description="Whether to draw a before/after picture.")
+    closeups: bool = Field(
+        default=False,
+        description="Whether to draw each chosen hole before and after: a ZIP file of `hole_<id>.png`, at most 100 of "
+        "them, the widest.",
+    )
 
 
 class Limits(Request):

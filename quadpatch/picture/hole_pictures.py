@@ -1,14 +1,13 @@
 """Numbered close-ups: one picture for each hole, before and after, seen along the mean normal of its rim."""
 
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 from quadpatch.picture.camera import UP, Camera, view_of
 from quadpatch.picture.pair import Pair
-from quadpatch.picture.png import to_pixels, write_png
+from quadpatch.picture.png import png_bytes, to_pixels
 from quadpatch.types import FloatArray, Vertices
 
 # In pixels.
@@ -42,27 +41,15 @@ class NumberedHole:
     rim: Vertices
 
 
-def draw_hole(pair: Pair, hole: NumberedHole, path: Path) -> None:
-    """Draw a hole before and after the repair, with its rim and its number, as a PNG file.
-
-    Parameters
-    ----------
-    pair : Pair
-    hole : NumberedHole
-    path : Path
-
-    Raises
-    ------
-    OSError
-        If the file can't be written.
-    """
+def draw_hole(pair: Pair, hole: NumberedHole) -> bytes:
+    """Draw a hole before and after the repair, with its rim and its number, and return the bytes of a PNG file."""
     camera = _along_the_normal(pair, hole.rim)
     sheet = Image.new("RGB", (2 * _TILE + _GAP, _CAPTION_HEIGHT + _TILE), _PAPER)
     pen = ImageDraw.Draw(sheet)
     for left, clay, caption in ((0, pair.old, "before"), (_TILE + _GAP, pair.new, "after")):
         pen.text((left + _INSET, 4), f"hole {hole.id}, {caption}", font=ImageFont.load_default(17), fill=_INK)
         sheet.paste(_tile(clay.draw(camera, (_TILE, _TILE)), camera, hole), (left, _CAPTION_HEIGHT))
-    write_png(path, sheet)
+    return png_bytes(sheet)
 
 
 def mean_normal(rim: Vertices) -> FloatArray:

@@ -18,6 +18,11 @@ def to_pixels(picture: FloatArray) -> NDArray[np.uint8]:
 
 def write_png(path: Path, image: Image.Image) -> None:
     """Write a picture that appears whole or not at all; raise OSError."""
+    write_whole(path, png_bytes(image))
+
+
+def png_bytes(image: Image.Image) -> bytes:
+    """Encode a picture."""
     encoded = io.BytesIO()
     image.save(encoded, format="PNG", compress_level=4)
-    write_whole(path, encoded.getvalue())
+    return encoded.getvalue()

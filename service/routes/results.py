@@ -1,13 +1,13 @@
-"""What a job leaves: the repaired mesh, the report, the picture."""
+"""What a job leaves: the repaired mesh, the report, the pictures."""
 
 from collections.abc import Mapping
-from typing import Any, Literal
+from typing import Any
 
 from fastapi import APIRouter, Request
 from starlette.responses import Response
 
 from jobkit.errors import JobHasNoResultError, JobNotFinishedError, ObjectNotFoundError, ResultMissingError
-from jobkit.schema import Job
+from jobkit.schema import FileRole, Job
 from jobkit.store import result_key
 from service.content import OCTETS, Content, content_response, repaired_name
 from service.routes.common import BINARY, CONDITIONAL, JobIdPath, not_modified, problems
@@ -72,11 +72,26 @@ def get_preview(
     return _file_response(request, services, job_id, "preview", "image/png")
 
 
+@router.get(
+    "/v1/jobs/{job_id}/closeups.zip",
+    response_class=Response,
+    dependencies=CONDITIONAL,
+    responses=_documented("application/zip", BINARY),
+)
+def get_closeups(
+    request: Request,
+    services: ServicesDep,
+    job_id: JobIdPath,
+) -> Response:
+    """Fetch the pictures of the chosen holes: `hole_<id>.png` in a ZIP file, where `output.closeups` asked for them."""
+    return _file_response(request, services, job_id, "closeups", "application/zip")
+
+
 def _file_response(
     request: Request,
     services: Services,
     job_id: str,
-    role: Literal["result", "report", "preview"],
+    role: FileRole,
     media_type: str,
 ) -> Response:
     job = services.jobs.get(job_id)
@@ -85,7 +100,8 @@ def _file_response(
     if file is None:
         raise ObjectNotFoundError(f"job {job_id} left no {role}")
     mesh = services.meshes.get(job.mesh_id)
-    suffix = {"result": f".{job.result.format}" if job.result else "", "report": ".json", "preview": ".png"}[role]
+    suffixes = {"report": ".json", "preview": ".png", "closeups": "-closeups.zip"}
+    suffix = suffixes.get(role) or (f".{job.result.format}" if job.result else "")
     name = repaired_name(job.mesh_name or mesh.filename, mesh.id, suffix)
     key = result_key(job_id, job.attempt, file.name)
     try:

@@ -41,6 +41,16 @@ def test_outputs_must_not_overwrite_each_other(tmp_path: Path) -> None:
         check_outputs(task(scan, mesh, mesh, may_overwrite=True))
 
 
+def test_close_ups_must_not_overwrite_another_output(tmp_path: Path) -> None:
+    folder = tmp_path / "holes"
+    folder.mkdir()
+    asked = replace(task(tmp_path / "scan.ply", tmp_path / "mesh.ply"), closeups=folder)
+    check_outputs(replace(asked, preview=folder / "whole.png"))
+    for clash in ({"preview": folder / "hole_0.png"}, {"report": folder / "hole_12.png"}):
+        with pytest.raises(UsageError, match="name of a close-up"):
+            check_outputs(replace(asked, **clash))
+
+
 def test_an_output_needs_a_folder_and_must_be_none(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="there is no folder"):
         check_outputs(task(tmp_path / "scan.ply", tmp_path / "none" / "mesh.ply"))
@@ -70,20 +80,27 @@ class Service:
             raise ClientError(f"job {job.id} has no {role}")
         target.write_text(json.dumps({"holes": [], "warnings": [], "stages": []}))
 
+    def download_closeups(self, job: Job, folder: Path) -> list[Path]:
+        folder.mkdir()
+        self.download(job, "closeups", folder / "hole_0.png")
+        return [folder / "hole_0.png"]
 
-@pytest.mark.parametrize("lost", [set(), {"preview"}, {"report"}, {"preview", "report"}])
+
+@pytest.mark.parametrize("lost", [set(), {"preview"}, {"report"}, {"closeups"}, {"preview", "report", "closeups"}])
 def test_the_mesh_is_there_whatever_else_the_service_has_lost(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], lost: set[str]
 ) -> None:
     (tmp_path / "scan.ply").write_text("ply")
     output, preview = tmp_path / "out.ply", tmp_path / "out.png"
-    asked = replace(task(tmp_path / "scan.ply", output), preview=preview)
+    asked = replace(task(tmp_path / "scan.ply", output), preview=preview, closeups=tmp_path / "holes")
     job = repair(cast(Client, Service(lost)), Screen(), asked)
     assert job.state.has_result
     assert output.exists()
     assert preview.exists() == ("preview" not in lost)
     said = capsys.readouterr().err
-    assert {role for role in ("preview", "report") if f"there is no {role}" in said} == lost
+    assert {role for role in ("preview", "report") if f"there is no {role}" in said} == lost - {"closeups"}
+    assert ("there are no close-ups" in said) == ("closeups" in lost)
+    assert ("hole_0.png" in said) == (tmp_path / "holes" / "hole_0.png").exists() == ("closeups" not in lost)
 
 
 def test_a_report_that_was_asked_for_and_is_not_there_is_an_error_after_the_mesh(tmp_path: Path) -> None:

@@ -1,5 +1,7 @@
 """Pictures are optional: the mesh and the report are there whatever becomes of them."""
 
+import zipfile
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -8,7 +10,8 @@ import pytest
 from PIL import Image
 
 from quadpatch import drawing
-from quadpatch.drawing import add_close_ups, add_picture
+from quadpatch.drawing import add_close_up_archive, add_close_ups, add_picture
+from quadpatch.picture.hole_pictures import NumberedHole
 from quadpatch.repair import RepairedFile, repair_and_keep
 from quadpatch.types import TriangleMesh
 from tests.quadpatch.shapes import joined, punched, sphere, write_ply
@@ -87,6 +90,9 @@ def test_whatever_drawing_raises_is_a_warning(
     assert "secret" not in picture + close_up
     assert not (tmp_path / "out.png").exists()
     assert list((tmp_path / "closeups").iterdir()) == []
+    add_close_up_archive(done, tmp_path / "closeups.zip")
+    assert done.report["warnings"][2:] == [close_up]
+    assert not (tmp_path / "closeups.zip").exists()
 
 
 def test_a_folder_that_can_not_be_made_is_one_warning(ball: RepairedFile, tmp_path: Path) -> None:
@@ -102,3 +108,53 @@ def test_every_chosen_hole_gets_a_close_up_named_by_its_id(ball: RepairedFile, t
     ids = [hole.id for hole in ball.repair.chosen]
     assert len(ids) == 2
     assert {path.name for path in (tmp_path / "new" / "folder").iterdir()} == {f"hole_{i}.png" for i in ids}
+
+
+def test_an_archive_holds_what_the_folder_holds_the_widest_hole_first(tmp_path: Path) -> None:
+    """Byte for byte, in each run."""
+    holes = punched(punched(sphere(3), HOLES[0], radius=0.2), HOLES[1], (0.0, 1.0, 0.0), radius=0.3)
+    done = repaired(tmp_path, holes)
+    seen: list[tuple[str, float]] = []
+    add_close_up_archive(done, tmp_path / "one.zip", lambda stage, fraction: seen.append((stage, fraction)))
+    add_close_up_archive(done, tmp_path / "two.zip")
+    assert (tmp_path / "one.zip").read_bytes() == (tmp_path / "two.zip").read_bytes()
+    add_close_ups(done, tmp_path / "folder")
+    widest_first = sorted(done.repair.chosen, key=lambda hole: -hole.diameter)
+    with zipfile.ZipFile(tmp_path / "one.zip") as pack:
+        assert pack.testzip() is None
+        assert pack.namelist() == [f"hole_{hole.id}.png" for hole in widest_first]
+        for name in pack.namelist():
+            assert pack.read(name) == (tmp_path / "folder" / name).read_bytes()
+    assert seen == [("closeups", i / 3) for i in range(3)]
+    assert done.report["warnings"] == []
+    assert [stage["name"] for stage in done.report["stages"]][-3:] == ["closeups"] * 3
+
+
+def test_an_archive_is_bounded_in_number_and_in_size_and_says_so(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    done = repaired(tmp_path, balls(5))
+    add_close_up_archive(done, tmp_path / "few.zip", most=2)
+    assert done.report["warnings"] == ["close-ups show 2 of 5 holes, the widest"]
+    drawn: list[int] = []
+
+    def draw(_: object, hole: NumberedHole) -> bytes:
+        drawn.append(hole.id)
+        return bytes(1000)
+
+    monkeypatch.setattr(drawing, "draw_hole", draw)
+    monkeypatch.setattr(drawing, "MOST_CLOSE_UP_BYTES", 3500)
+    add_close_up_archive(done, tmp_path / "small.zip")
+    assert done.report["warnings"][1:] == ["close-ups show 3 of 5 holes, the widest"]
+    assert len(drawn) == 4
+    for name, count in (("few.zip", 2), ("small.zip", 3)):
+        with zipfile.ZipFile(tmp_path / name) as pack:
+            assert len(pack.namelist()) == count
+
+
+def test_an_archive_of_no_chosen_hole_is_empty_and_no_warning(ball: RepairedFile, tmp_path: Path) -> None:
+    nothing = RepairedFile({"warnings": [], "stages": []}, ball.measured, replace(ball.repair, chosen=[]))
+    add_close_up_archive(nothing, tmp_path / "none.zip")
+    assert nothing.report["warnings"] == []
+    with zipfile.ZipFile(tmp_path / "none.zip") as pack:
+        assert pack.namelist() == []

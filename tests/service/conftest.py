@@ -17,6 +17,7 @@ FILES = (
     ("result", "repaired.ply", b"ply, repaired"),
     ("report", "report.json", b'{"schema": 1}'),
     ("preview", "preview.png", b"\x89PNG\r\n\x1a\n"),
+    ("closeups", "closeups.zip", b"PK\x05\x06" + bytes(18)),
 )
 
 

@@ -11,4 +11,5 @@ def _die(*_: object) -> None:
 
 engine.add_picture = _die  # type: ignore[assignment]
 engine.prove_model = _die  # type: ignore[assignment]
+engine.add_close_up_archive = _die  # type: ignore[assignment]
 run_request = engine.run_request

@@ -4,7 +4,7 @@ from hypothesis import strategies as st
 from jobkit.schema import STAGES
 from worker.progress import Progress
 
-stages = st.sampled_from([*STAGES, "preview", "something new"])
+stages = st.sampled_from([*STAGES, "preview", "closeups", "something new"])
 
 
 @given(st.lists(st.tuples(stages, st.floats(allow_nan=False))))
@@ -20,7 +20,7 @@ def test_the_percentage_never_falls_and_never_reaches_100(reports: list[tuple[st
 
 def test_every_stage_of_the_contract_moves_it_on() -> None:
     progress = Progress()
-    for stage in [*STAGES, "preview"]:
+    for stage in [*STAGES, "preview", "closeups"]:
         before = progress.percent
         progress.reach(stage, 1.0)
         assert progress.stage == stage

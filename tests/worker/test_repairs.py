@@ -1,6 +1,8 @@
 """The end of an attempt when the database, or somebody else, comes in between."""
 
+import io
 import json
+import zipfile
 from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager
 from pathlib import Path
@@ -73,12 +75,13 @@ def working(
             yield context
 
 
-def new_job(context: Context, *, preview: bool = False) -> Job:
+def new_job(context: Context, *, preview: bool = False, closeups: bool = False) -> Job:
     with context.store.writer("meshes") as writer:
         writer.write(ply_bytes(*punched_relief(20, 1)))
         stored = writer.commit()
     mesh = Meshes(context.database).add(stored, "scan.ply", "ply")[0]
-    spec = JobSpec.model_validate({"mesh_id": mesh.id, "method": {"method": "smooth"}, "output": {"preview": preview}})
+    output = {"preview": preview, "closeups": closeups}
+    spec = JobSpec.model_validate({"mesh_id": mesh.id, "method": {"method": "smooth"}, "output": output})
     return Jobs(context.database).create(NewJob(spec, ResolvedModel(requested="smooth", kind="none"), 3))[0]
 
 
@@ -101,19 +104,38 @@ def test_a_result_whose_publication_was_not_confirmed_keeps_its_files(
     assert kept == {result_key(job.id, 1, file.name) for file in ended.result.files}
 
 
+def test_a_job_that_asks_for_close_ups_has_one_of_each_chosen_hole(settings: Settings, store: ObjectStore) -> None:
+    with working(settings, Database(settings.effective_database_url), store) as context:
+        job = new_job(context, closeups=True)
+        run_job(job.id)
+        ended = context.jobs.get(job.id)
+    assert ended.state is JobState.SUCCEEDED
+    assert ended.result is not None
+    assert [file.role for file in ended.result.files] == ["result", "report", "closeups"]
+    assert ended.links.closeups == f"/v1/jobs/{job.id}/closeups.zip"
+    packed = b"".join(store.read(result_key(job.id, 1, "closeups.zip")))
+    report = json.loads(b"".join(store.read(result_key(job.id, 1, "report.json"))))
+    filled = [f"hole_{hole['id']}.png" for hole in report["holes"] if hole["verdict"].startswith("filled")]
+    assert zipfile.ZipFile(io.BytesIO(packed)).namelist() == filled
+    assert report["stages"][-1]["name"] == "closeups"
+
+
+@pytest.mark.parametrize(
+    ("asked", "words"), [({"preview": True}, "there is no picture"), ({"closeups": True}, "there are no close-ups")]
+)
 def test_a_job_whose_engine_dies_while_it_draws_has_its_mesh_and_a_warning(
-    settings: Settings, store: ObjectStore, monkeypatch: pytest.MonkeyPatch
+    settings: Settings, store: ObjectStore, monkeypatch: pytest.MonkeyPatch, asked: dict[str, bool], words: str
 ) -> None:
     monkeypatch.setenv("PYTHONPATH", str(Path(__file__).parent))
     database = Database(settings.effective_database_url)
     with working(settings, database, store, "engine_that_dies_drawing") as context:
-        job = new_job(context, preview=True)
+        job = new_job(context, **asked)
         run_job(job.id)
         ended = context.jobs.get(job.id)
     assert ended.state is JobState.SUCCEEDED_WITH_WARNINGS
     assert ended.attempt == 1
     assert ended.result is not None
-    assert ended.result.warnings == ["there is no picture: the engine was ended by SIGSEGV"]
+    assert ended.result.warnings == [f"{words}: the engine was ended by SIGSEGV"]
     assert [file.role for file in ended.result.files] == ["result", "report"]
     report = json.loads(b"".join(store.read(result_key(job.id, 1, "report.json"))))
     assert report["warnings"] == ended.result.warnings

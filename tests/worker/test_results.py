@@ -1,4 +1,5 @@
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -10,10 +11,13 @@ from jobkit.store import ObjectStore, StoredObject, result_key
 from worker.failures import Failure
 from worker.limits import EngineLimits
 from worker.request import EngineRequest
-from worker.results import drop_result, note_lost_picture, store_result
+from worker.results import drop_result, missing_pictures, note_lost_pictures, store_result
 
 ATTEMPT = Attempt("job_01jd7z3v5qk8m2x4c6b8n0a9de", 2)
 REQUEST = EngineRequest("repair", "mesh/source.stl", EngineLimits(60.0, 1024), output="repaired.stl")
+
+
+PICTURES = (("preview", "preview.png", "there is no picture"), ("closeups", "closeups.zip", "there are no close-ups"))
 
 
 class RefusesPictures:
@@ -27,7 +31,7 @@ class RefusesPictures:
         return getattr(self._store, name)
 
     def put_file(self, key: str, path: Path) -> StoredObject:
-        if key.endswith(".png"):
+        if key.endswith((".png", ".zip")):
             raise self._error
         return self._store.put_file(key, path)
 
@@ -47,11 +51,13 @@ def finished_folder(folder: Path, **report: Any) -> Path:
 
 def test_files_lie_where_only_this_attempt_writes(tmp_path: Path, store: ObjectStore) -> None:
     (tmp_path / "preview.png").write_bytes(b"png")
+    (tmp_path / "closeups.zip").write_bytes(b"zip")
     result = store_result(finished_folder(tmp_path), REQUEST, ATTEMPT, store, 1.5)
     assert [(file.role, file.name, file.media_type) for file in result.files] == [
         ("result", "repaired.stl", "model/stl"),
         ("report", "report.json", "application/json"),
         ("preview", "preview.png", "image/png"),
+        ("closeups", "closeups.zip", "application/zip"),
     ]
     for file in result.files:
         assert store.size(result_key(ATTEMPT.job_id, 2, file.name)) == file.size_bytes
@@ -80,25 +86,40 @@ def test_refused_holes_are_a_warning(
 
 
 @pytest.mark.parametrize("error", [StoreUnavailableError("away"), OSError(5, "I/O error")])
-def test_a_picture_that_can_not_be_stored_is_a_warning(tmp_path: Path, store: ObjectStore, error: Exception) -> None:
-    (tmp_path / "preview.png").write_bytes(b"png")
+@pytest.mark.parametrize(("_", "name", "words"), PICTURES)
+def test_a_picture_that_can_not_be_stored_is_a_warning(
+    tmp_path: Path, store: ObjectStore, error: Exception, _: str, name: str, words: str
+) -> None:
+    (tmp_path / name).write_bytes(b"picture")
     result = store_result(finished_folder(tmp_path), REQUEST, ATTEMPT, RefusesPictures(store, error), 1.5)
     assert [file.role for file in result.files] == ["result", "report"]
-    assert result.warnings == ["there is no picture: it could not be stored"]
+    assert result.warnings == [f"{words}: the store failed"]
     report = json.loads(b"".join(store.read(result_key(ATTEMPT.job_id, 2, "report.json"))))
     assert report["warnings"] == result.warnings
 
 
-def test_a_picture_that_was_not_drawn_is_named_in_the_report(tmp_path: Path, store: ObjectStore) -> None:
-    (tmp_path / "preview.png").write_bytes(b"half a picture")
+@pytest.mark.parametrize(("role", "name", "words"), PICTURES)
+def test_of_two_pictures_the_one_that_was_drawn_is_kept_and_the_other_is_named_in_the_report(
+    tmp_path: Path, store: ObjectStore, role: str, name: str, words: str
+) -> None:
+    request = replace(REQUEST, with_preview=True, with_close_ups=True)
+    for _, other, _ in PICTURES:
+        if other != name:
+            (tmp_path / other).write_bytes(b"picture")
     folder = finished_folder(tmp_path, warnings=["the scan is coarse"])
-    note_lost_picture(folder, Failure("out_of_memory", "the work needs more memory than the limit of 512 MiB"))
-    result = store_result(folder, REQUEST, ATTEMPT, store, 1.5)
-    assert [file.role for file in result.files] == ["result", "report"]
-    assert result.warnings == [
-        "the scan is coarse",
-        "there is no picture: the work needs more memory than the limit of 512 MiB",
-    ]
+    assert [picture.role for picture in missing_pictures(folder, request)] == [role]
+    note_lost_pictures(folder, request, Failure("out_of_memory", "the work needs more memory than 512 MiB"))
+    result = store_result(folder, request, ATTEMPT, store, 1.5)
+    assert len(result.files) == 3
+    assert result.file(role) is None
+    assert result.warnings == ["the scan is coarse", f"{words}: the work needs more memory than 512 MiB"]
+
+
+def test_a_picture_of_which_the_engine_said_why_it_is_missing_gets_one_warning(tmp_path: Path) -> None:
+    said = "there is no picture: there is no surface to draw"
+    folder = finished_folder(tmp_path, warnings=[said], stages=[{"name": "preview", "seconds": 0.1}])
+    note_lost_pictures(folder, replace(REQUEST, with_preview=True), Failure("crashed", "the engine was ended"))
+    assert json.loads((folder / "report.json").read_text())["warnings"] == [said]
 
 
 def test_a_dropped_result_leaves_that_of_another_attempt_alone(tmp_path: Path, store: ObjectStore) -> None:

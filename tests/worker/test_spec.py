@@ -122,3 +122,13 @@ def test_a_job_can_lower_the_limits_and_never_raise_them() -> None:
 def test_an_inspection_writes_no_mesh() -> None:
     request = inspect_request(source(), LIMITS)
     assert (request.task, request.output, request.model) == ("inspect", "", "")
+
+
+def test_each_picture_is_drawn_where_it_is_asked_for() -> None:
+    for preview in (False, True):
+        for closeups in (False, True):
+            job = spec(output={"preview": preview, "closeups": closeups})
+            request = repair_request(job, source(), "smooth", LIMITS)
+            assert (request.with_preview, request.with_close_ups) == (preview, closeups)
+    default = repair_request(spec(), source(), "smooth", LIMITS)
+    assert (default.with_preview, default.with_close_ups) == (True, False)

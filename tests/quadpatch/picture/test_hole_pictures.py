@@ -58,7 +58,7 @@ def test_a_rim_without_area_has_no_normal_and_one_of_any_size_has(scale: float) 
 
 def test_the_hole_is_open_before_and_filled_after_and_lies_in_the_middle(tmp_path: Path) -> None:
     _, pair, hole = ball_with_a_hole()
-    draw_hole(pair, hole, tmp_path / "hole.png")
+    (tmp_path / "hole.png").write_bytes(draw_hole(pair, hole))
     sheet = picture(tmp_path / "hole.png")
     middle = sheet.shape[1] // 2
     left, right = sheet[30:, : middle - 4], sheet[30:, middle + 4 :]
@@ -74,7 +74,7 @@ def test_the_number_is_drawn_in_both_pictures(tmp_path: Path) -> None:
     _, pair, hole = ball_with_a_hole()
     sheets = []
     for number in (7, 41):
-        draw_hole(pair, NumberedHole(number, hole.rim), tmp_path / f"{number}.png")
+        (tmp_path / f"{number}.png").write_bytes(draw_hole(pair, NumberedHole(number, hole.rim)))
         sheets.append(picture(tmp_path / f"{number}.png"))
     differs = (sheets[0] != sheets[1]).any(axis=2)
     middle = differs.shape[1] // 2
@@ -86,7 +86,7 @@ def test_the_number_is_drawn_in_both_pictures(tmp_path: Path) -> None:
 def test_a_hole_without_extent_is_drawn_all_the_same(tmp_path: Path) -> None:
     _, pair, _ = ball_with_a_hole()
     for name, rim in (("point", np.zeros((3, 3))), ("slit", np.array([[0.0, 0, 1], [0, 0.1, 1], [0, 0.2, 1]]))):
-        draw_hole(pair, NumberedHole(0, rim), tmp_path / f"{name}.png")
+        (tmp_path / f"{name}.png").write_bytes(draw_hole(pair, NumberedHole(0, rim)))
         assert (tmp_path / f"{name}.png").exists()
 
 
@@ -97,7 +97,7 @@ def test_a_surface_turned_inside_out_is_seen_from_outside(tmp_path: Path) -> Non
     invented = np.arange(len(after.triangles)) >= len(before.triangles)
     inside_out = prepare(turned, after, invented)
     assert inside_out.is_turned
-    draw_hole(inside_out, NumberedHole(7, hole.rim[::-1]), tmp_path / "turned.png")
+    (tmp_path / "turned.png").write_bytes(draw_hole(inside_out, NumberedHole(7, hole.rim[::-1])))
     assert share_of_hue(picture(tmp_path / "turned.png"), SURE) > 0.04
 
 

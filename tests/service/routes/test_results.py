@@ -11,6 +11,7 @@ PATHS = [
     ("result", "application/octet-stream", b"ply, repaired", "part 7-repaired.ply"),
     ("report", "application/json", b'{"schema": 1}', "part 7-repaired.json"),
     ("preview.png", "image/png", b"\x89PNG\r\n\x1a\n", "part 7-repaired.png"),
+    ("closeups.zip", "application/zip", b"PK\x05\x06" + bytes(18), "part 7-repaired-closeups.zip"),
 ]
 
 
@@ -57,7 +58,7 @@ def test_a_result_is_named_after_the_file_of_its_job_whatever_its_bytes_are_call
             assert header == f'attachment; filename="{name}-repaired.{suffix}"'
 
 
-@pytest.mark.parametrize("path", ["result", "report", "preview.png"])
+@pytest.mark.parametrize("path", ["result", "report", "preview.png", "closeups.zip"])
 def test_a_job_that_has_not_ended_has_no_result_yet(client: TestClient, job_id: str, path: str) -> None:
     answer = client.get(f"/v1/jobs/{job_id}/{path}")
     assert (answer.status_code, answer.json()["code"]) == (409, "job_not_finished")
