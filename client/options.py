@@ -9,7 +9,7 @@ from pydantic import ValidationError
 
 from client.errors import UsageError
 from client.rule_text import read_rule
-from jobkit.schema import SELF, JobSpec, Recipe
+from jobkit.schema import SELF, JobSpec, Recipe, conflict_of
 
 DEFAULT_URL = "http://127.0.0.1:8000"
 MethodName = Literal["dictionary", "cnn", "smooth"]
@@ -124,15 +124,19 @@ def make_spec(mesh_id: str, holes: HoleChoice, method: MethodChoice, **rest: Any
     Raises
     ------
     UsageError
-        If an option is out of its range, or does not go with the method.
+        If an option is out of its range, or does not go with the method or with another option.
     """
     chosen = _given({**vars(holes), "rules": [read_rule(text) for text in holes.rules or ()]})
     values = {"mesh_id": mesh_id, "holes": chosen, "method": _method(method), **_given(rest)}
     try:
-        return JobSpec.model_validate(values)
+        spec = JobSpec.model_validate(values)
     except ValidationError as error:
         lines = [f"{'.'.join(str(step) for step in e['loc'])}: {e['msg']}" for e in error.errors()]
         raise UsageError("; ".join(lines)) from error
+    conflict = conflict_of(spec)
+    if conflict is not None:
+        raise UsageError(conflict)
+    return spec
 
 
 def tolerance(word: str | None) -> float | str | None:

@@ -33,6 +33,7 @@
     ├── OverLimitError              over_service_limit    more time or memory than the service grants
     ├── TooLargeError               body_too_large        more bytes than the limit
     ├── UnusableModelError          unusable_model        the artifact is no model
+    ├── OptionsConflictError        options_conflict      options of a job exclude each other
     ├── ObjectDamagedError          object_damaged        the bytes under a key are not those that were stored
     ├── QueueUnavailableError       queue_unavailable     Redis or Valkey does not answer
     ├── DatabaseUnavailableError    database_unavailable  the database does not answer, or is locked for too long
@@ -245,6 +246,12 @@ class UnusableModelError(JobkitError):
     """The artifact is no model."""
 
     code = "unusable_model"
+
+
+class OptionsConflictError(JobkitError):
+    """Options of a job exclude each other."""
+
+    code = "options_conflict"
 
 
 class QueueUnavailableError(JobkitError):

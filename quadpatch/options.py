@@ -28,6 +28,8 @@ HoleAction = Literal["model", "smooth", "flat"]
 RuleAction = Literal["skip", "model", "smooth", "flat"]
 Cap = Literal["flat"]
 
+MODEL_FILLS_ONLY = "holes.cap and the actions smooth and flat of holes.rules go with the recipe default only"
+
 
 @dataclass(frozen=True)
 class HoleRule:
@@ -119,6 +121,11 @@ class HoleOptions:
     def id_set(self) -> frozenset[int] | None:
         """The ids, for look-ups; None where none were given."""
         return None if self.ids is None else frozenset(self.ids)
+
+    @property
+    def names_fills(self) -> bool:
+        """Whether some holes are to be closed in another way than by the model."""
+        return self.cap is not None or any(rule.action in ("smooth", "flat") for rule in self.rules)
 
     @property
     def is_automatic(self) -> bool:
@@ -231,6 +238,8 @@ class RepairOptions:
         check_weld_tolerance(self.weld_tolerance)
         if self.recipe not in get_args(Recipe):
             raise OptionError(f"recipe must be one of {', '.join(get_args(Recipe))}; it is {self.recipe!r}")
+        if self.recipe == "paper" and self.holes.names_fills:
+            raise OptionError(MODEL_FILLS_ONLY)
         if self.recipe != "paper" and self.dictionary != DictionaryOptions():
             raise OptionError("dictionary.atoms and dictionary.nonzero go with the recipe paper only")
         if not isinstance(self.seed, int) or self.seed < 0:

@@ -25,7 +25,7 @@ from quadpatch.judge import HoleResult, count_new, evidence_of, gather, with_ope
 from quadpatch.mesh.holes import Hole, Selection, find_holes, select_holes
 from quadpatch.mesh.measures import diagonal, mean_edge_length
 from quadpatch.mesh.smoothing import laplacian_smooth
-from quadpatch.options import DictionaryOptions, PatchOptions, RepairOptions
+from quadpatch.options import MODEL_FILLS_ONLY, DictionaryOptions, PatchOptions, RepairOptions
 from quadpatch.patches.height_map import sample_height_maps
 from quadpatch.patches.layout import lay_out, pick_patches, seeds_near, take
 from quadpatch.patches.scale import PatchScale
@@ -114,9 +114,7 @@ def inpaint_as_paper(
         holes = find_holes(mesh)
         selection = select_holes(holes, options.holes, diagonal(mesh))
         if any(action != "model" for action in selection.actions.values()):
-            raise OptionError(
-                "holes.cap and the actions smooth and flat of holes.rules go with the recipe default only"
-            )
+            raise OptionError(MODEL_FILLS_ONLY)
     with stages.stage("fill"):
         filled = close_flat(mesh, [hole.loop for hole in selection.chosen])
     completion, warnings = None, []

@@ -25,6 +25,7 @@ STATUS_BY_ERROR: Mapping[type[errors.JobkitError], HTTPStatus] = {
     errors.TlsRequiredError: HTTPStatus.FORBIDDEN,
     errors.TooLargeError: HTTPStatus.REQUEST_ENTITY_TOO_LARGE,
     errors.UnusableModelError: HTTPStatus.UNPROCESSABLE_ENTITY,
+    errors.OptionsConflictError: HTTPStatus.UNPROCESSABLE_ENTITY,
     errors.QueueUnavailableError: HTTPStatus.SERVICE_UNAVAILABLE,
     errors.DatabaseUnavailableError: HTTPStatus.SERVICE_UNAVAILABLE,
     errors.StoreUnavailableError: HTTPStatus.SERVICE_UNAVAILABLE,

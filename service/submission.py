@@ -3,12 +3,18 @@
 import logging
 from dataclasses import dataclass
 
-from jobkit.errors import MeshNotReadyError, MeshRejectedError, OverLimitError, QueueUnavailableError
+from jobkit.errors import (
+    MeshNotReadyError,
+    MeshRejectedError,
+    OptionsConflictError,
+    OverLimitError,
+    QueueUnavailableError,
+)
 from jobkit.idempotency import Idempotency
 from jobkit.jobs import NewJob
 from jobkit.logs import current_request_id
 from jobkit.reconcile import submit_analysis, submit_job, submit_proof
-from jobkit.schema import Job, JobSpec, Limits, Mesh, MeshFacts, MeshState, Plan, ResolvedModel
+from jobkit.schema import Job, JobSpec, Limits, Mesh, MeshFacts, MeshState, Plan, ResolvedModel, conflict_of
 from jobkit.selection import resolve_method
 from jobkit.settings import Settings
 from jobkit.telemetry import current_traceparent
@@ -49,6 +55,8 @@ def submit(services: Services, submission: Submission) -> tuple[Job, bool]:
         If the mesh can't be repaired as asked.
     ModelNotFoundError, ModelKindError, NoNetworkError, ModelNotProvenError, ModelRefusedError
         If the method's model can't be used.
+    OptionsConflictError
+        If options of the spec exclude each other.
     OverLimitError
         If the spec asks for more time or memory than the service grants.
     IdempotencyError
@@ -100,6 +108,9 @@ def request_proof(services: Services, reference: str) -> None:
 
 
 def _check(services: Services, spec: JobSpec) -> ResolvedModel:
+    conflict = conflict_of(spec)
+    if conflict is not None:
+        raise OptionsConflictError(conflict)
     _check_limits(spec.limits, services.settings)
     mesh = services.meshes.get(spec.mesh_id)
     if mesh.problem is not None:

@@ -54,6 +54,7 @@ from jobkit.schema.spec import (
     Recipe,
     RepairSpec,
     SmoothMethod,
+    conflict_of,
 )
 from jobkit.schema.states import TRANSITIONS, JobState, MeshState, ModelState
 from jobkit.schema.webhooks import (
@@ -151,5 +152,6 @@ __all__ = [
     "WebhookLinks",
     "WebhookList",
     "WebhookWithSecret",
+    "conflict_of",
     "rfc3339",
 ]

@@ -232,6 +232,21 @@ class RepairSpec(Request):
         return self
 
 
+def conflict_of(spec: RepairSpec) -> str | None:
+    """Say in a sentence which options of a job exclude each other; None where none do.
+
+    It is asked where a job is made, and not part of reading a spec: jobs that were stored before a rule came up are
+    still read.
+    """
+    rules = spec.holes.rules
+    if spec.weld_tolerance != "auto" and any(rule.ids is not None for rule in rules):
+        return "ids of holes.rules name holes found with the weld_tolerance auto: drop one of the two"
+    is_paper = isinstance(spec.method, DictionaryMethod) and spec.method.recipe == "paper"
+    if is_paper and (spec.holes.cap is not None or any(rule.action in ("smooth", "flat") for rule in rules)):
+        return "holes.cap and the actions smooth and flat of holes.rules go with the recipe default only"
+    return None
+
+
 class JobSpec(RepairSpec):
     """A whole job: a mesh, and what to do with it."""
 

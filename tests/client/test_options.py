@@ -75,6 +75,18 @@ def test_which_holes_reaches_the_spec() -> None:
 
 
 @pytest.mark.parametrize(
+    "holes",
+    [HoleChoice(cap="flat"), HoleChoice(rules=["max_diameter=5:smooth"]), HoleChoice(rules=["id=1:skip", "flat"])],
+)
+def test_options_that_exclude_each_other_are_told_before_anything_is_sent(holes: HoleChoice) -> None:
+    with pytest.raises(UsageError, match="go with the recipe default only"):
+        make_spec(MESH_ID, holes, MethodChoice(model="self", recipe="paper"))
+    make_spec(MESH_ID, holes, MethodChoice(model="self"))
+    with pytest.raises(UsageError, match="drop one of the two"):
+        make_spec(MESH_ID, HoleChoice(rules=["id=1:skip"]), MethodChoice(), weld_tolerance=0.5)
+
+
+@pytest.mark.parametrize(
     "rule", ["", "fill", "max_diameter=wide:flat", "colour=red:flat", "kind=window:flat", "id=x:skip"]
 )
 def test_a_rule_that_can_not_be_read_is_a_usage_error(rule: str) -> None:

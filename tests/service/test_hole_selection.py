@@ -5,12 +5,14 @@ from dataclasses import asdict
 from typing import Any, get_args
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import jobkit.schema as wire
+from quadpatch.errors import OptionError
 from quadpatch.mesh import holes as method
-from quadpatch.options import Cap, HoleAction, HoleKind, HoleOptions, HoleRule, RuleAction
+from quadpatch.options import Cap, HoleAction, HoleKind, HoleOptions, HoleRule, Recipe, RepairOptions, RuleAction
 from service.hole_selection import choose_holes
 
 LENGTHS = st.floats(0.1, 100.0)
@@ -76,6 +78,19 @@ def test_a_plan_selects_what_the_method_selects(
     expected = [(selection.skipped.get(hole.id, (None, ""))[0], selection.actions.get(hole.id)) for hole in theirs]
     choices = choose_holes(ours, on_the_wire(options), diagonal)
     assert [(choice.reason, choice.action) for choice in choices] == expected
+
+
+@given(options=OPTIONS, recipe=st.sampled_from(get_args(Recipe)))
+def test_options_are_refused_when_a_job_is_made_where_the_method_refuses_them(
+    options: HoleOptions, recipe: Recipe
+) -> None:
+    method = wire.DictionaryMethod(method="dictionary", model="self", recipe=recipe)
+    conflict = wire.conflict_of(wire.RepairSpec(method=method, holes=on_the_wire(options)))
+    if conflict is None:
+        RepairOptions(options, recipe=recipe)
+        return
+    with pytest.raises(OptionError, match=conflict):
+        RepairOptions(options, recipe=recipe)
 
 
 def test_words_of_the_contract_are_those_of_the_method() -> None:

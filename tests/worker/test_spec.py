@@ -37,7 +37,7 @@ def test_a_job_without_wishes_is_a_repair_with_all_defaults() -> None:
 def test_every_option_of_a_job_reaches_the_method() -> None:
     job = spec(
         method={
-            **{"method": "dictionary", "model": "self", "recipe": "paper"},
+            **{"method": "dictionary", "model": "self"},
             "patches": {"length": 2.5, "resolution": 16, "overlap": 3},
         },
         holes={
@@ -52,8 +52,10 @@ def test_every_option_of_a_job_reaches_the_method() -> None:
     )
     rules = (HoleRule("skip", (4,)), HoleRule("flat", None, "open_end", 1.0, 2.0, 3.0))
     assert RepairOptions.from_dict(method_options(job, LIMITS.time_s)) == RepairOptions(
-        HoleOptions(9.0, 30.0, True, (4, 1), True, "flat", rules), PatchOptions(2.5, 16, 3), 7, "paper"
+        HoleOptions(9.0, 30.0, True, (4, 1), True, "flat", rules), PatchOptions(2.5, 16, 3), 7
     )
+    by_paper = spec(method={"method": "dictionary", "model": "self", "recipe": "paper"})
+    assert RepairOptions.from_dict(method_options(by_paper, LIMITS.time_s)) == RepairOptions(recipe="paper")
 
 
 def test_the_weld_tolerance_of_a_job_reaches_the_method() -> None:

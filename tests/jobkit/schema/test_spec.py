@@ -3,7 +3,7 @@ from typing import Any
 import pytest
 from pydantic import ValidationError
 
-from jobkit.schema import CnnMethod, DictionaryMethod, JobSpec, SmoothMethod
+from jobkit.schema import CnnMethod, DictionaryMethod, JobSpec, SmoothMethod, conflict_of
 
 MESH = {"mesh_id": "a" * 64}
 
@@ -102,3 +102,10 @@ def test_every_field_of_the_document_says_what_it_is() -> None:
     for definition in (schema, *schema["$defs"].values()):
         for name, field in definition["properties"].items():
             assert field.get("description"), name
+
+
+def test_a_stored_job_whose_options_exclude_each_other_is_still_read() -> None:
+    method = {"method": "dictionary", "model": "self", "recipe": "paper"}
+    spec = JobSpec.model_validate(MESH | {"method": method, "holes": {"cap": "flat"}})
+    assert JobSpec.model_validate_json(spec.model_dump_json()) == spec
+    assert conflict_of(spec) is not None

@@ -1,3 +1,4 @@
+import json
 import threading
 from collections.abc import Callable
 from typing import Any
@@ -57,6 +58,39 @@ def test_a_job_that_cannot_work_is_refused_at_once(
     answer = client.post("/v1/jobs", json={"mesh_id": mesh_id, "method": SMOOTH} | change)
     assert (answer.status_code, answer.json()["code"]) == (status, code)
     assert client.get("/v1/jobs").json()["items"] == []
+
+
+PAPER = {"method": {"method": "dictionary", "model": "self", "recipe": "paper"}}
+CONFLICTS: list[dict[str, Any]] = [
+    PAPER | {"holes": {"cap": "flat"}},
+    PAPER | {"holes": {"rules": [{"action": "skip", "ids": [1]}, {"action": "smooth", "max_diameter": 5.0}]}},
+    PAPER | {"holes": {"rules": [{"action": "flat", "kind": "open_end"}]}},
+    {"method": SMOOTH, "weld_tolerance": 0.5, "holes": {"rules": [{"action": "skip", "ids": [1]}]}},
+]
+
+
+@pytest.mark.parametrize("spec", CONFLICTS)
+def test_options_that_exclude_each_other_are_refused_wherever_a_job_is_made(
+    client: TestClient, mesh_id: str, analyse: Callable[[str], None], spec: dict[str, Any]
+) -> None:
+    analyse(mesh_id)
+    first = client.post("/v1/jobs", json={"mesh_id": mesh_id, "method": SMOOTH}).json()["id"]
+    answers = [
+        client.post("/v1/jobs", json={"mesh_id": mesh_id, **spec}),
+        client.post("/v1/jobs?dry_run=true", json={"mesh_id": mesh_id, **spec}),
+        client.post(f"/v1/jobs/{first}/rerun", json=spec),
+        client.post("/v1/repairs", files={"mesh": ("a.ply", b"ply\n"), "spec": (None, json.dumps(spec))}),
+    ]
+    for answer in answers:
+        assert (answer.status_code, answer.json()["code"]) == (422, "options_conflict")
+        assert answer.json()["detail"].startswith(("holes.cap and the actions", "ids of holes.rules"))
+    assert [job["id"] for job in client.get("/v1/jobs").json()["items"]] == [first]
+
+
+def test_the_recipe_of_the_paper_goes_with_rules_that_fill_by_the_model(client: TestClient, mesh_id: str) -> None:
+    rules = [{"action": "skip", "ids": [1]}, {"action": "model", "kind": "hole"}]
+    answer = client.post("/v1/jobs", json={"mesh_id": mesh_id, **PAPER, "holes": {"rules": rules}})
+    assert answer.status_code == 202
 
 
 def test_a_network_can_be_fitted_to_the_mesh_and_one_that_is_taken_as_it_is_can_not(
