@@ -6,7 +6,7 @@ from datetime import UTC
 from rich.console import Console
 from rich.table import Table
 
-from jobkit.schema import Job, MeshFacts, ModelList, ModelVersion, Plan
+from jobkit.schema import Job, MeshFacts, ModelList, ModelVersion, Plan, PlannedHole
 
 
 def print_holes(console: Console, facts: MeshFacts, plan: Plan) -> None:
@@ -21,7 +21,6 @@ def print_holes(console: Console, facts: MeshFacts, plan: Plan) -> None:
         table.add_column(name)
     table.add_column("would be filled")
     for hole in plan.holes:
-        verdict = f"yes: {hole.action}" if hole.selected else f"no: {(hole.reason or 'by rule').replace('_', ' ')}"
         numbers = (hole.diameter, hole.perimeter)
         table.add_row(
             str(hole.id),
@@ -30,10 +29,16 @@ def print_holes(console: Console, facts: MeshFacts, plan: Plan) -> None:
             f"{hole.area:.4g}",
             hole.kind,
             " ".join(f"{coordinate:.4g}" for coordinate in hole.centre or ()),
-            verdict,
+            _fate(hole),
         )
     console.print(table)
     console.print(f"{plan.selected:,} of {len(plan.holes):,} would be filled")
+
+
+def _fate(hole: PlannedHole) -> str:
+    if hole.joined_to is not None:
+        return f"yes: joined to hole {hole.joined_to}"
+    return f"yes: {hole.action}" if hole.selected else f"no: {(hole.reason or 'by rule').replace('_', ' ')}"
 
 
 def print_models(console: Console, models: ModelList) -> None:

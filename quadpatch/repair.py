@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from quadpatch.errors import EmptyMeshError, OptionError, TorchMissingError
-from quadpatch.filling.islands import join_islands
+from quadpatch.filling.islands import hosts_of
 from quadpatch.formats.marks import NUMBERED
 from quadpatch.formats.precision import check_precision
 from quadpatch.formats.reading import read_scan
@@ -144,14 +144,16 @@ def repair_and_keep(
 def inspect_file(source: Path, weld_tolerance: Tolerance = "auto") -> dict[str, Any]:
     """Facts and holes of a file, JSON-ready; `chosen` says what the automatic rule would fill.
 
-    The holes are those that a repair with the same tolerance finds.
+    The holes are those that a repair with the same tolerance finds. `lies_in` names the holes that a loop lies in as
+    the border of an island: where one of them is filled, the island is joined to the first that is.
     """
     check_weld_tolerance(weld_tolerance)
     scan, welded = _read(source, weld_tolerance)
     mesh = welded.mesh
     holes = find_holes(mesh)
     selection = select_holes(holes, RepairOptions().holes, diagonal(mesh))
-    host_of = join_islands(mesh, holes, selection.chosen).host_of
+    hosts = hosts_of(mesh, holes, [hole for hole in holes if hole.is_manifold])
+    host_of = {i: chosen[0] for i, found in hosts.items() if (chosen := [j for j in found if j in selection.actions])}
     reasons = {i: reason for i, (_, reason) in selection.skipped.items()}
     reasons |= {island: f"joined to hole {host}, in which it lies" for island, host in host_of.items()}
     facts: dict[str, Any] = json_ready(
@@ -164,7 +166,8 @@ def inspect_file(source: Path, weld_tolerance: Tolerance = "auto") -> dict[str, 
                 {
                     **describe_hole(hole),
                     "chosen": hole.id not in selection.skipped or hole.id in host_of,
-                    "action": selection.actions.get(hole.id),
+                    "action": selection.actions.get(host_of.get(hole.id, hole.id)),
+                    "lies_in": hosts.get(hole.id, []),
                     "reason": reasons.get(hole.id),
                 }
                 for hole in holes

@@ -104,9 +104,17 @@ def verified_results(
         elif result.verdict.startswith("filled"):
             by_id[hole.id] = _verified(result, checked, faults, i, size)
     for island, host in rims.host_of.items():
-        why = f"an island in hole {host}: the ring between its border and the rim of that hole is filled"
-        by_id[island] = replace(by_id[island], verdict="filled_smooth", code="joined", reason=why)
+        by_id[island] = _joined(by_id[island], by_id[host])
     return [by_id[result.hole.id] for result in results]
+
+
+def _joined(island: HoleResult, host: HoleResult) -> HoleResult:
+    """Say of an island what became of the hole that it was joined to: its border is a part of that one's rim."""
+    if host.verdict == "refused":
+        why = f"an island in hole {host.hole.id}, which was refused: {host.reason}"
+        return replace(island, verdict="refused", code=host.code, reason=why)
+    why = f"an island in hole {host.hole.id}: the ring between its border and the rim of that hole is filled"
+    return replace(island, verdict="filled_smooth", code="joined", reason=why)
 
 
 def with_named_faults(results: list[HoleResult], chosen: list[Hole], faults: Faults) -> list[HoleResult]:

@@ -15,10 +15,14 @@ MAX_NEW_VERTICES = 200_000
 
 @dataclass(frozen=True)
 class Choice:
-    """What would become of one hole: the code of the reason why it stays open, or how it is closed."""
+    """What would become of one hole: the code of the reason why it stays open, or how it is closed.
+
+    `joined_to` is the id of the hole that it lies in, where it is the border of an island.
+    """
 
     reason: str | None
     action: HoleAction | None
+    joined_to: int | None = None
 
 
 def choose_holes(holes: list[Hole], selection: HoleSelection, diagonal: float) -> list[Choice]:
@@ -40,6 +44,23 @@ def choose_holes(holes: list[Hole], selection: HoleSelection, diagonal: float) -
         reason = _reason_to_skip(hole, selection, rule, diagonal) if is_listed else _reason_if_unlisted(hole)
         choices.append(Choice(reason, None if reason else _action(hole, selection, rule)))
     return choices
+
+
+def join_islands(holes: list[Hole], choices: list[Choice]) -> list[Choice]:
+    """Join each island to the narrowest hole around it that is filled, as `quadpatch.filling.islands` does.
+
+    Parameters
+    ----------
+    holes : list of Hole
+    choices : list of Choice
+        One for each hole, by its own selection.
+    """
+    actions = {hole.id: choice.action for hole, choice in zip(holes, choices, strict=True) if choice.reason is None}
+    hosts = [next((i for i in hole.lies_in if i in actions), None) for hole in holes]
+    return [
+        choice if host is None else Choice(None, actions[host], host)
+        for host, choice in zip(hosts, choices, strict=True)
+    ]
 
 
 def _id_set(ids: list[int] | None) -> frozenset[int] | None:

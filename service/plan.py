@@ -1,9 +1,9 @@
 """What a job would do: its selection, applied to the hole list that a worker found."""
 
 from jobkit.errors import UnknownHoleError
-from jobkit.schema import HoleSelection, JobSpec, Limits, MeshFacts, Plan, PlannedHole, ResolvedModel
+from jobkit.schema import DictionaryMethod, HoleSelection, JobSpec, Limits, MeshFacts, Plan, PlannedHole, ResolvedModel
 from jobkit.settings import Settings
-from service.hole_selection import choose_holes
+from service.hole_selection import choose_holes, join_islands
 
 
 def make_plan(spec: JobSpec, facts: MeshFacts, model: ResolvedModel, settings: Settings) -> Plan:
@@ -16,8 +16,10 @@ def make_plan(spec: JobSpec, facts: MeshFacts, model: ResolvedModel, settings: S
     """
     check_hole_ids(spec.holes, facts)
     choices = choose_holes(facts.holes, spec.holes, facts.diagonal)
+    if not (isinstance(spec.method, DictionaryMethod) and spec.method.recipe == "paper"):
+        choices = join_islands(facts.holes, choices)  # the paper knows no islands
     holes = [
-        PlannedHole(**hole.model_dump(), selected=choice.reason is None, reason=choice.reason, action=choice.action)
+        PlannedHole(**hole.model_dump(), selected=choice.reason is None, **vars(choice))
         for hole, choice in zip(facts.holes, choices, strict=True)
     ]
     limits = Limits(

@@ -165,6 +165,11 @@ class PlannedHole(Hole):
     action: HoleAction | None = Field(
         default=None, description="How it would be closed; null: it stays open.", examples=["model"]
     )
+    joined_to: int | None = Field(
+        default=None,
+        description="Id of the hole that it lies in as the border of an island: the ring between the two is filled.",
+        examples=[0],
+    )
 
 
 class Plan(Response):

@@ -46,6 +46,11 @@ class Hole(Response):
         default=None, description="Unit vector that the hole faces; null like `centre`.", examples=[[0.0, 0.6, 0.8]]
     )
     bounding_box: BoundingBox | None = Field(default=None, description="Box around the rim; null like `centre`.")
+    lies_in: list[int] = Field(
+        default_factory=list,
+        description="Ids of the holes that it lies in as the border of an island, the narrowest first, at most 16.",
+        examples=[[0]],
+    )
 
     @model_validator(mode="before")
     @classmethod

@@ -19,6 +19,8 @@ from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Verti
 LEAST_AGREEMENT = 0.5
 # An island may lie so far above or below the rim of its hole, in diameters of the hole.
 MOST_HEIGHT = 0.15
+# Of the holes that one island lies in, one around the other; the facts of a mesh hold no more.
+MOST_HOSTS = 16
 
 
 @dataclass(frozen=True)
@@ -51,34 +53,60 @@ def join_islands(mesh: TriangleMesh, holes: list[Hole], chosen: list[Hole]) -> J
     chosen : list of Hole
         Those that are to be filled.
     """
-    if len(holes) < 2 or not chosen:
-        return JoinedRims([hole.loop for hole in chosen], chosen, {})
-    centres = np.array([mesh.vertices[hole.loop].mean(axis=0) for hole in holes])
-    near = cKDTree(centres).query_ball_point(
-        [mesh.vertices[hole.loop].mean(axis=0) for hole in chosen], [hole.diameter / 2 for hole in chosen]
-    )
-    candidates = [
-        [holes[i] for i in found if _is_smaller(holes[i], hole)] for hole, found in zip(chosen, near, strict=True)
-    ]
+    host_of = {island: hosts[0] for island, hosts in hosts_of(mesh, holes, chosen, most=1).items()}
+    islands: dict[int, list[IntArray]] = {}
+    for island, host in host_of.items():
+        islands.setdefault(host, []).append(holes[island].loop)
+    left = [hole for hole in chosen if hole.id not in host_of]
+    loops = [_bridged(mesh.vertices, hole.loop, islands.get(hole.id, [])) for hole in left]
+    return JoinedRims(loops, left, host_of)
+
+
+def hosts_of(mesh: TriangleMesh, holes: list[Hole], hosts: list[Hole], most: int = MOST_HOSTS) -> dict[int, list[int]]:
+    """Find the holes that islands lie in.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+    holes : list of Hole
+        All of the mesh, by id.
+    hosts : list of Hole
+        Those of them in which islands are looked for.
+    most : int
+        For each island, the narrowest hosts, at most so many.
+
+    Returns
+    -------
+    dict of int to list of int
+        Ids of the hosts, the narrowest first, by the id of the island's border; the first that is filled is the one
+        that it is joined to.
+    """
+    candidates = _candidates(mesh.vertices, holes, hosts)
     if not any(candidates):
-        return JoinedRims([hole.loop for hole in chosen], chosen, {})
+        return {}
     piece = find_pieces(mesh, []).of_vertex
     normals = vertex_normals(mesh.vertices, mesh.triangles)
-    host_of: dict[int, int] = {}
-    rims: dict[int, IntArray] = {}
-    # The smallest hole around an island is its own.
-    for hole, found in sorted(zip(chosen, candidates, strict=True), key=lambda pair: pair[0].diameter):
-        islands = [
-            island
-            for island in found
-            if island.id not in host_of
-            and piece[island.loop[0]] != piece[hole.loop[0]]
-            and _lies_in(mesh.vertices, normals, hole.loop, island.loop)
-        ]
-        host_of.update((island.id, hole.id) for island in islands)
-        rims[hole.id] = _bridged(mesh.vertices, hole.loop, [island.loop for island in islands])
-    left = [hole for hole in chosen if hole.id not in host_of]
-    return JoinedRims([rims[hole.id] for hole in left], left, host_of)
+    found: dict[int, list[int]] = {}
+    for hole, near in sorted(zip(hosts, candidates, strict=True), key=lambda pair: pair[0].diameter):
+        for island in near:
+            if (
+                len(found.get(island.id, ())) < most
+                and piece[island.loop[0]] != piece[hole.loop[0]]
+                and _lies_in(mesh.vertices, normals, hole.loop, island.loop)
+            ):
+                found.setdefault(island.id, []).append(hole.id)
+    return found
+
+
+def _candidates(vertices: Vertices, holes: list[Hole], hosts: list[Hole]) -> list[list[Hole]]:
+    """List for each host the smaller loops whose centre lies within half of its diameter."""
+    if len(holes) < 2 or not hosts:
+        return []
+    tree = cKDTree(np.array([vertices[hole.loop].mean(axis=0) for hole in holes]))
+    near = tree.query_ball_point(
+        [vertices[hole.loop].mean(axis=0) for hole in hosts], [hole.diameter / 2 for hole in hosts]
+    )
+    return [[holes[i] for i in found if _is_smaller(holes[i], hole)] for hole, found in zip(hosts, near, strict=True)]
 
 
 def _is_smaller(island: Hole, hole: Hole) -> bool:

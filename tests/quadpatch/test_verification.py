@@ -176,6 +176,17 @@ def test_an_island_is_filled_with_the_hole_that_it_was_joined_to() -> None:
     assert f"hole {rest[0].id}" in result.reason
 
 
+def test_an_island_in_a_hole_that_was_refused_is_refused_with_it() -> None:
+    """It claims no fill: the ring around it is open."""
+    island, rest = CHOSEN[2], CHOSEN[:2]
+    rims = JoinedRims([hole.loop for hole in rest], rest, {island.id: rest[0].id})
+    checked = fill_checked(MESH, as_holes(rims.loops), plate)
+    refused = replace(checked, filled=checked.filled.without(np.array([0])), refused={0: ("folds_over", "it folds")})
+    result = judged(refused, rims)[island.id]
+    assert (result.verdict, result.code) == ("refused", "folds_over")
+    assert result.reason == f"an island in hole {rest[0].id}, which was refused: it folds"
+
+
 def test_faults_are_named_for_filled_holes_and_no_others() -> None:
     crumpled = displaced(noise(0.05, 1)).filled
     faults = find_faults(crumpled)
