@@ -70,7 +70,7 @@ def unpack_closeups(archive: Path, folder: Path) -> list[Path]:
         raise ClientError("the close-ups that came are no readable ZIP file") from error
     if not all(picture.startswith(_PNG) for picture in pictures.values()):
         raise ClientError("the close-ups that came are no PNG files")
-    folder.mkdir(exist_ok=True)
+    folder.resolve().mkdir(exist_ok=True)
     return [_write(folder / name, picture) for name, picture in pictures.items()]
 
 

@@ -22,7 +22,7 @@ from rich.text import Text
 
 from quadpatch import types
 from quadpatch.errors import OptionError, QuadpatchError
-from quadpatch.files import check_folder, check_outputs, write_whole
+from quadpatch.files import check_folder, check_outputs, is_stream, write_whole
 from quadpatch.options import Cap, DictionaryOptions, HoleOptions, NetworkOptions, PatchOptions, Recipe, RepairOptions
 from quadpatch.rule_text import read_rule
 
@@ -48,7 +48,9 @@ WeldTolerance = Annotated[
 @app.command()
 def fill(  # noqa: PLR0913, PLR0917  one argument per flag
     source: Source,
-    output: Annotated[Path, typer.Option("--output", "-o", metavar="OUT", help="Its suffix says the format.")],
+    output: Annotated[
+        Path, typer.Option("--output", "-o", metavar="OUT", help="Its suffix says the format; -: standard output.")
+    ],
     model: Annotated[
         str,
         typer.Option(
@@ -59,7 +61,7 @@ def fill(  # noqa: PLR0913, PLR0917  one argument per flag
     recipe: Annotated[
         Recipe, typer.Option(help="How the model is put to use: our way, or exactly the paper's.")
     ] = "default",
-    report: Annotated[Path | None, typer.Option(help="Write the report as JSON.")] = None,
+    report: Annotated[Path | None, typer.Option(help="Write the report as JSON; -: standard output.")] = None,
     picture: Annotated[Path | None, typer.Option(help="Write a before/after picture as PNG.")] = None,
     closeups: Annotated[
         Path | None,
@@ -116,15 +118,16 @@ def fill(  # noqa: PLR0913, PLR0917  one argument per flag
             NetworkOptions(fit_steps, fit_seconds),
             _tolerance(weld_tolerance),
         )
-        check_outputs(source, output, [path for path in (report, picture) if path], may_overwrite=overwrite)
+        others = [path for path in (report, picture) if path]
+        check_outputs(source, output, others, may_overwrite=overwrite)
         if closeups:
-            check_folder(closeups)
+            check_folder(closeups, [source, output, *others])
         repaired = repair_and_keep(source, output, model, options, progress)
         logging.getLogger("quadpatch").addHandler(logging.NullHandler())  # what people read is in the warnings
-        _write_report(repaired, report)
-        if picture or closeups:
-            _draw(repaired, picture, closeups)
+        if report and not is_stream(report):  # drawing may take the process down
             _write_report(repaired, report)
+        _draw(repaired, picture, closeups)
+        _write_report(repaired, report)
     if not quiet:
         _errors.print(Text(summary(repaired.report)))
 
@@ -209,7 +212,7 @@ def _draw(repaired: "RepairedFile", picture: Path | None, closeups: Path | None)
 
 
 def _write_report(repaired: "RepairedFile", path: Path | None) -> None:
-    """Write the report, if it was asked for: before drawing, which may take the process down, and again after it."""
+    """Write the report, if it was asked for."""
     if path:
         write_whole(path, (json.dumps(repaired.report, indent=2) + "\n").encode())
 

@@ -64,7 +64,7 @@ def add_close_ups(repaired: RepairedFile, folder: Path) -> None:
         write_whole(folder / name, picture)
 
     with _stage(repaired.report, "closeups"):
-        failure = failure_of(lambda: folder.mkdir(parents=True, exist_ok=True))
+        failure = failure_of(lambda: folder.resolve().mkdir(parents=True, exist_ok=True))
         if failure is None:
             _draw_each(repaired, repaired.repair.chosen, save, no_progress)
         else:

@@ -1,11 +1,31 @@
-"""Files that are written whole or not at all: a full disk must not cost anybody the scan that was there before."""
+"""Files that are written whole or not at all: a full disk does not cost the scan that was there before.
+
+A device, a pipe and standard output have no name that may be replaced: they are written as they are, once all bytes
+are there. The client has the same rule (`client.outputs`); a test holds the two together.
+"""
 
 import errno
 import os
-from collections.abc import Iterable
+import re
+from collections.abc import Callable, Iterable
 from pathlib import Path
 
 from quadpatch.errors import OptionError
+
+_DESCRIPTORS = {"-": 1, "/dev/stdout": 1, "/dev/stderr": 2}
+_NUMBERED = re.compile(r"/(?:dev|proc/self)/fd/(\d+)")
+_CLOSE_UP = re.compile(r"hole_\d+\.png")
+
+
+def descriptor_of(path: Path) -> int | None:
+    """Return the open descriptor that a path stands for; opened by its name it would be cut to nothing."""
+    match = _NUMBERED.fullmatch(str(path))
+    return int(match[1]) if match else _DESCRIPTORS.get(str(path))
+
+
+def is_stream(path: Path) -> bool:
+    """Tell whether an output is standard output, a device or a pipe, and no file."""
+    return descriptor_of(path) is not None or (path.exists() and not path.is_file() and not path.is_dir())
 
 
 def write_whole(path: Path, data: bytes) -> None:
@@ -14,7 +34,8 @@ def write_whole(path: Path, data: bytes) -> None:
     Parameters
     ----------
     path : Path
-        A link is followed; a device or pipe is written as it is.
+        A link is kept, and what it leads to is replaced. `-` and other names of open descriptors, devices and pipes
+        are written and not replaced.
     data : bytes
 
     Raises
@@ -22,20 +43,33 @@ def write_whole(path: Path, data: bytes) -> None:
     OSError
         Naming `path`.
     """
+    try:
+        _write(path, data)
+    except OSError as error:
+        # A failing write names no file, or the partial one.
+        raise OSError(error.errno, error.strerror, str(path)) from error
+
+
+def _write(path: Path, data: bytes) -> None:
+    descriptor = descriptor_of(path)
+    if descriptor is not None:
+        _write_through(data, lambda: os.dup(descriptor))
+        return
+    if is_stream(path):
+        _write_through(data, lambda: os.open(path, os.O_WRONLY))
+        return
     target = path.resolve()
     partial = target.with_name(f".quadpatch-{os.getpid()}.part")
     try:
-        if target.exists() and not target.is_file():
-            target.write_bytes(data)
-            return
-        try:
-            partial.write_bytes(data)
-            partial.replace(target)
-        finally:
-            partial.unlink(missing_ok=True)
-    except OSError as error:
-        # A failing write names no file, and the partial one is nobody's business.
-        raise OSError(error.errno, error.strerror, str(path)) from error
+        partial.write_bytes(data)
+        partial.replace(target)
+    finally:
+        partial.unlink(missing_ok=True)
+
+
+def _write_through(data: bytes, opened: Callable[[], int]) -> None:
+    with os.fdopen(opened(), "wb") as sink:
+        sink.write(data)
 
 
 def check_outputs(source: Path, mesh: Path, others: Iterable[Path], *, may_overwrite: bool = False) -> None:
@@ -70,23 +104,49 @@ def check_outputs(source: Path, mesh: Path, others: Iterable[Path], *, may_overw
         taken.append(path)
 
 
-def check_folder(folder: Path) -> None:
-    """Find out before any work whether a folder is there or can be made; raise OSError."""
-    if folder.exists() and not folder.is_dir():
+def check_folder(folder: Path, files: Iterable[Path] = ()) -> None:
+    """Find out before any work whether a folder for close-ups is there or can be made.
+
+    Parameters
+    ----------
+    folder : Path
+    files : iterable of Path
+        Other inputs and outputs.
+
+    Raises
+    ------
+    OptionError
+        If one of the files has the name of a close-up in this folder.
+    OSError
+        If it is no folder, or can't be made.
+    """
+    if descriptor_of(folder) is not None or (folder.exists() and not folder.is_dir()):
         raise OSError(errno.ENOTDIR, os.strerror(errno.ENOTDIR), str(folder))
-    if not folder.parent.is_dir():
-        raise OSError(errno.ENOENT, f"there is no folder {folder.parent}", str(folder))
+    _check_parent(folder)
+    for path in files:
+        if _CLOSE_UP.fullmatch(path.name) and is_same_file(path.parent, folder):
+            raise OptionError(f"{path} has the name of a close-up in {folder}: name another file or folder")
 
 
 def _check_place(path: Path) -> None:
+    if is_stream(path):
+        return
     if path.is_dir():
         raise OSError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
-    if not path.parent.is_dir():
-        raise OSError(errno.ENOENT, f"there is no folder {path.parent}", str(path))
+    _check_parent(path)
+
+
+def _check_parent(path: Path) -> None:
+    parent = path.resolve().parent
+    if not parent.is_dir():
+        raise OSError(errno.ENOENT, f"there is no folder {parent}", str(path))
 
 
 def is_same_file(one: Path, other: Path) -> bool:
     """Tell whether two paths lead to one file: by another spelling, a symbolic link or a hard link."""
+    numbers = descriptor_of(one), descriptor_of(other)
+    if numbers != (None, None):
+        return numbers[0] == numbers[1]
     try:
         return one.samefile(other)
     except OSError:

@@ -13,7 +13,7 @@ from quadpatch.formats.marks import NUMBERED
 from quadpatch.formats.precision import check_precision
 from quadpatch.formats.reading import read_scan
 from quadpatch.formats.scan import Fill, Scan
-from quadpatch.formats.writing import check_suffix, write_scan
+from quadpatch.formats.writing import check_suffix, write_scan, written_as
 from quadpatch.inpainters.dictionary import DictionaryInpainter
 from quadpatch.inpainters.heights import HeightsInpainter
 from quadpatch.inpainters.inpainter import Inpainter
@@ -82,7 +82,7 @@ def repair_file(
     Parameters
     ----------
     source, output : Path
-        The output's suffix says its format.
+        The output's suffix says its format; standard output (`-`), a device or a pipe gets that of the scan.
     model : str or Path
         `smooth` (no learning), `self` (learn a dictionary from the mesh itself), `self-network` (fit the shipped
         network to the mesh itself), the name of a shipped model (`name` or `name@version`), or a model file.
@@ -123,7 +123,8 @@ def repair_and_keep(
     inpainter, card = _resolve(model, options, progress, network_card)
     with stages.stage("read"):
         scan, welded = _read(source, options.weld_tolerance)
-        precision = check_precision(scan, output)
+        named = written_as(output, scan)
+        precision = check_precision(scan, named)
     by_recipe = inpaint_as_paper if options.recipe == "paper" else inpaint
     repair = by_recipe(welded.mesh, inpainter, options, stages, learn=model == SELF, obstacles=welded.ignored_triangles)
     with stages.stage("write"):
@@ -133,11 +134,11 @@ def repair_and_keep(
         *describe_redundancy(welded.counts),
         *precision,
         *losses,
-        *_unit_warnings(scan, output),
+        *_unit_warnings(scan, named),
     ]
     repair = replace(repair, warnings=warnings)
     report = build_report(scan, welded, repair, options, card, stages)
-    report = with_hole_numbers(report, scan.next_hole_id if output.suffix.lower() in NUMBERED else None)
+    report = with_hole_numbers(report, scan.next_hole_id if named.suffix.lower() in NUMBERED else None)
     return RepairedFile(report, welded.mesh, repair)
 
 

@@ -4,7 +4,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from quadpatch.errors import FormatError
-from quadpatch.files import write_whole
+from quadpatch.files import is_stream, write_whole
 from quadpatch.formats.conversion import encode_as_obj, encode_as_off, encode_as_ply, encode_as_stl
 from quadpatch.formats.gltf.encoder import encode_as_glb, encode_as_gltf
 from quadpatch.formats.scan import Fill, Scan
@@ -24,9 +24,16 @@ _ENCODERS = {
 
 
 def check_suffix(path: Path) -> None:
-    """Raise FormatError where the suffix of a file is that of no format that is written."""
+    """Raise FormatError where the suffix of a file is that of no format that is written; a stream needs none."""
+    if is_stream(path) and not path.suffix:
+        return
     if path.suffix.lower().lstrip(".") not in _ENCODERS:
         raise FormatError(f"files with the suffix {path.suffix!r} are not written, only {', '.join(_ENCODERS)}")
+
+
+def written_as(path: Path, scan: Scan) -> Path:
+    """Return a name whose suffix says the format that an output is written in: that of the scan for a stream."""
+    return path if path.suffix or not is_stream(path) else Path(f"{path.name}.{scan.format}")
 
 
 def write_scan(path: Path, scan: Scan, fill: Fill) -> list[str]:
@@ -35,8 +42,8 @@ def write_scan(path: Path, scan: Scan, fill: Fill) -> list[str]:
     Parameters
     ----------
     path : Path
-        Its suffix says the format. The scan's own format gives the file that was read, with the fill behind it and
-        everything else as it was; another one is a conversion.
+        Its suffix says the format; a stream without one gets that of the scan. The scan's own format gives the file
+        that was read, with the fill behind it and everything else as it was; another one is a conversion.
     scan : Scan
     fill : Fill
 
@@ -53,7 +60,7 @@ def write_scan(path: Path, scan: Scan, fill: Fill) -> list[str]:
         If the file can't be written; what was there before stays.
     """
     check_suffix(path)
-    suffix = path.suffix.lower().lstrip(".")
+    suffix = written_as(path, scan).suffix.lower().lstrip(".")
     data, warnings = _encode(suffix, scan, fill)
     write_whole(path, data)
     return warnings
