@@ -21,7 +21,7 @@ from quadpatch.picture.sheet import render_before_after
 from quadpatch.repair import RepairedFile
 from quadpatch.types import Progress, no_progress
 
-# Of an archive of close-ups. A close-up takes about half a second and a hundred kilobytes.
+# Of an archive of close-ups. One takes about a second of a busy core and a hundred kilobytes.
 MOST_CLOSE_UPS = 100
 MOST_CLOSE_UP_BYTES = 32 << 20
 
