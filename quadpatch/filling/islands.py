@@ -30,7 +30,8 @@ class JoinedRims:
     Attributes
     ----------
     loops : list of (n_loop,) int64
-        One for each chosen hole that is no island; a bridge is walked twice, so its vertices come twice.
+        One for each chosen hole that is no island, longest rim first; a bridge is walked twice, so its vertices come
+        twice.
     chosen : list of Hole
         Whose loops these are.
     host_of : dict of int to int
@@ -57,7 +58,8 @@ def join_islands(mesh: TriangleMesh, holes: list[Hole], chosen: list[Hole]) -> J
     islands: dict[int, list[IntArray]] = {}
     for island, host in host_of.items():
         islands.setdefault(host, []).append(holes[island].loop)
-    left = [hole for hole in chosen if hole.id not in host_of]
+    # The quad mesh depends on the order of the vertices: how holes are numbered must not decide what the model makes.
+    left = sorted((hole for hole in chosen if hole.id not in host_of), key=lambda hole: -hole.perimeter)
     loops = [_bridged(mesh.vertices, hole.loop, islands.get(hole.id, [])) for hole in left]
     return JoinedRims(loops, left, host_of)
 
