@@ -6,7 +6,7 @@ READY  := $(VENV)/.ready
 # Twice quiet: errors only.
 PIP    := $(BIN)/python -m pip --quiet --quiet --disable-pip-version-check
 
-.PHONY: demo test test-postgres faults fuzz check serve openapi samples lock sbom bench bench-quality bench-scans clean
+.PHONY: demo test test-postgres faults fuzz flood check serve openapi samples lock sbom bench bench-quality bench-scans clean
 
 $(READY): pyproject.toml constraints.txt
 	@echo "setting up $(VENV); this takes a few minutes the first time ..." >&2
@@ -61,6 +61,9 @@ sbom: $(READY)            ## write what the image holds as CycloneDX: make sbom 
 
 bench: $(READY)           ## speed of the method's stages
 	@$(BIN)/python -m benchmarks.stages
+
+flood: $(READY)           ## /healthz while thousands of idle clients hold connections: make flood ARGS="--seconds 35"
+	@$(BIN)/python -m benchmarks.flood $(ARGS)
 
 bench-quality: $(READY)   ## repair quality beside the peers: make bench-quality BENCH=folder ARGS="--radius all"
 	@$(BIN)/python -m benchmarks.quality $(BENCH) $(ARGS)

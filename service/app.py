@@ -32,6 +32,7 @@ from service.routes import (
     webhooks,
 )
 from service.services import open_services
+from service.turns import Turns, TurnsMiddleware
 
 
 def create_app(settings: Settings, telemetry: Telemetry | None = None) -> FastAPI:
@@ -78,6 +79,7 @@ def create_app(settings: Settings, telemetry: Telemetry | None = None) -> FastAP
     app.add_middleware(AuthMiddleware, settings=settings)
     app.add_middleware(FrameMiddleware)
     app.add_middleware(ObserveMiddleware, registry=app.state.registry, telemetry=app.state.telemetry)
+    app.add_middleware(TurnsMiddleware, turns=Turns())
     return app
 
 

@@ -19,6 +19,7 @@ from jobkit.errors import DatabaseUnavailableError, JobNotFoundError
 from jobkit.estimates import Estimates
 from jobkit.jobs import Glance, Jobs
 from jobkit.schema import Job
+from service.turns import Turns
 
 _MOST_KEPT = 1000
 
@@ -52,6 +53,7 @@ class Board:
         self._next = _Batch()
         self._refreshing: asyncio.Task[None] | None = None
         self._kept: OrderedDict[str, tuple[Glance, Job]] = OrderedDict()
+        self._turns = Turns()
 
     async def glance(self, job_id: str) -> Sight:
         """Look whether a job has changed; raise JobNotFoundError."""
@@ -72,6 +74,7 @@ class Board:
             batch.task = asyncio.create_task(self._look(batch))
         # A client that hangs up must not take the others' look away.
         sight = (await asyncio.shield(batch.task)).get(job_id)
+        await self._turns.take()  # a look may have served hundreds, whose answers are written now
         if sight is None:
             raise JobNotFoundError(f"there is no job {job_id}")
         return sight

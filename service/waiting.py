@@ -15,6 +15,7 @@ from fastapi import Header, Response
 from sqlalchemy.exc import SQLAlchemyError
 
 from jobkit.errors import JobkitError
+from service.turns import Turns
 
 LOOK_S = 0.1
 _logger = logging.getLogger("service")
@@ -61,6 +62,7 @@ class Waiters:
         self._n_waiting = 0
         self._waiting: dict[str, set[asyncio.Future[None]]] = {}
         self._looking: asyncio.Task[None] | None = None
+        self._turns = Turns()
 
     def __len__(self) -> int:
         """Count the requests that wait."""
@@ -81,6 +83,7 @@ class Waiters:
                     await woken
             finally:
                 self._leave(subject, woken)
+        await self._turns.take()  # the time of a thousand may be up at once
         return True
 
     def close(self) -> None:

@@ -1,0 +1,63 @@
+import asyncio
+from itertools import pairwise
+
+from starlette.types import Receive, Scope, Send
+
+from service.turns import Turns, TurnsMiddleware
+
+N = 100
+
+
+def test_those_that_come_at_once_go_on_one_in_each_round() -> None:
+    async def run() -> None:
+        turns, gone = Turns(), list[int]()
+
+        async def go(number: int) -> None:
+            await turns.take()
+            gone.append(number)
+
+        tasks = [asyncio.create_task(go(number)) for number in range(N)]
+        seen = []
+        while len(gone) < N:
+            await asyncio.sleep(0)
+            seen.append(len(gone))
+        assert gone == list(range(N))
+        assert all(after - before <= 1 for before, after in pairwise(seen))
+        await asyncio.gather(*tasks)
+
+    asyncio.run(run())
+
+
+def test_who_leaves_the_line_holds_up_no_others_and_the_line_starts_again() -> None:
+    async def run() -> None:
+        turns = Turns()
+        for _ in range(2):
+            tasks = [asyncio.create_task(turns.take()) for _ in range(3)]
+            await asyncio.sleep(0)
+            tasks[0].cancel()
+            tasks[1].cancel()
+            await asyncio.wait_for(tasks[2], None)
+
+    asyncio.run(run())
+
+
+def test_a_sign_of_life_is_given_before_those_that_came_in_a_crowd() -> None:
+    async def run() -> None:
+        served: list[str] = []
+
+        async def app(scope: Scope, receive: Receive, send: Send) -> None:
+            served.append(scope["path"])
+
+        async def receive() -> dict[str, object]:
+            return {}
+
+        async def send(message: object) -> None:
+            return None
+
+        line = TurnsMiddleware(app, Turns())
+        paths = ["/v1/jobs"] * N + ["/healthz"]
+        await asyncio.gather(*(line({"type": "http", "path": path}, receive, send) for path in paths))
+        assert served.index("/healthz") == 0
+        assert len(served) == N + 1
+
+    asyncio.run(run())
