@@ -6,7 +6,7 @@ READY  := $(VENV)/.ready
 # Twice quiet: errors only.
 PIP    := $(BIN)/python -m pip --quiet --quiet --disable-pip-version-check
 
-.PHONY: demo test test-postgres faults fuzz flood check serve openapi samples lock sbom bench bench-quality bench-scans clean
+.PHONY: demo test test-postgres faults fuzz mutants flood contract check serve openapi samples lock sbom bench bench-quality bench-scans clean
 
 $(READY): pyproject.toml constraints.txt
 	@echo "setting up $(VENV); this takes a few minutes the first time ..." >&2
@@ -38,6 +38,12 @@ faults: $(READY)          ## kill, cut off and starve a cluster of real processe
 
 fuzz: $(READY)            ## repair damaged meshes and judge what comes out: make fuzz ARGS="--count 300 --seed 1 --keep folder"
 	@OMP_NUM_THREADS=1 $(BIN)/python -m tests.fuzz $(ARGS)
+
+mutants: $(READY)         ## mutated files of all formats through a real box: make mutants ARGS="--count 500 --seed 1"
+	@OMP_NUM_THREADS=1 $(BIN)/python -m tests.mutants $(ARGS)
+
+contract: $(READY)        ## schemathesis, thousands of requests against one box: make contract ARGS="--examples 30 --seed 1"
+	@OMP_NUM_THREADS=1 $(BIN)/python -m tests.contract $(ARGS)
 
 check: $(READY)           ## ruff, import rules, types
 	$(BIN)/ruff check .

@@ -1,7 +1,5 @@
 """The running service against its own document: every check of schemathesis, fixed seed, bounded number of requests."""
 
-import subprocess
-import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -15,11 +13,8 @@ from jobkit.proofs import Proofs
 from jobkit.schema import JobResult, ResultFile
 from jobkit.settings import Settings
 from jobkit.store import open_store, result_key
+from tests.contract.running import HEADERS, KEY, Known, command, run, write_configuration
 from tests.waiting import GUARD_S
-
-ROOT = Path(__file__).parents[2]
-KEY = "the-key-of-the-contract"
-HEADERS = {"Authorization": f"Bearer {KEY}"}
 
 
 def test_schemathesis_finds_nothing(
@@ -35,47 +30,9 @@ def test_schemathesis_finds_nothing(
         job_id = furnish(service.url, settings, dictionary_bytes(1))
         webhook_id, delivery_id = subscribe(service.url)
         document = httpx.get(f"{service.url}/openapi.json", timeout=GUARD_S).json()
-        configuration = tmp_path / "schemathesis.toml"
-        configuration.write_text(
-            (ROOT / "schemathesis.toml").read_text()
-            # Things that exist, so that requests reach more than a 404.
-            + f"""
-[[operations]]
-include-path-regex = "/(result|report|preview.png|events)$"
-parameters = {{ "path.job_id" = "{job_id}" }}
-
-[[operations]]
-include-path-regex = "^/v1/models/{{name}}"
-include-method = "GET"
-parameters = {{ "path.name" = "general-dictionary", "path.version" = 1 }}
-
-[[operations]]
-include-path-regex = "^/v1/webhooks/{{webhook_id}}/(deliveries|test|rotate)"
-parameters = {{ "path.webhook_id" = "{webhook_id}", "path.delivery_id" = "{delivery_id}" }}
-"""
-        )
-        found = subprocess.run(
-            [
-                str(Path(sys.executable).parent / "schemathesis"),
-                f"--config-file={configuration}",
-                "run",
-                f"{service.url}/openapi.json",
-                f"--header=Authorization:Bearer {KEY}",
-                "--checks=all",
-                "--max-examples=4",
-                "--seed=1",
-                "--generation-deterministic",
-                "--no-color",
-                "--warnings=off",
-                f"--request-timeout={GUARD_S:g}",
-                "--suppress-health-check=too_slow",
-            ],
-            cwd=tmp_path,
-            capture_output=True,
-            text=True,
-            timeout=2 * GUARD_S,
-            check=False,
-        )
+        known = Known(job_id, "general-dictionary", webhook_id, delivery_id)
+        configuration = write_configuration(tmp_path / "schemathesis.toml", known)
+        found = run(command(service.url, configuration, 4, 1), tmp_path, 2 * GUARD_S)
     assert found.returncode == 0, found.stdout[-20_000:] + found.stderr
     count = sum(len(operations) for operations in document["paths"].values())
     assert f"Selected: {count}/{count}" in found.stdout

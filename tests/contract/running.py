@@ -1,0 +1,77 @@
+"""How schemathesis is run against a live service: its settings, and what exists there for it to find."""
+
+import os
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+from tests.waiting import GUARD_S
+
+ROOT = Path(__file__).parents[2]
+KEY = "the-key-of-the-contract"
+HEADERS = {"Authorization": f"Bearer {KEY}"}
+
+
+@dataclass(frozen=True)
+class Known:
+    """Ids of what exists, so that requests reach more than a 404."""
+
+    job_id: str
+    model: str
+    webhook_id: str
+    delivery_id: str
+
+
+def write_configuration(path: Path, known: Known) -> Path:
+    """Write the project's settings of schemathesis, and after them the ids; return the path."""
+    path.write_text(
+        (ROOT / "schemathesis.toml").read_text()
+        + f"""
+[[operations]]
+include-path-regex = "/(result|report|preview.png|events)$"
+parameters = {{ "path.job_id" = "{known.job_id}" }}
+
+[[operations]]
+include-path-regex = "^/v1/models/{{name}}"
+include-method = "GET"
+parameters = {{ "path.name" = "{known.model}", "path.version" = 1 }}
+
+[[operations]]
+include-path-regex = "^/v1/webhooks/{{webhook_id}}/(deliveries|test|rotate)"
+parameters = {{ "path.webhook_id" = "{known.webhook_id}", "path.delivery_id" = "{known.delivery_id}" }}
+"""
+    )
+    return path
+
+
+def command(url: str, configuration: Path, n_examples: int, seed: int) -> list[str]:
+    """Return the command line: every check, every phase, a fixed seed."""
+    return [
+        str(Path(sys.executable).parent / "schemathesis"),
+        f"--config-file={configuration}",
+        "run",
+        f"{url}/openapi.json",
+        f"--header=Authorization:Bearer {KEY}",
+        "--checks=all",
+        f"--max-examples={n_examples}",
+        f"--seed={seed}",
+        "--generation-deterministic",
+        "--no-color",
+        "--warnings=off",
+        f"--request-timeout={GUARD_S:g}",
+        "--suppress-health-check=too_slow",
+    ]
+
+
+def run(words: list[str], folder: Path, timeout_s: float | None) -> "subprocess.CompletedProcess[str]":
+    """Run schemathesis in a folder and return what it says."""
+    return subprocess.run(
+        words,
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        timeout=timeout_s,
+        check=False,
+        env={**os.environ, "PYTHONUNBUFFERED": "1"},
+    )
