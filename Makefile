@@ -42,7 +42,7 @@ fuzz: $(READY)            ## repair damaged meshes and judge what comes out: mak
 mutants: $(READY)         ## mutated files of all formats through a real box: make mutants ARGS="--count 500 --seed 1"
 	@OMP_NUM_THREADS=1 $(BIN)/python -m tests.mutants $(ARGS)
 
-contract: $(READY)        ## schemathesis, thousands of requests against one box: make contract ARGS="--examples 30 --seed 1"
+contract: $(READY)        ## schemathesis, thousands of requests against one box: make contract ARGS="--examples 60 --seed 1"
 	@OMP_NUM_THREADS=1 $(BIN)/python -m tests.contract $(ARGS)
 
 check: $(READY)           ## ruff, import rules, types

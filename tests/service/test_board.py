@@ -14,6 +14,7 @@ from jobkit.meshes import Meshes
 from jobkit.schema import Job, JobSpec, JobState, ResolvedModel
 from jobkit.store import ObjectStore
 from service.board import Board
+from tests.service.rounds import most_in_a_round
 from tests.waiting import GUARD_S
 
 
@@ -145,3 +146,12 @@ def test_a_client_that_hangs_up_takes_nobody_elses_look_away(database: Database,
 
     anyio.run(live)
     assert [seen.id for seen in found] == [job.id]
+
+
+def test_those_that_shared_a_look_write_their_answers_one_after_the_other(
+    database: Database, job: Job, jobs: CountingJobs
+) -> None:
+    board = Board(jobs, Estimates(database))
+    jobs.may_go_on.set()
+    assert anyio.run(most_in_a_round, lambda: board.job(job.id), 100) == 1
+    assert len(jobs.glanced) < 10

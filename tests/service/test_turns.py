@@ -1,31 +1,15 @@
 import asyncio
-from itertools import pairwise
 
 from starlette.types import Receive, Scope, Send
 
 from service.turns import Turns, TurnsMiddleware
+from tests.service.rounds import most_in_a_round
 
 N = 100
 
 
 def test_those_that_come_at_once_go_on_one_in_each_round() -> None:
-    async def run() -> None:
-        turns, gone = Turns(), list[int]()
-
-        async def go(number: int) -> None:
-            await turns.take()
-            gone.append(number)
-
-        tasks = [asyncio.create_task(go(number)) for number in range(N)]
-        seen = []
-        while len(gone) < N:
-            await asyncio.sleep(0)
-            seen.append(len(gone))
-        assert gone == list(range(N))
-        assert all(after - before <= 1 for before, after in pairwise(seen))
-        await asyncio.gather(*tasks)
-
-    asyncio.run(run())
+    assert asyncio.run(most_in_a_round(Turns().take, N)) == 1
 
 
 def test_who_leaves_the_line_holds_up_no_others_and_the_line_starts_again() -> None:

@@ -5,6 +5,7 @@ import pytest
 
 from jobkit.errors import DatabaseUnavailableError
 from service.waiting import Waiters, preferred_wait_s
+from tests.service.rounds import most_in_a_round
 from tests.waiting import GUARD_S
 
 
@@ -85,3 +86,11 @@ def test_a_look_that_fails_lets_all_look_for_themselves() -> None:
         raise DatabaseUnavailableError("away")
 
     assert asyncio.run(Waiters(fail, 1).wait("a", GUARD_S))
+
+
+def test_those_whose_wait_ends_at_once_go_on_one_after_the_other() -> None:
+    async def run() -> int:
+        waiters = Waiters(lambda subjects: set(), 1000)
+        return await most_in_a_round(lambda: waiters.wait("a", GUARD_S), 500)
+
+    assert asyncio.run(run()) == 1
