@@ -7,7 +7,7 @@ round of the event loop, and all others, `/healthz` first of all, would be answe
 import asyncio
 from collections import deque
 
-from starlette.types import ASGIApp, Receive, Scope, Send
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 # Answered from the event loop alone, in less time than it takes to stand in line.
 PASSING = frozenset({"/healthz"})
@@ -55,7 +55,16 @@ class TurnsMiddleware:
         self._turns = turns
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Pass the request on in its turn."""
-        if scope["type"] == "http" and scope["path"] not in PASSING:
-            await self._turns.take()
-        await self._app(scope, receive, send)
+        """Pass the request on in its turn, and in another one what it is told of a client that left."""
+
+        async def receive_in_turn() -> Message:
+            message = await receive()
+            if message["type"] == "http.disconnect":
+                await self._turns.take()  # hundreds of half-open requests may be timed out at once
+            return message
+
+        if scope["type"] != "http" or scope["path"] in PASSING:
+            await self._app(scope, receive, send)
+            return
+        await self._turns.take()
+        await self._app(scope, receive_in_turn, send)

@@ -1,6 +1,6 @@
 import asyncio
 
-from starlette.types import Receive, Scope, Send
+from starlette.types import Message, Receive, Scope, Send
 
 from service.turns import Turns, TurnsMiddleware
 from tests.service.rounds import most_in_a_round
@@ -45,3 +45,26 @@ def test_a_sign_of_life_is_given_before_those_that_came_in_a_crowd() -> None:
         assert len(served) == N + 1
 
     asyncio.run(run())
+
+
+def test_those_whose_clients_leave_at_once_hear_of_it_one_after_the_other() -> None:
+    async def run() -> int:
+        begun, has_left = list[str](), asyncio.Event()
+
+        async def app(scope: Scope, receive: Receive, send: Send) -> None:
+            begun.append(scope["path"])
+            if len(begun) == N:
+                has_left.set()
+            assert (await receive())["type"] == "http.disconnect"
+
+        async def receive() -> Message:
+            await has_left.wait()
+            return {"type": "http.disconnect"}
+
+        async def send(message: Message) -> None:
+            return None
+
+        line = TurnsMiddleware(app, Turns())
+        return await most_in_a_round(lambda: line({"type": "http", "path": "/v1/meshes"}, receive, send), N)
+
+    assert asyncio.run(run()) == 1
