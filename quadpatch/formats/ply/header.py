@@ -19,6 +19,8 @@ _CODES = {
 }
 _ORDERS = {"ascii": "ascii", "binary_little_endian": "<", "binary_big_endian": ">"}
 _LONGEST_HEADER = 1 << 20
+# Elements and properties together. Scans declare a few dozen; reading takes time for each, whatever the body holds.
+_MOST_DECLARATIONS = 4096
 
 
 @dataclass(frozen=True)
@@ -89,7 +91,7 @@ def parse_header(data: bytes) -> Header:
         For an encoding or version that is unknown.
     """
     lines, line_end = _header_lines(data)
-    order = None
+    order, n_declarations = None, 0
     elements: list[Element] = []
     for number, line in enumerate(lines[1:-1], start=1):
         words = line.decode("latin-1").split()
@@ -97,6 +99,9 @@ def parse_header(data: bytes) -> Header:
         if keyword == "format":
             order = _parse_format(words)
         elif keyword in ("element", "property"):
+            n_declarations += 1
+            if n_declarations > _MOST_DECLARATIONS:
+                raise ReadError(f"the PLY header declares more than {_MOST_DECLARATIONS} elements and properties")
             _parse_declaration(words, number, elements)
         elif keyword not in ("comment", "obj_info"):
             raise ReadError(f"PLY header line {number + 1}: unknown keyword {keyword[:40]!r}")

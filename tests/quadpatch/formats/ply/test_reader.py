@@ -137,3 +137,15 @@ def test_negative_list_lengths_of_binary_files_are_named() -> None:
     header = ascii_ply(3, "", "").replace("ascii", "binary_little_endian").replace("list uchar", "list char")
     with pytest.raises(ReadError, match="row 0"):
         read(header.encode() + bytes(36) + struct.pack("<b3i", -3, 0, 1, 2))
+
+
+@pytest.mark.parametrize(
+    "declaration", ["property float p{}\n", "element e{} 0\n", "element e{} 0\nproperty float p\n"]
+)
+def test_a_header_of_endless_declarations_is_refused(declaration: str) -> None:
+    few, many = ("".join(declaration.format(i) for i in range(n)) for n in (100, 20_000))
+    values = " 0" * 100 if declaration.startswith("property") else ""
+    vertices = "".join(f"{row}{values}\n" for row in TRIANGLE.splitlines())
+    assert len(read(ascii_ply(3, vertices, "3 0 1 2\n", more=few)).vertices) == 3
+    with pytest.raises(ReadError, match="declares more than 4096"):
+        read(ascii_ply(3, TRIANGLE, "3 0 1 2\n", more=many))
