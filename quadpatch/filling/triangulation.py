@@ -43,8 +43,10 @@ class Forbidden:
 
     def contains(self, first: IntArray, second: IntArray, third: IntArray) -> BoolArray:
         """Whether each triangle, by its corners (broadcast against each other), is forbidden."""
+        found = np.zeros(np.broadcast_shapes(first.shape, second.shape, third.shape), bool)
+        if not len(self.triangles):
+            return found
         corners = np.stack(np.broadcast_arrays(first, second, third), axis=-1)
-        found = np.zeros(corners.shape[:-1], bool)
         possible = np.isin(corners, self.triangles).all(axis=-1)
         found[possible] = np.isin(_sorted_rows(corners[possible]), _sorted_rows(self.triangles))
         return found
