@@ -6,7 +6,7 @@ READY  := $(VENV)/.ready
 # Twice quiet: errors only.
 PIP    := $(BIN)/python -m pip --quiet --quiet --disable-pip-version-check
 
-.PHONY: demo test test-postgres faults fuzz mutants flood contract check serve openapi samples lock sbom bench bench-quality bench-scans clean
+.PHONY: demo test test-postgres explore faults fuzz mutants flood contract check serve openapi samples lock sbom bench bench-quality bench-scans clean
 
 $(READY): pyproject.toml constraints.txt
 	@echo "setting up $(VENV); this takes a few minutes the first time ..." >&2
@@ -31,6 +31,9 @@ test: $(READY)            ## every test, with the real Valkey
 test-postgres: $(READY)   ## the tests of service and workers on PostgreSQL and S3, both started by the tests
 	@PYTHONDONTWRITEBYTECODE= TEST_BACKEND=postgres-s3 OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadfile \
 		tests/jobkit tests/service tests/worker tests/dispatcher tests/integration tests/contract tests/onebox
+
+explore: $(READY)         ## the property tests with other examples than `make test` has: make explore ARGS="tests/quadpatch"
+	@TEST_EXAMPLES=explore OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadfile -m hypothesis $(ARGS)
 
 # Network namespaces and disks that fill up need root; without it the suite says what it left out.
 faults: $(READY)          ## kill, cut off and starve a cluster of real processes: make faults ARGS="--seed 7 --backend sqlite-local"

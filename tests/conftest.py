@@ -32,14 +32,15 @@ from tests.distribution import SharingScheduling
 from tests.servers import PostgresServer, S3Server, fresh_bucket, fresh_database, running_postgres, running_s3
 from tests.waiting import end, wait_until_answered
 
-# How long an example takes says more about the machine than about the code. In CI the examples are always the same.
+# How long an example takes says more about the machine than about the code. The examples are the same in every run:
+# what fails for one newcomer fails for all. `make explore` looks for others.
 hypothesis.settings.register_profile(
-    "tests",
-    deadline=None,
-    suppress_health_check=[hypothesis.HealthCheck.too_slow],
-    derandomize="CI" in os.environ,
+    "tests", deadline=None, suppress_health_check=[hypothesis.HealthCheck.too_slow], derandomize=True
 )
-hypothesis.settings.load_profile("tests")
+hypothesis.settings.register_profile(
+    "explore", hypothesis.settings.get_profile("tests"), derandomize=False, print_blob=True
+)
+hypothesis.settings.load_profile(os.environ.get("TEST_EXAMPLES", "tests"))
 
 BACKENDS = ("sqlite-local", "postgres-s3")
 

@@ -19,7 +19,7 @@ from quadpatch.mesh.normals import cross
 from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Triangles, Vertices
 
 # Wanted edge length in that of the rim: refinement splits rather too much, and in a plane there is no shape to follow.
-# With 1.3 the smallest angle of round caps of 6 to 220 edges is 25 degrees, with 1 it is 14.
+# With 1.3 one of 100 round caps has an angle under 21.5 degrees, with 1 under 19.1.
 _COARSENING = 1.3
 
 # Rounds in which new vertices move; the smallest angle hardly changes after these.
