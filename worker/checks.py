@@ -1,0 +1,118 @@
+"""Checks of uploads, analyses and proofs: an engine opens each once, under a lease, and the check is settled."""
+
+import logging
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TypeVar
+
+from jobkit.errors import QueueUnavailableError, StaleAttemptError
+from worker.context import Context
+from worker.failures import OUTAGE_DELAY_S, Failure, StopReason
+from worker.outcomes import outcome_of
+from worker.pulse import Pulse, Vitals
+from worker.watch import Observer
+
+T = TypeVar("T")
+
+_log = logging.getLogger("quadpatch.worker.checks")
+
+
+@dataclass(frozen=True)
+class Check:
+    """A started check, and what may become of it; all that write raise StaleAttemptError where it was taken away.
+
+    Attributes
+    ----------
+    subject : str
+        What is checked, for the log.
+    is_last : bool
+        Whether a failure settles it.
+    renew : callable
+        Prolongs the lease by so many seconds.
+    refuse : callable
+        Settles it with the code and the message of a failure.
+    release : callable
+        Hands it back undone.
+    forgive : callable
+        Hands it back and does not count it; it is not taken again for so many seconds.
+    submit : callable
+        Puts it into the queue again; raises QueueUnavailableError.
+    """
+
+    subject: str
+    is_last: bool
+    renew: Callable[[float], None]
+    refuse: Callable[[str, str], None]
+    release: Callable[[], None]
+    forgive: Callable[[float], None]
+    submit: Callable[[], object]
+
+
+def run_check(
+    context: Context,
+    check: Check,
+    work: Callable[[Observer], T],
+    accept: Callable[[T], None],
+    words: Callable[[T], str],
+) -> None:
+    """Do the work of a check and settle it.
+
+    Parameters
+    ----------
+    context : Context
+    check : Check
+    work : callable
+        Runs the engine under an observer; raises what `worker.outcomes.outcome_of` knows.
+    accept : callable
+        Writes what the work gave; raises StaleAttemptError.
+    words : callable
+        Says what the work gave, for the log.
+    """
+    outcome = outcome_of(lambda: _observed(context, check, work), check.subject)
+    try:
+        if isinstance(outcome, Failure | StopReason):
+            _settle(check, outcome)
+            said = outcome.code if isinstance(outcome, Failure) else outcome.value
+        else:
+            accept(outcome)
+            said = words(outcome)
+    except StaleAttemptError as error:
+        _log.warning("%s may write no more: %s", check.subject, error)
+    else:
+        _log.info("%s: %s", check.subject, said)
+
+
+def _observed(context: Context, check: Check, work: Callable[[Observer], T]) -> T:
+    settings = context.settings
+    vitals = Vitals(
+        renew=lambda memory_mb: check.renew(settings.lease_s),
+        is_canceled=lambda: False,
+        report=lambda stage, percent: None,
+        heartbeat_s=settings.heartbeat_s,
+    )
+    with Pulse(vitals) as pulse:
+
+        def stop_reason() -> StopReason | None:
+            return StopReason.DRAINED if context.draining.is_set() else pulse.stop_reason
+
+        return work(Observer(pulse.reach, stop_reason, pulse.note_memory))
+
+
+def _settle(check: Check, outcome: Failure | StopReason) -> None:
+    if outcome is StopReason.LOST:
+        raise StaleAttemptError(f"{check.subject} lost its lease")
+    if isinstance(outcome, Failure) and outcome.is_outside:
+        # The dispatcher puts it into the queue again when the time has come.
+        check.forgive(OUTAGE_DELAY_S)
+        return
+    if isinstance(outcome, Failure) and (not outcome.retryable or check.is_last):
+        check.refuse(outcome.code, outcome.message)
+        return
+    if outcome is StopReason.DRAINED:
+        check.forgive(0.0)
+    else:
+        check.release()
+    try:
+        check.submit()
+    except QueueUnavailableError:
+        _log.warning("the queue does not answer; %s is put into it later", check.subject)
