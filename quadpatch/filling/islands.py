@@ -21,6 +21,8 @@ LEAST_AGREEMENT = 0.5
 MOST_HEIGHT = 0.15
 # Of the holes that one island lies in, one around the other; the facts of a mesh hold no more.
 MOST_HOSTS = 16
+# Corners of islands that are compared with edges of a rim at once, at most.
+_PAIRS_AT_A_TIME = 1_000_000
 
 
 @dataclass(frozen=True)
@@ -83,63 +85,84 @@ def hosts_of(mesh: TriangleMesh, holes: list[Hole], hosts: list[Hole], most: int
         Ids of the hosts, the narrowest first, by the id of the island's border; the first that is filled is the one
         that it is joined to.
     """
-    candidates = _candidates(mesh.vertices, holes, hosts)
-    if not any(candidates):
+    if len(holes) < 2 or not hosts:
         return {}
-    piece = find_pieces(mesh, []).of_vertex
-    normals = vertex_normals(mesh.vertices, mesh.triangles)
+    centres = np.array([mesh.vertices[hole.loop].mean(axis=0) for hole in holes])
+    tree, diameters = cKDTree(centres), np.array([hole.diameter for hole in holes])
+    is_open = np.array([hole.is_manifold for hole in holes])
     found: dict[int, list[int]] = {}
-    for hole, near in sorted(zip(hosts, candidates, strict=True), key=lambda pair: pair[0].diameter):
-        for island in near:
-            if (
-                len(found.get(island.id, ())) < most
-                and piece[island.loop[0]] != piece[hole.loop[0]]
-                and _lies_in(mesh.vertices, normals, hole.loop, island.loop)
-            ):
-                found.setdefault(island.id, []).append(hole.id)
+    sides: _Sides | None = None
+    # Host by host: of thousands of loops one around the other, all pairs at once would not fit into memory.
+    for hole in sorted(hosts, key=lambda hole: hole.diameter):
+        near = np.sort(np.array(tree.query_ball_point(centres[hole.id], hole.diameter / 2), np.int64))
+        near = near[is_open[near] & (diameters[near] < hole.diameter)]
+        if not len(near):
+            continue
+        sides = sides or _Sides.of(mesh, holes, centres)
+        for island in near[sides.may_lie_in(hole.id, near)].tolist():
+            if _lies_in(mesh.vertices, sides.normals[hole.id], hole.loop, holes[island].loop):
+                found.setdefault(island, []).append(hole.id)
+                is_open[island] = len(found[island]) < most
     return found
 
 
-def _candidates(vertices: Vertices, holes: list[Hole], hosts: list[Hole]) -> list[list[Hole]]:
-    """List for each host the smaller loops whose centre lies within half of its diameter."""
-    if len(holes) < 2 or not hosts:
-        return []
-    tree = cKDTree(np.array([vertices[hole.loop].mean(axis=0) for hole in holes]))
-    near = tree.query_ball_point(
-        [vertices[hole.loop].mean(axis=0) for hole in hosts], [hole.diameter / 2 for hole in hosts]
-    )
-    return [[holes[i] for i in found if _is_smaller(holes[i], hole)] for hole, found in zip(hosts, near, strict=True)]
+@dataclass(frozen=True)
+class _Sides:
+    """Which way loops face and run.
+
+    Attributes
+    ----------
+    piece : (n,) int64
+        Connected piece of the mesh that each loop belongs to.
+    normals : (n, 3) float64
+        Mean normal at each loop; not of unit length.
+    areas : (n, 3) float64
+        Vector area of each loop, twice.
+    """
+
+    piece: IntArray
+    normals: FloatArray
+    areas: FloatArray
+
+    @classmethod
+    def of(cls, mesh: TriangleMesh, holes: list[Hole], centres: FloatArray) -> "_Sides":
+        normals = vertex_normals(mesh.vertices, mesh.triangles)
+        spokes = [mesh.vertices[hole.loop] - centre for hole, centre in zip(holes, centres, strict=True)]
+        return cls(
+            find_pieces(mesh, []).of_vertex[[hole.loop[0] for hole in holes]],
+            np.array([normals[hole.loop].mean(axis=0) for hole in holes]),
+            np.array([np.cross(spoke, np.roll(spoke, -1, axis=0)).sum(axis=0) for spoke in spokes]),
+        )
+
+    def may_lie_in(self, rim: int, islands: IntArray) -> BoolArray:
+        """Whether islands (n,) belong to other pieces, face the way of a rim, and run as islands do."""
+        own, others = self.normals[rim], self.normals[islands]
+        sizes = np.linalg.norm(own) * np.linalg.norm(others, axis=1)
+        agree = (others @ own > LEAST_AGREEMENT * sizes) & (sizes > 0)
+        # A rim runs clockwise around its hole, the border of an island counter-clockwise around its surface.
+        runs_rightly = (self.areas[rim] @ own < 0) & (self.areas[islands] @ own > 0)
+        return np.asarray(agree & runs_rightly & (self.piece[islands] != self.piece[rim]))
 
 
-def _is_smaller(island: Hole, hole: Hole) -> bool:
-    return island.is_manifold and island.diameter < hole.diameter and island.id != hole.id
-
-
-def _lies_in(vertices: Vertices, normals: FloatArray, rim: IntArray, island: IntArray) -> bool:
-    """Whether an island lies within a rim, seen along the rim's normal, near its height, and faces its way."""
-    own, other = normals[rim].mean(axis=0), normals[island].mean(axis=0)
-    sizes = np.linalg.norm(own) * np.linalg.norm(other)
-    if not own @ other > LEAST_AGREEMENT * sizes or sizes == 0:
-        return False
+def _lies_in(vertices: Vertices, normal: FloatArray, rim: IntArray, island: IntArray) -> bool:
+    """Whether an island lies within a rim, seen along the rim's normal, and near its height."""
     centre = vertices[rim].mean(axis=0)
-    z = own / np.linalg.norm(own)
+    z = normal / np.linalg.norm(normal)
     x = np.cross(z, np.eye(3)[np.abs(z).argmin()])
     axes = np.stack([x / np.linalg.norm(x), np.cross(z, x / np.linalg.norm(x)), z], axis=1)
     outer, inner = (vertices[rim] - centre) @ axes, (vertices[island] - centre) @ axes
     slack = MOST_HEIGHT * float(np.linalg.norm(np.ptp(outer, axis=0)))
     level = (inner[:, 2] > outer[:, 2].min() - slack) & (inner[:, 2] < outer[:, 2].max() + slack)
-    # A rim runs clockwise around its hole, the border of an island counter-clockwise around its surface.
-    runs_rightly = _signed_area(outer[:, :2]) < 0 < _signed_area(inner[:, :2])
-    return bool(level.all() and runs_rightly and _is_inside(outer[:, :2], inner[:, :2]).all())
-
-
-def _signed_area(corners: FloatArray) -> float:
-    x, y = corners.T
-    return float((x * np.roll(y, -1) - y * np.roll(x, -1)).sum() / 2)
+    return bool(level.all() and _is_inside(outer[:, :2], inner[:, :2]).all())
 
 
 def _is_inside(polygon: FloatArray, points: FloatArray) -> BoolArray:
     """Whether points (n, 2) lie inside a polygon (k, 2), by the parity of the edges to the right of them."""
+    n_parts = 1 + len(points) * len(polygon) // _PAIRS_AT_A_TIME
+    return np.concatenate([_has_odd_parity(polygon, part) for part in np.array_split(points, n_parts)])
+
+
+def _has_odd_parity(polygon: FloatArray, points: FloatArray) -> BoolArray:
     start, end = polygon[None], np.roll(polygon, -1, axis=0)[None]
     spans = (start[..., 1] > points[:, None, 1]) != (end[..., 1] > points[:, None, 1])
     rise = np.where(spans, end[..., 1] - start[..., 1], 1.0)

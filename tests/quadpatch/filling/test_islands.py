@@ -1,8 +1,11 @@
+from typing import Any
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from quadpatch.filling import islands
 from quadpatch.filling.checked_fill import fill_checked
 from quadpatch.filling.faults import find_faults
 from quadpatch.filling.fill import close_flat
@@ -213,3 +216,43 @@ def test_an_island_that_faces_the_other_way_is_run_into_and_its_hole_refused() -
     rims = joins(mesh)
     checked = fill_checked(mesh, as_holes(rims.loops), close_flat)
     assert [code for code, _ in checked.refused.values()] == ["crosses_surface"]
+
+
+def nested_rings(n: int) -> TriangleMesh:
+    """Flat octagonal rings, one around the other, each a piece of its own."""
+    angle = np.pi * np.arange(8) / 4
+    circle = np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=1)
+    i, j = np.arange(8), (np.arange(8) + 1) % 8
+    triangles = np.concatenate([np.stack([i, 8 + i, 8 + j], 1), np.stack([i, 8 + j, j], 1)])
+    return joined(*(TriangleMesh(np.concatenate([r * circle, (r + 0.5) * circle]), triangles) for r in range(1, n + 1)))
+
+
+@pytest.mark.parametrize("n", [3, 60])
+def test_of_rings_around_rings_each_knows_the_narrowest_holes_it_lies_in(
+    n: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    mesh = nested_rings(n)
+    looked_at: list[int] = []
+    lies_in = islands._lies_in
+
+    def counted(*arguments: Any) -> bool:
+        looked_at.append(1)
+        return lies_in(*arguments)
+
+    monkeypatch.setattr(islands, "_lies_in", counted)
+    holes = find_holes(mesh)
+    found = islands.hosts_of(mesh, holes, holes)
+    # Loops go by width, so those of a ring are neighbours; the outer one is the island.
+    borders = {hole.id for hole in holes if hole.loop.max() % 16 >= 8}
+    assert found.keys() == borders - {0}
+    for island, hosts in found.items():
+        assert hosts == [island - 1 - 2 * k for k in range(min(islands.MOST_HOSTS, (island + 1) // 2))][: len(hosts)]
+        assert len(hosts) == min(islands.MOST_HOSTS, island // 2)
+    # The cost of a pair is that of its rims: none but those that are told is looked at.
+    assert len(looked_at) == sum(map(len, found.values()))
+
+
+def test_long_rims_are_compared_with_long_islands_part_by_part(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(islands, "_PAIRS_AT_A_TIME", 50)
+    assert len(joins(joined(PLATE, moved(ISLAND, (5.5, -5.5, 0)))).host_of) == 1
+    assert joins(joined(PLATE, moved(ISLAND, (8.0, 0, 0)))).host_of == {}
