@@ -1,10 +1,10 @@
 """The scrub: every object that a row names is read within a set number of days, and held against its sha256.
 
-A disk loses bits without a word, and what nobody reads is found to be damaged when it is needed. Whatever differs is
-read a second time, since a line may lose bits as well, and then remembered in the database. A damaged mesh is rejected
-with the code `mesh_damaged`; jobs that wait for it fail with the same, and it is analysed again once its bytes are
-right again, by an upload or from a backup. Other damaged objects are answered with `object_damaged`, or end a job with
-`model_damaged`. Objects that are gone are left to `jobkit.missing`.
+Disks lose bits without an error, and in an object that is not read the damage stays unknown until the object is
+needed. An object that differs is read a second time, since a transfer may lose bits as well, and then remembered in
+the database. A damaged mesh is rejected with the code `mesh_damaged`; jobs that wait for it fail with the same, and it
+is analysed again once its bytes are right again, by an upload or from a backup. Other damaged objects are answered with
+`object_damaged`, or end a job with `model_damaged`. Objects that are gone are left to `jobkit.missing`.
 """
 
 import hashlib

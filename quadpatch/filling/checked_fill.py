@@ -32,9 +32,7 @@ Refill = Callable[[FilledMesh, list[IntArray], IntArray, Triangles | None], Fill
 def _fill_by_thin_plate(
     filled: FilledMesh, loops: list[IntArray], chosen: IntArray, obstacles: Triangles | None
 ) -> FilledMesh:
-    n_vertices, n_triangles = filled.n_measured_vertices, filled.n_measured_triangles
-    mesh = TriangleMesh(filled.mesh.vertices[:n_vertices], filled.mesh.triangles[:n_triangles])
-    return fair_holes(close_holes(mesh, [loops[i] for i in chosen]), THIN_PLATE).as_part_of(chosen, filled)
+    return fair_holes(close_holes(filled.measured, [loops[i] for i in chosen]), THIN_PLATE).as_part_of(chosen, filled)
 
 
 _DOUBLED = ("doubles_surface", "a fill would lie on the back of the very surface whose border it closes")

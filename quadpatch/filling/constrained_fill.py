@@ -142,10 +142,9 @@ class _OneHole:
         self, filled: FilledMesh, loop: IntArray, position: int, obstacles: Triangles, first: TriangleMesh
     ) -> None:
         self._filled, self._position, self._obstacles, self._first = filled, position, obstacles, first
-        n_vertices, n_triangles = filled.n_measured_vertices, filled.n_measured_triangles
-        mesh = TriangleMesh(filled.mesh.vertices[:n_vertices], filled.mesh.triangles[:n_triangles])
-        self._near = Surroundings.of(mesh, [loop])
-        self._is_single = np.array_equal(mesh.vertices, mesh.vertices.astype(np.float32))
+        self._near = Surroundings.of(filled.measured, [loop])
+        vertices = filled.measured.vertices
+        self._is_single = np.array_equal(vertices, vertices.astype(np.float32))
 
     def fill(self) -> FilledMesh | None:
         patch = self._triangulation()

@@ -6,7 +6,7 @@ from quadpatch.filling.filled_mesh import FilledMesh, rim_diagonals
 from quadpatch.mesh.averages import mean_by
 from quadpatch.mesh.distance import nearest_triangles
 from quadpatch.mesh.normals import triangle_normals
-from quadpatch.types import BoolArray, IntArray, TriangleMesh
+from quadpatch.types import BoolArray, IntArray
 
 # A fill doubles the surface where it is closer to it than this share of the rim's size, and faces the other way.
 CLOSE = 0.05
@@ -32,7 +32,7 @@ def doubles_surface(filled: FilledMesh, loops: IntArray) -> BoolArray:
     hole = filled.triangle_hole[np.isin(filled.triangle_hole, loops)]
     if not len(hole):
         return np.zeros(n_loops, bool)
-    measured = TriangleMesh(mesh.vertices, mesh.triangles[: filled.n_measured_triangles])
+    measured = filled.measured
     new_all = mesh.triangles[filled.n_measured_triangles :]
     new = new_all[np.isin(filled.triangle_hole, loops)]
     distance, nearest = nearest_triangles(mesh.vertices[new].mean(axis=1), measured)

@@ -31,7 +31,6 @@ class Energy:
     variation: float = 0.0
 
 
-MEMBRANE = Energy(membrane=1.0)
 THIN_PLATE = Energy(plate=1.0)
 
 # Cotangents beyond this come from slivers and would drown every other weight.

@@ -34,6 +34,13 @@ class FilledMesh:
     unfilled: list[int]
 
     @property
+    def measured(self) -> TriangleMesh:
+        """The mesh that was filled."""
+        return TriangleMesh(
+            self.mesh.vertices[: self.n_measured_vertices], self.mesh.triangles[: self.n_measured_triangles]
+        )
+
+    @property
     def invented_triangles(self) -> BoolArray:
         """(n_triangles,) bool, True = invented."""
         return np.arange(len(self.mesh.triangles)) >= self.n_measured_triangles

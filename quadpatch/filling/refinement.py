@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from quadpatch.filling.triangulation import EdgeSet
+from quadpatch.mesh.edge_groups import group_edges
 from quadpatch.mesh.normals import cross, length, triangle_normals, unit, vertex_normals
 from quadpatch.mesh.smoothing import neighbour_average
 from quadpatch.types import BoolArray, FloatArray, IntArray, Triangles, Vertices
@@ -176,7 +177,7 @@ def _flip_once(
     crossing = _edge_keys(c, d, n_vertices)
     allowed &= ranked[np.searchsorted(ranked, crossing).clip(max=max(len(ranked) - 1, 0))] != crossing
     if rim is not None:
-        allowed &= _turns_little(np.concatenate([triangles, rim]), vertices, (a, b, c, d), (left // 3, right // 3))
+        allowed &= _turns_little(np.concatenate([triangles, rim]), vertices, left, right)
     allowed[allowed] = _is_first_everywhere(left[allowed] // 3, right[allowed] // 3, len(triangles))
     first = np.unique(crossing[allowed], return_index=True)[1]
     chosen = np.flatnonzero(allowed)[first]
@@ -201,21 +202,25 @@ def _is_unfolded(a: Vertices, b: Vertices, c: Vertices, d: Vertices) -> BoolArra
     return unfolded
 
 
-def _turns_little(
-    triangles: Triangles, vertices: Vertices, corners: tuple[IntArray, ...], sides: tuple[IntArray, IntArray]
-) -> BoolArray:
+def _turns_little(triangles: Triangles, vertices: Vertices, left: IntArray, right: IntArray) -> BoolArray:
     """Whether flips (n,) keep the turns at their five edges within `MOST_TURN_DEG`, or below the sharpest before.
 
-    Flips are given by the ends a, b of their edges and the apexes c, d of the triangles on the two sides (a, b, c) and
-    (b, a, d).
+    Flips are given by the two directions of their edges, a to b in a triangle (a, b, c) and back in (b, a, d); edge
+    ``3 t + k`` runs from corner k of triangle t.
     """
-    a, b, c, d = corners
-    left, right = sides
+    groups = group_edges(triangles, len(vertices))
     normals = triangle_normals(vertices, triangles)
-    across = _Neighbours(triangles, len(vertices))
-    of_ac, of_cb = (normals[across.of(*edge, left)] for edge in ((a, c), (c, b)))
-    of_bd, of_da = (normals[across.of(*edge, right)] for edge in ((b, d), (d, a)))
-    abc, bad = normals[left], normals[right]
+
+    def across(edges: IntArray, step: int) -> FloatArray:
+        """Look up the normals beyond the edge that follows each edge in its triangle after so many steps."""
+        edges = edges // 3 * 3 + (edges + step) % 3
+        start = groups.starts[groups.edge[edges]]
+        one, other = groups.order[start], groups.order[start + groups.count[groups.edge[edges]] - 1]
+        return np.asarray(normals[np.where(one == edges, other, one) // 3])
+
+    of_cb, of_ac, of_da, of_bd = across(left, 1), across(left, 2), across(right, 1), across(right, 2)
+    (a, b), c, d = groups.edges[left].T, _opposite(triangles, left), _opposite(triangles, right)
+    abc, bad = normals[left // 3], normals[right // 3]
     adc, dbc = (unit(cross(vertices[p] - vertices[d], vertices[q] - vertices[d])) for p, q in ((c, a), (b, c)))
     before = _least_cosine([(abc, bad), (abc, of_ac), (abc, of_cb), (bad, of_bd), (bad, of_da)])
     after = _least_cosine([(adc, dbc), (adc, of_ac), (adc, of_da), (dbc, of_cb), (dbc, of_bd)])
@@ -224,25 +229,6 @@ def _turns_little(
 
 def _least_cosine(pairs: list[tuple[FloatArray, FloatArray]]) -> FloatArray:
     return np.asarray(np.min([np.einsum("ij,ij->i", one, other) for one, other in pairs], axis=0))
-
-
-class _Neighbours:
-    """Triangles by their edges, for "what lies across this edge?" in bulk."""
-
-    def __init__(self, triangles: Triangles, n_vertices: int) -> None:
-        edges = triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
-        keys = _edge_keys(edges[:, 0], edges[:, 1], n_vertices)
-        self._n_vertices, self._order = n_vertices, np.argsort(keys, kind="stable")
-        self._ranked = keys[self._order]
-
-    def of(self, start: IntArray, end: IntArray, triangle: IntArray) -> IntArray:
-        """Find the triangle (n,) on the other side of an edge of each triangle (n,); itself where there is none."""
-        key = _edge_keys(start, end, self._n_vertices)
-        first = np.searchsorted(self._ranked, key)
-        second = np.minimum(first + 1, len(self._ranked) - 1)
-        one, other = self._order[first] // 3, self._order[second] // 3
-        other = np.where(self._ranked[second] == key, other, one)
-        return np.where(one == triangle, other, one)
 
 
 def _is_first_everywhere(left: IntArray, right: IntArray, n_triangles: int) -> BoolArray:

@@ -26,15 +26,17 @@ def nearest_triangles(points: Vertices, mesh: TriangleMesh) -> tuple[FloatArray,
     """
     if not len(mesh.triangles) or not len(points):
         return np.full(len(points), np.inf), np.full(len(points), -1)
-    used, local = np.unique(mesh.triangles, return_inverse=True)
-    squared, triangle, _ = igl.point_mesh_squared_distance(
-        np.ascontiguousarray(points), mesh.vertices[used], local.reshape(-1, 3)
-    )
+    squared, triangle, _ = _nearest(points, mesh)
     return np.asarray(np.sqrt(squared)), np.asarray(triangle, np.int64)
 
 
 def nearest_points(points: Vertices, mesh: TriangleMesh) -> Vertices:
     """Find the nearest point (n, 3) of a mesh, which has triangles, to each of some points (n, 3)."""
+    return np.asarray(_nearest(points, mesh)[2])
+
+
+def _nearest(points: Vertices, mesh: TriangleMesh) -> tuple[FloatArray, IntArray, FloatArray]:
+    """Squared distances (n,), triangles (n,) and places (n, 3)."""
     used, local = np.unique(mesh.triangles, return_inverse=True)
     found = igl.point_mesh_squared_distance(np.ascontiguousarray(points), mesh.vertices[used], local.reshape(-1, 3))
-    return np.asarray(found[2])
+    return found[0], found[1], found[2]

@@ -3,12 +3,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from quadpatch.filling.fairing import MEMBRANE, THIN_PLATE, Energy, fair, triangles_around
+from quadpatch.filling.fairing import THIN_PLATE, Energy, fair, triangles_around
 from quadpatch.types import BoolArray, FloatArray, TriangleMesh
 from tests.quadpatch.shapes import bumpy_plate, cylinder, open_grid, random_rotation, sphere
 
 VARIATION = Energy(variation=1.0)
 BLEND = Energy(plate=1.0, variation=20.0)
+MEMBRANE = Energy(membrane=1.0)
 ENERGIES = {"membrane": MEMBRANE, "plate": THIN_PLATE, "variation": VARIATION, "blend": BLEND}
 
 

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from quadpatch.filling.fairing import MEMBRANE, THIN_PLATE
+from quadpatch.filling.fairing import THIN_PLATE, Energy
 from quadpatch.filling.fill import close_flat, close_holes, fair_holes
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.types import FloatArray, IntArray
@@ -71,7 +71,7 @@ def test_loops_that_no_triangulation_closes_go_along() -> None:
 
 
 def test_moved_vertices_are_the_new_ones_alone() -> None:
-    other = fair_holes(close_holes(MESH, LOOPS), MEMBRANE)
+    other = fair_holes(close_holes(MESH, LOOPS), Energy(membrane=1.0))
     new = other.mesh.vertices[other.n_measured_vertices :]
     moved = PLATE.with_vertices(new)
     assert_keeps(moved, MESH)
