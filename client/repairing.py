@@ -17,6 +17,7 @@ from client.errors import (
     UsageError,
     WaitTimeoutError,
 )
+from client.interruption import HeldInterrupt, held_interrupt
 from client.options import HoleChoice, MethodChoice, make_spec
 from client.outputs import check_place, is_same_file, is_stream, shown
 from client.screen import Screen
@@ -102,8 +103,9 @@ def repair(client: Client, screen: Screen, task: Task) -> Job:
         mesh = client.upload(task.source, progress)
     screen.say(f"{task.source.name}: {_size(mesh.size_bytes)} uploaded")
     spec = make_spec(mesh.id, task.holes, task.method, mesh_name=sent_name(task.source) or None, **task.rest)
-    job = client.create_job(spec) if task.again else client.create_job_once(spec)
-    job = _wait(client, screen, job, task.timeout_s)
+    with held_interrupt(screen.complain) as interrupt:
+        job = client.create_job(spec) if task.again else client.create_job_once(spec)
+        job = _wait(client, screen, job, task.timeout_s, interrupt)
     fetch(client, screen, _files(task), job)
     return job
 
@@ -150,10 +152,11 @@ def format_of(output: Path) -> OutputFormat | None:
     return cast(OutputFormat, suffix)
 
 
-def _wait(client: Client, screen: Screen, job: Job, timeout_s: float | None) -> Job:
+def _wait(client: Client, screen: Screen, job: Job, timeout_s: float | None, interrupt: HeldInterrupt) -> Job:
     screen.say(f"job {job.id} " + ("accepted" if job.state is JobState.QUEUED else "is there already"))
     try:
         with _canceled_on_the_way_out(client, screen, job), screen.repair() as on_change:
+            interrupt.release()
             return client.wait(job.id, on_change, timeout_s)
     except JobFailedError as error:
         _raise_for_mesh(client, error)

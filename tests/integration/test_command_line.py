@@ -15,7 +15,8 @@ from typer.testing import CliRunner, Result
 
 from client.cli import app
 from client.exits import ExitCode
-from jobkit.schema import JobState
+from client.sdk import Client
+from jobkit.schema import Job, JobSpec, JobState
 from tests.waiting import GUARD_S, wait_until
 
 
@@ -114,6 +115,25 @@ def test_a_timeout_cancels_the_job(run: Callable[..., Result], large_relief: Pat
     assert done.exit_code == ExitCode.CANCELED
     assert "did not end within 0.5 s" in done.stderr
     assert not (tmp_path / "out.ply").exists()
+
+
+def test_ctrl_c_before_the_service_has_answered_cancels_the_job_all_the_same(
+    run: Callable[..., Result], client: Client, large_relief: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    made: list[Job] = []
+
+    def create(self: Client, spec: JobSpec) -> Job:
+        os.kill(os.getpid(), signal.SIGINT)
+        made.append(self.create_job(spec))
+        return made[0]
+
+    monkeypatch.setattr(Client, "create_job_once", create)
+    done = run("repair", large_relief, "-o", tmp_path / "out.ply", "--model", "self")
+    assert done.exit_code == ExitCode.INTERRUPTED
+    assert "the job is canceled as soon as the service has answered" in " ".join(done.stderr.split())
+    assert f"job {made[0].id}: cancel" in done.stderr
+    wait_until(lambda: client.job(made[0].id).state.is_terminal)
+    assert client.job(made[0].id).state == JobState.CANCELED
 
 
 def test_ctrl_c_cancels_the_job_and_says_so(client: Any, box: Any, large_relief: Path, tmp_path: Path) -> None:
