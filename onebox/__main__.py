@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from onebox.box import Box, default_workers, usable_port
+from onebox.box import Box, check_settings, default_workers, usable_port
 from onebox.demo import demo as run_demo
 from onebox.errors import OneBoxError
 from onebox.serve import serve as run_serve
@@ -34,6 +34,7 @@ def serve(
     if workers != "auto" and not (workers.isdecimal() and 1 <= int(workers) <= 256):
         raise typer.BadParameter(f"must be 'auto' or a count from 1 to 256; it is {workers!r}", param_hint="--workers")
     try:
+        check_settings(host)
         n_workers = default_workers() if workers == "auto" else int(workers)
         run_serve(Box(data, host, usable_port(host, port), n_workers), typer.echo)
     except OneBoxError as error:

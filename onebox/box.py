@@ -13,10 +13,13 @@ from dataclasses import dataclass
 from http import HTTPStatus
 from pathlib import Path
 
+from jobkit.errors import SettingsError
 from jobkit.readiness import READY_FILE_VARIABLE
+from jobkit.settings import load_settings
 from onebox.errors import StartError
 from onebox.processes import Program
 from onebox.valkey import answers, prepare_valkey
+from service.auth import check_exposure
 from worker.limits import thread_environment
 
 LOCK_NAME = "box.lock"
@@ -116,6 +119,20 @@ def ready_check(url: str) -> Callable[[], bool]:
             return False
 
     return is_ready
+
+
+def check_settings(host: str) -> None:
+    """Look at the settings in the environment before anything is started.
+
+    Raises
+    ------
+    StartError
+        If one is wrong, or `host` may not be listened on with them.
+    """
+    try:
+        check_exposure(load_settings().model_copy(update={"host": host}))
+    except SettingsError as error:
+        raise StartError(str(error)) from error
 
 
 def usable_port(host: str, wanted: int) -> int:

@@ -15,6 +15,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import boto3
+import psutil
 import psycopg
 from moto.server import ThreadedMotoServer
 from psycopg.sql import SQL, Composable, Identifier
@@ -93,9 +94,16 @@ class PostgresServer:
     def stop(self, how: signal.Signals = signal.SIGINT) -> None:
         """Stop it: SIGINT breaks off all connections, SIGKILL is a crash."""
         if self._process is not None:
+            serving = psutil.Process(self._process.pid).children(recursive=True)
             self._process.send_signal(how)
             self._process.wait(GUARD_S)
             self._process = None
+            if how is signal.SIGKILL:
+                # Those that serve connections may answer once more before they see that the server is gone.
+                for process in serving:
+                    with contextlib.suppress(psutil.NoSuchProcess):
+                        process.kill()
+            psutil.wait_procs(serving, GUARD_S)
 
     def remove(self) -> None:
         """Stop it and remove its data."""

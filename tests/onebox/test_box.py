@@ -91,13 +91,21 @@ def test_serve_says_in_a_line_why_it_can_not_start(tmp_path: Path) -> None:
     assert serve("--workers", "many", "--data", tmp_path).returncode == 2
 
 
-def test_serve_passes_on_why_the_service_refuses_to_start(tmp_path: Path) -> None:
+def test_wrong_settings_are_told_before_anything_is_started(tmp_path: Path) -> None:
     exposed = serve("--host", "0.0.0.0", "--port", "0", "--data", tmp_path)
     assert exposed.returncode == 1
     assert "QUADPATCH_API_KEYS is empty" in exposed.stderr
     mistyped = serve("--port", "0", "--data", tmp_path, QUADPATCH_LAESE_S="30")
     assert "QUADPATCH_LAESE_S is no setting" in mistyped.stderr
     assert "QUADPATCH_API_KEYS" not in mistyped.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_serve_passes_on_why_a_process_ended(tmp_path: Path) -> None:
+    ended = serve("--port", "0", "--data", tmp_path, QUADPATCH_OBJECT_STORE_URL="ftp://nowhere")
+    assert ended.returncode == 1
+    assert re.search(r"error: \w+ ended at once .*logs", ended.stderr)
+    assert "that object store is not supported" in ended.stderr
 
 
 def test_serve_shows_the_words_of_a_valkey_that_can_not_start(tmp_path: Path) -> None:
