@@ -1,0 +1,55 @@
+"""``python -m benchmarks.output_hashes FOLDER``: what repairs put out, as hashes.
+
+A change that moves or renames code must leave every bit of a repair as it was. Each mesh of a folder is repaired with
+each model; one line per repair goes to standard output: the sha256 of the repaired file, that of its report without the
+seconds that it took, mesh and model. The output of two runs is compared with ``diff``.
+"""
+
+import argparse
+import hashlib
+import json
+import subprocess
+import sys
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+MODELS = ("smooth", "self", "general-residual@1")
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Read the command line, repair, and print the hashes."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.output_hashes", description=__doc__)
+    parser.add_argument("folder", type=Path, help="folder of meshes with holes")
+    parser.add_argument("--model", action="append", help=f"model, may be repeated; by default {', '.join(MODELS)}")
+    chosen = parser.parse_args(arguments)
+    scans = sorted(path for path in chosen.folder.iterdir() if path.suffix in {".ply", ".stl", ".obj", ".off"})
+    if not scans:
+        sys.exit(f"error: there is no mesh in {chosen.folder}")
+    for scan in scans:
+        for model in chosen.model or MODELS:
+            print(*hashes(scan, model), scan.name, model, flush=True)  # noqa: T201
+
+
+def hashes(scan: Path, model: str) -> tuple[str, str]:
+    """Repair one mesh; return the sha256 of the repaired file and of its report.
+
+    Raises
+    ------
+    subprocess.CalledProcessError
+        If the repair fails.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        repaired, report = Path(folder, "repaired" + scan.suffix), Path(folder, "report.json")
+        command = [sys.executable, "-m", "quadpatch", "fill", str(scan), "-o", str(repaired), "--report", str(report)]
+        subprocess.run([*command, "--model", model], check=True, capture_output=True)
+        kept = json.dumps(_without_seconds(json.loads(report.read_bytes())), sort_keys=True)
+        return hashlib.sha256(repaired.read_bytes()).hexdigest(), hashlib.sha256(kept.encode()).hexdigest()
+
+
+def _without_seconds(value: Any) -> Any:
+    """Leave durations out of a report."""
+    if isinstance(value, dict):
+        return {name: _without_seconds(item) for name, item in value.items() if name != "seconds"}
+    return [_without_seconds(item) for item in value] if isinstance(value, list) else value
