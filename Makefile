@@ -6,7 +6,7 @@ READY  := $(VENV)/.ready
 # Twice quiet: errors only.
 PIP    := $(BIN)/python -m pip --quiet --quiet --disable-pip-version-check
 
-.PHONY: demo test test-postgres explore faults fuzz mutants flood contract check serve openapi samples lock sbom bench bench-quality bench-scans clean
+.PHONY: demo test test-slow test-postgres explore faults fuzz mutants flood contract check serve openapi samples lock sbom bench bench-quality bench-scans clean
 
 $(READY): pyproject.toml constraints.txt
 	@echo "setting up $(VENV); this takes a few minutes the first time ..." >&2
@@ -25,15 +25,19 @@ serve: $(READY)           ## one box on http://127.0.0.1:8000 until Ctrl-C
 # One thread for each of the two processes: where four share two cores, each waits for the others. At most 8 minutes on
 # two idle cores: what is slow is listed, so that it is made cheaper or gets a target of its own, such as `faults`.
 # The tests start some hundred interpreters: with PYTHONDONTWRITEBYTECODE each would compile all modules again.
-test: $(READY)            ## every test, with the real Valkey
-	@PYTHONDONTWRITEBYTECODE= OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadfile --durations 10
+TEST := PYTHONDONTWRITEBYTECODE= OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadfile
+test: $(READY)            ## the tests, with the real Valkey
+	@$(TEST) --durations 10 -m "not slow" $(ARGS)
+
+test-slow: $(READY)       ## the tests that take long: whole campaigns, trainings, boxes that are killed
+	@$(TEST) --durations 10 -m slow $(ARGS)
 
 test-postgres: $(READY)   ## the tests of service and workers on PostgreSQL and S3, both started by the tests
-	@PYTHONDONTWRITEBYTECODE= TEST_BACKEND=postgres-s3 OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadfile \
+	@TEST_BACKEND=postgres-s3 $(TEST) \
 		tests/jobkit tests/service tests/worker tests/dispatcher tests/integration tests/contract tests/onebox
 
 explore: $(READY)         ## the property tests with other examples than `make test` has: make explore ARGS="tests/quadpatch"
-	@TEST_EXAMPLES=explore OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadfile -m hypothesis $(ARGS)
+	@TEST_EXAMPLES=explore $(TEST) -m hypothesis $(ARGS)
 
 # Network namespaces and disks that fill up need root; without it the suite says what it left out.
 faults: $(READY)          ## kill, cut off and starve a cluster of real processes: make faults ARGS="--seed 7 --backend sqlite-local"

@@ -35,10 +35,10 @@ from tests.waiting import end, wait_until_answered
 # How long an example takes says more about the machine than about the code. The examples are the same in every run:
 # what fails for one newcomer fails for all. `make explore` looks for others.
 hypothesis.settings.register_profile(
-    "tests", deadline=None, suppress_health_check=[hypothesis.HealthCheck.too_slow], derandomize=True
+    "tests", deadline=None, suppress_health_check=[hypothesis.HealthCheck.too_slow], derandomize=True, max_examples=30
 )
 hypothesis.settings.register_profile(
-    "explore", hypothesis.settings.get_profile("tests"), derandomize=False, print_blob=True
+    "explore", hypothesis.settings.get_profile("tests"), derandomize=False, max_examples=300, print_blob=True
 )
 hypothesis.settings.load_profile(os.environ.get("TEST_EXAMPLES", "tests"))
 

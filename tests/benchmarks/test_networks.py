@@ -15,6 +15,7 @@ FLOP = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", FLOP)
 def test_operations_are_those_of_the_layers_however_they_are_written(name: str) -> None:
     """The zeros with which a transposed convolution is padded, once it is written as a convolution, do not count."""

@@ -8,6 +8,7 @@ from benchmarks.scans import main
 from tests.quadpatch.shapes import bumpy_plate, punched, write_ply
 
 
+@pytest.mark.slow
 def test_scans_are_repaired_judged_and_drawn(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """A plate has a border, which stays open, and two holes."""
     plate = punched(bumpy_plate(30, 2.0), (-0.4, -0.4, 0), (0.5, 0.4, 0), radius=0.15)

@@ -17,6 +17,7 @@ from tests.contract.running import HEADERS, KEY, Known, command, run, write_conf
 from tests.waiting import GUARD_S
 
 
+@pytest.mark.slow
 def test_schemathesis_finds_nothing(
     serve: Callable[..., Any],
     settings: Settings,

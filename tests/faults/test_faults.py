@@ -13,7 +13,7 @@ FAST = {"QUADPATCH_HEARTBEAT_S": "0.5", "QUADPATCH_DISPATCH_S": "0.3", "QUADPATC
 KILLS = (faults.kill_worker, faults.kill_engine, faults.kill_api, faults.kill_dispatcher)
 OUTAGES = (faults.kill_valkey, faults.flush_valkey, faults.stop_database, faults.refuse_store, faults.freeze_worker)
 
-pytestmark = pytest.mark.faults
+pytestmark = pytest.mark.slow
 
 
 @pytest.fixture(scope="module")

@@ -73,7 +73,7 @@ def read_and_kill(service: Any, job_id: str, got: list[SentEvent], n_then: int) 
                 service.process.send_signal(signal.SIGKILL)
 
 
-@pytest.mark.faults
+@pytest.mark.slow
 def test_a_service_killed_in_the_middle_of_a_stream_costs_no_event_and_repeats_none(
     serve: Callable[..., Any], database: Database
 ) -> None:
@@ -97,6 +97,7 @@ def test_a_service_killed_in_the_middle_of_a_stream_costs_no_event_and_repeats_n
     assert got[-1].type == "succeeded"
 
 
+@pytest.mark.slow
 def test_a_service_that_stops_ends_its_streams_in_order(serve: Callable[..., Any], database: Database) -> None:
     with serve() as service:
         job_id = start_job(service.url)

@@ -44,6 +44,7 @@ def test_a_canceled_job_leaves_no_process_and_no_file(client: Client, box: Any, 
     assert not (box.data / "objects" / "results" / job.id).exists()
 
 
+@pytest.mark.slow
 def test_a_job_is_canceled_in_the_middle_of_native_code(client: Client, box: Any, fine_relief: Path) -> None:
     mesh = client.wait_for_mesh(client.upload(fine_relief).id, timeout_s=GUARD_S)
     job = client.create_job(JobSpec.model_validate({"mesh_id": mesh.id, "method": FINE}))
@@ -78,6 +79,7 @@ def test_an_engine_killed_in_every_attempt_ends_in_a_clear_failure(
     assert_nothing_is_left(box)
 
 
+@pytest.mark.slow
 def test_a_killed_worker_takes_its_engine_along_and_another_attempt_succeeds(
     client: Client, box: Any, large_relief: Path
 ) -> None:
@@ -92,6 +94,7 @@ def test_a_killed_worker_takes_its_engine_along_and_another_attempt_succeeds(
     wait_until(lambda: box.requests() == [])
 
 
+@pytest.mark.slow
 def test_a_stopped_worker_hands_its_job_back(client: Client, box: Any, large_relief: Path) -> None:
     job = start_long_job(client, box, large_relief)
     (engine,) = box.engines()
@@ -120,6 +123,7 @@ def test_a_job_over_its_time_limit_fails_with_the_code_and_the_stage(
     assert_nothing_is_left(box)
 
 
+@pytest.mark.slow
 def test_a_killed_queue_comes_back_and_no_job_is_lost(client: Client, box: Any, large_relief: Path) -> None:
     mesh = client.upload(large_relief)
     smooth = {"mesh_id": mesh.id, "method": {"method": "smooth"}, "output": {"preview": False}}
@@ -128,6 +132,7 @@ def test_a_killed_queue_comes_back_and_no_job_is_lost(client: Client, box: Any, 
     assert all(client.wait(job.id, timeout_s=GUARD_S).state.has_result for job in jobs)
 
 
+@pytest.mark.slow
 def test_a_stopped_box_leaves_nothing_running(tmp_path: Path) -> None:
     with running_box(tmp_path) as url, Client(url) as client:
         (pid,) = [int(line) for line in (tmp_path / "box.lock").read_text().split()]
@@ -137,6 +142,7 @@ def test_a_stopped_box_leaves_nothing_running(tmp_path: Path) -> None:
     assert running == []
 
 
+@pytest.mark.slow
 def test_a_killed_box_leaves_nothing_running(tmp_path: Path) -> None:
     with running_box(tmp_path) as url, Client(url) as client:
         client.models()

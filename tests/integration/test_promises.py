@@ -7,6 +7,7 @@ from datetime import timedelta
 from typing import Any
 
 import httpx
+import pytest
 from rq import Queue
 from rq.serializers import JSONSerializer
 from sqlalchemy import update
@@ -33,6 +34,7 @@ def get(url: str, **headers: str) -> Any:
     return httpx.get(url, headers=headers, timeout=GUARD_S).json()
 
 
+@pytest.mark.slow
 def test_a_job_outlives_the_service_and_the_queue(
     serve: Callable[..., Any], settings: Settings, database: Database
 ) -> None:
@@ -51,6 +53,7 @@ def test_a_job_outlives_the_service_and_the_queue(
     queue.close()
 
 
+@pytest.mark.slow
 def test_services_that_start_at_once_share_one_database(
     serve: Callable[..., Any], settings: Settings, dictionary_bytes: Callable[[int], bytes]
 ) -> None:
@@ -66,6 +69,7 @@ def test_services_that_start_at_once_share_one_database(
         assert [(model["name"], model["latest"]) for model in models["models"]] == [("general-dictionary", 1)]
 
 
+@pytest.mark.slow
 def test_a_station_that_repeats_itself_through_a_bad_line_gets_one_job(serve: Callable[..., Any]) -> None:
     with serve() as service, ThreadPoolExecutor(8) as pool:
         answers = list(pool.map(lambda _: post_job(service.url, **{"Idempotency-Key": "order-17"}), range(16)))

@@ -4,6 +4,7 @@ from collections.abc import Callable
 from typing import Any
 
 import httpx
+import pytest
 from sqlalchemy import update
 from standardwebhooks import Webhook
 
@@ -18,6 +19,7 @@ from tests.waiting import GUARD_S, wait_until
 ALLOWED = {"webhook_allowed_networks": LOOPBACK}
 
 
+@pytest.mark.slow
 def test_the_end_of_a_job_reaches_its_subscriber_although_the_dispatcher_is_killed_in_the_middle(
     serve: Callable[..., Any], settings: Settings, database: Database
 ) -> None:

@@ -107,6 +107,7 @@ def _migrate(url: str, barrier: "multiprocessing.synchronize.Barrier", outcome: 
         outcome.put("")
 
 
+@pytest.mark.slow
 def test_processes_that_start_at_once_migrate_once(empty_url: str) -> None:
     context = multiprocessing.get_context("spawn")
     barrier, outcome = context.Barrier(3), context.Queue()

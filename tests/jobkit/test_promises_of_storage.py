@@ -4,6 +4,7 @@ import contextlib
 from collections.abc import Callable
 from datetime import timedelta
 
+import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from sqlalchemy import select
@@ -121,6 +122,7 @@ class World:
         return {found.key for found in self.store.keys("") if found.modified_at < utc_now() - GRACE}
 
 
+@pytest.mark.slow
 @settings(max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow])
 @given(script=st.lists(st.tuples(st.sampled_from(STEPS + TURNS), st.integers(0, 2)), min_size=3, max_size=40))
 def test_no_row_lacks_its_object_and_no_old_object_its_row(

@@ -108,6 +108,7 @@ def test_two_prefixes_of_a_bucket_are_two_stores(bucket: str, tmp_path: Path) ->
         second.size(key)
 
 
+@pytest.mark.slow
 def test_a_prefix_goes_whole_though_a_listing_has_many_pages(s3_store: S3Store, bucket: str) -> None:
     raw = Bucket(bucket, prefix="a", client_options={"allow_http": True})
     for i in range(1_001):
@@ -155,6 +156,7 @@ def test_an_upload_that_the_server_breaks_off_leaves_nothing_to_be_seen(
     assert scratch_files(tmp_path) == []
 
 
+@pytest.mark.slow
 def test_memory_stays_small_however_large_the_object_is(s3_store: S3Store, bucket: str, tmp_path: Path) -> None:
     command = [sys.executable, "-c", LARGE, bucket, str(tmp_path / "scratch")]
     grown_mb = int(subprocess.run(command, check=True, capture_output=True, text=True).stdout)

@@ -35,6 +35,7 @@ def pixels(path: Path) -> np.ndarray[Any, np.dtype[np.uint8]]:
         return np.asarray(image)
 
 
+@pytest.mark.slow
 def test_an_stl_of_which_each_facet_is_a_small_part_gets_its_picture(tmp_path: Path) -> None:
     """Its facets share no vertices, so that each looks like a piece of its own."""
     source = write_stl(tmp_path / "in.stl", punched(sphere(4), HOLES[0], radius=0.3))

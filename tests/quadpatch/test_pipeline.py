@@ -59,6 +59,7 @@ def moved(mesh: TriangleMesh, seed: int) -> tuple[TriangleMesh, FloatArray, Floa
     return TriangleMesh(mesh.vertices @ rotation.T + shift, mesh.triangles), rotation, shift
 
 
+@pytest.mark.slow
 def test_what_was_learned_from_a_relief_beats_the_smooth_fill(smooth_relief: Repair, learned_relief: Repair) -> None:
     assert height_errors(learned_relief).mean() < 0.6 * height_errors(smooth_relief).mean()
     completion = learned_relief.completion
@@ -69,6 +70,7 @@ def test_what_was_learned_from_a_relief_beats_the_smooth_fill(smooth_relief: Rep
     assert len(filled) >= 6
 
 
+@pytest.mark.slow
 def test_holes_that_the_model_does_not_complete_stay_as_geometry_filled_them(
     smooth_relief: Repair, learned_relief: Repair
 ) -> None:
@@ -92,6 +94,7 @@ def test_every_stage_is_gone_through_in_order() -> None:
 
 
 @pytest.mark.parametrize("learn", [False, True])
+@pytest.mark.slow
 def test_measured_vertices_and_triangles_come_first_bit_for_bit(
     learn: bool, smooth_relief: Repair, learned_relief: Repair
 ) -> None:
@@ -118,6 +121,8 @@ def test_a_smooth_repair_moves_with_its_mesh(smooth_small_relief: Repair) -> Non
             assert other.confidence == pytest.approx(turned, abs=1e-9)
 
 
+@pytest.mark.slow
+@pytest.mark.slow
 def test_a_learned_repair_moves_with_its_mesh_as_far_as_the_quads_do(
     smooth_relief: Repair, learned_relief: Repair
 ) -> None:

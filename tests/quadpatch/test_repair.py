@@ -50,7 +50,7 @@ def repaired(request: pytest.FixtureRequest, scan_file: Path) -> tuple[str, Path
     return request.param, output, repair_file(scan_file, output, request.param)
 
 
-@pytest.mark.parametrize("model", ["smooth", "self"])
+@pytest.mark.parametrize("model", ["smooth", pytest.param("self", marks=pytest.mark.slow)])
 @pytest.mark.parametrize("name", WRITERS)
 def test_every_vertex_and_face_of_the_file_comes_back_bit_for_bit_and_in_order(
     tmp_path: Path, name: str, model: str

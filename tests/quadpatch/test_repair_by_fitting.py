@@ -20,6 +20,8 @@ from quadpatch.options import NetworkOptions, PatchOptions, RepairOptions
 from quadpatch.repair import BASE_NETWORK, SELF_NETWORK, repair_file
 from tests.quadpatch.shapes import punched, relief, write_ply
 
+pytestmark = pytest.mark.slow
+
 ROOT = Path(__file__).resolve().parents[2]
 WHOLE = relief(100, 2.8, 0.04, 11)
 SCAN = punched(WHOLE, (-0.6, -0.65, 0), (0.35, 0.4, 0), radius=0.13)
@@ -67,7 +69,6 @@ def fitted(scan_file: Path, unlearned_models: Path, tmp_path_factory: pytest.Tem
     return Fitted(output, report, shares)
 
 
-@pytest.mark.slow
 def test_a_network_that_is_fitted_to_a_relief_fills_it_better_than_geometry(
     fitted: Fitted, scan_file: Path, tmp_path: Path
 ) -> None:
@@ -86,7 +87,6 @@ def test_a_network_that_is_fitted_to_a_relief_fills_it_better_than_geometry(
     assert len(set(fitted.shares)) > 35
 
 
-@pytest.mark.slow
 @pytest.mark.usefixtures("unlearned")
 def test_the_command_line_says_how_long_to_fit_and_what_was_fitted_and_repeats_it(
     fitted: Fitted, scan_file: Path, tmp_path: Path

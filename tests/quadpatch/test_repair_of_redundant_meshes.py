@@ -93,7 +93,7 @@ def test_noise_is_joined_by_default_and_left_on_demand(tmp_path: Path) -> None:
     rng = np.random.default_rng(0)
     corners = BALL.vertices[BALL.triangles].reshape(-1, 3).astype(np.float32)
     noisy = np.nextafter(corners, rng.choice(np.array([-9, 9], np.float32), corners.shape))
-    torn = np.where(rng.random(corners.shape) < 0.2, noisy, corners).astype(np.float64)
+    torn = np.where(rng.random(corners.shape) < 0.02, noisy, corners).astype(np.float64)
     mesh = TriangleMesh(torn, np.arange(len(corners)).reshape(-1, 3))
     source, output = write_stl(tmp_path / "in.stl", mesh), tmp_path / "out.stl"
     report = repair_file(source, output, "smooth")

@@ -83,7 +83,7 @@ def test_an_island_is_planned_as_joined_whatever_else_is_chosen(tmp_path: Path, 
     islands=st.lists(st.tuples(st.sampled_from(sorted(ISLANDS)), PLACES), min_size=1, max_size=3),
     options=OPTIONS,
 )
-@settings(max_examples=20)
+@settings(max_examples=6)
 def test_plan_and_repair_say_the_same_of_each_loop(
     islands: list[tuple[str, tuple[float, float]]], options: HoleOptions, tmp_path_factory: pytest.TempPathFactory
 ) -> None:

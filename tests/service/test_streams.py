@@ -50,6 +50,7 @@ async def numbers(opened: EventStreams, job_id: str, after: int) -> list[int]:
     return [event.id for event in sent_events(text.split("\n"))]
 
 
+@pytest.mark.slow
 @settings(max_examples=15, suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow])
 @given(n_before=st.integers(0, 4), n_during=st.integers(0, 4), known=st.lists(st.integers(0, 12), max_size=5))
 def test_every_stream_gets_each_event_after_its_own_once_and_in_order(

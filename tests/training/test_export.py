@@ -17,6 +17,8 @@ from training.errors import ExportError
 from training.export import PARITY, run_onnx, to_onnx, write_network
 from training.int8 import to_int8
 
+pytestmark = pytest.mark.slow
+
 CARD = {"patch_resolution": 16, "recipe": "paper", "height_low": -0.1, "height_high": 0.1}
 
 

@@ -38,6 +38,7 @@ def test_holes_of_every_width_give_as_much_as_they_may(cut: Arrays) -> None:
     assert missing.tolist() == sorted(missing)
 
 
+@pytest.mark.slow
 def test_the_same_generator_cuts_the_same_lessons(relief: TriangleMesh, cut: Arrays) -> None:
     again = cut_lessons(relief, 12, np.random.default_rng(0))
     assert all(again[name].tobytes() == array.tobytes() for name, array in cut.items())

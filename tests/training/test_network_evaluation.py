@@ -13,6 +13,7 @@ from training.spreading import disk
 CARD = {"patch_resolution": 24, "recipe": "paper", "height_low": SCALE.low, "height_high": SCALE.high}
 
 
+@pytest.mark.slow
 def test_errors_are_those_of_the_file_in_the_hole_in_patch_lengths(tmp_path: Path) -> None:
     """A network that copies its input answers 1 in the hole, wherever the surface is: its error is known exactly."""
     corpus = write_corpus(tmp_path / "corpus")

@@ -28,6 +28,8 @@ from training.commands import INTERRUPTED
 from training.procedural import relief_mesh
 from training.shards import Corpus
 
+pytestmark = pytest.mark.slow
+
 ROOT = Path(__file__).resolve().parents[2]
 SMALL = ["--places", "40", "--overlap", "0", "--edges", "8.0"]
 SHORT = ["--steps", "12", "--batch", "8", "--precision", "float32", "--device", "cpu"]
@@ -139,7 +141,6 @@ def test_a_run_that_was_stopped_goes_on_to_the_same_bytes(corpus: Path, register
     assert checkpoint.is_file()
 
 
-@pytest.mark.slow
 def test_ctrl_c_writes_a_checkpoint_and_says_how_to_go_on(corpus: Path, tmp_path: Path) -> None:
     arguments = network(corpus, "--name", "x", "--output", tmp_path / "x.onnx", "--steps", "1000", "--patience", "99")
     command = [sys.executable, "-m", "training", *map(str, arguments)]

@@ -55,6 +55,7 @@ def test_holes_and_what_was_never_measured_look_the_same_but_only_the_former_is_
     assert 0.05 < float((known & ~visible).double().mean()) < 0.4
 
 
+@pytest.mark.slow
 def test_a_batch_is_scaled_as_a_repair_scales_its_patches(tmp_path: Path) -> None:
     """A network that copies its input, asked through the code of repairs, gives back what training calls clean."""
     task = small_task()

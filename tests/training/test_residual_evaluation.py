@@ -38,11 +38,13 @@ def written(path: Path, network: Residual) -> Path:
     return path
 
 
+@pytest.mark.slow
 def test_a_network_that_leaves_fills_as_they_are_takes_no_error_away(corpus: Corpus, tmp_path: Path) -> None:
     found = evaluate_residual(written(tmp_path / "a.onnx", Residual()), corpus)
     assert found == {"scan_n_patches": 5, "scan_to_fill": 1.0, "relief_n_patches": 7, "relief_to_fill": 1.0}
 
 
+@pytest.mark.slow
 def test_what_the_file_answers_is_what_counts(corpus: Corpus, tmp_path: Path) -> None:
     network = stirred(Residual())
     found = evaluate_residual(written(tmp_path / "a.onnx", network), corpus)

@@ -25,6 +25,8 @@ from training.residual_task import ResidualTask
 from training.shards import Corpus, PatchSet
 from training.tasks import open_task
 
+pytestmark = pytest.mark.slow
+
 N = RESOLUTION
 CPU = torch.device("cpu")
 
@@ -114,7 +116,6 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-@pytest.mark.slow
 def test_a_corpus_of_lessons_says_what_it_is_for(made: Path) -> None:
     corpus = Corpus.open(made / "corpus")
     assert (corpus.facts["recipe"], corpus.facts["resolution"]) == ("residual", N)
@@ -124,7 +125,6 @@ def test_a_corpus_of_lessons_says_what_it_is_for(made: Path) -> None:
         open_task(find_architecture("small_4x"), corpus)
 
 
-@pytest.mark.slow
 def test_the_network_that_comes_out_is_one_that_a_repair_can_run(made: Path, tmp_path: Path) -> None:
     inpainter = AutoencoderInpainter.load(made / "own.onnx")
     assert (inpainter.recipe, inpainter.resolution) == ("residual", N)
@@ -149,7 +149,6 @@ def test_the_network_that_comes_out_is_one_that_a_repair_can_run(made: Path, tmp
     assert report["patches"]["resolution"] == N
 
 
-@pytest.mark.slow
 def test_the_network_that_comes_out_can_be_fitted_to_a_mesh(made: Path) -> None:
     """What torch reads back from the file answers as the file does."""
     patches = lesson_set(6, 5).gather(np.arange(6))["channels"].astype(np.float32)

@@ -11,6 +11,8 @@ from training.errors import CheckpointError, DivergedError
 from training.processes import Place
 from training.trainer import Interrupted, Status, Trainer, TrainOptions
 
+pytestmark = pytest.mark.slow
+
 PLACE = Place(torch.device("cpu"))
 SHORT = TrainOptions(steps=12, batch=8, precision="float32", n_validations=4)
 

@@ -48,6 +48,7 @@ def worker(settings: Settings, queue_folder: Path, tmp_path: Path) -> Iterator[s
         end(process)
 
 
+@pytest.mark.slow
 def test_a_worker_outlives_a_queue_that_goes_away_in_the_middle_of_a_task(
     worker: subprocess.Popen[bytes], queue_folder: Path, database: Database, store: ObjectStore
 ) -> None:

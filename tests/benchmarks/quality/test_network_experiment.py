@@ -17,6 +17,8 @@ from quadpatch.errors import OptionError
 from tests.benchmarks.quality.small_bench import SHAPES, small_bench
 from training.architectures import ARCHITECTURES, Architecture
 
+pytestmark = pytest.mark.slow
+
 BUDGET = Budget(None, 2)
 SMALL = ARCHITECTURES["small_4x"]
 # The same network by another name, so that there are two to compare.

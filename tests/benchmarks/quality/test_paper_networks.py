@@ -14,6 +14,8 @@ from quadpatch.patches.scale import PatchScale
 from tests.benchmarks.quality.small_bench import small_bench
 from training.architectures import find_architecture
 
+pytestmark = pytest.mark.slow
+
 SCALE = PatchScale(0.25, 24, 1)
 SMALL = find_architecture("small_4x")
 SHORT = Budget(None, 4)

@@ -81,6 +81,7 @@ def test_long_loops_are_closed_by_an_oriented_disk(n: int) -> None:
     assert -areas[areas < 0].sum() < 0.02 * areas.sum()
 
 
+@pytest.mark.slow
 def test_a_loop_longer_than_the_square_of_the_table_is_closed() -> None:
     n = MAX_TABLE_SIZE**2 + 300
     found = triangulate(wavy(n))

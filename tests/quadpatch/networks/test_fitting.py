@@ -16,6 +16,8 @@ from tests.quadpatch.grounds import ground_of, surroundings_of
 from tests.quadpatch.networks.made import stirred
 from tests.quadpatch.shapes import relief
 
+pytestmark = pytest.mark.slow
+
 STEPS = 60
 # More than any machine takes.
 AMPLE_S = 1e6
@@ -54,7 +56,6 @@ def fresh() -> Residual:
     return Residual()
 
 
-@pytest.mark.slow
 def test_a_network_learns_from_some_holes_to_fill_others_of_the_same_surface(ground: Ground, lessons: Lessons) -> None:
     network = fresh()
     assert fit(network, lessons, NetworkOptions(STEPS, AMPLE_S), seed=0) == STEPS
@@ -111,7 +112,6 @@ def test_the_outcome_is_the_same_on_a_busy_machine_as_long_as_the_time_is_not_ah
     assert slow not in in_time
 
 
-@pytest.mark.slow
 def test_lessons_follow_from_the_seed_and_are_those_of_several_rounds(small_ground: Ground) -> None:
     surroundings = surroundings_of(small_ground)
     one, same, other = (gather_lessons(surroundings, seed) for seed in (0, 0, 1))

@@ -14,6 +14,8 @@ from tests.quadpatch.networks.made import random_tensor, stirred, write_residual
 from training.architectures import find_architecture
 from training.export import to_onnx, write_network
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module")
 def network() -> Residual:
