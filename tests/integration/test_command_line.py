@@ -5,7 +5,7 @@ import os
 import signal
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -117,6 +117,15 @@ def test_a_timeout_cancels_the_job(run: Callable[..., Result], large_relief: Pat
     assert not (tmp_path / "out.ply").exists()
 
 
+@pytest.fixture
+def with_ctrl_c() -> Iterator[None]:
+    """A run in the background is started with Ctrl-C ignored."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.usefixtures("with_ctrl_c")
 def test_ctrl_c_before_the_service_has_answered_cancels_the_job_all_the_same(
     run: Callable[..., Result], client: Client, large_relief: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
