@@ -4,20 +4,20 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from quadpatch.expectation import Expectation
-from quadpatch.fill_rule import FillRule
+from quadpatch.calibration.calibration_set import Practice, believed_share, expect
+from quadpatch.calibration.energy_selection import FillRule
+from quadpatch.calibration.error_model import Expectation
+from quadpatch.calibration.training_pairs import Ground
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.inpainters.dictionary import learn_from_patches
 from quadpatch.inpainters.inpainter import Inpainter, Surroundings
 from quadpatch.judge import Evidence, gather, trusted
-from quadpatch.lessons import Ground
 from quadpatch.mesh.smoothing import laplacian_smooth
 from quadpatch.options import RepairOptions
 from quadpatch.patches.folding import is_unfolded
 from quadpatch.patches.layout import lay_out, patchify, pick, seeds_near, take
 from quadpatch.patches.scale import PatchScale, choose_scale, outline_iterations
 from quadpatch.patches.seeds import Seeds
-from quadpatch.practice import Practice, believed_share, expect
 from quadpatch.reconstruction.displacement import displace, join_at_rim, rim_vertices
 from quadpatch.stages import Stages
 from quadpatch.types import BoolArray, FloatArray, Patches, TriangleMesh

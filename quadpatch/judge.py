@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from quadpatch.expectation import Expectation
+from quadpatch.calibration.error_model import Expectation
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.mesh.averages import mean_by
 from quadpatch.mesh.holes import Hole, Selection

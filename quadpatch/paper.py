@@ -12,9 +12,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from quadpatch.calibration.energy_selection import FillRule
 from quadpatch.completion import Completion
 from quadpatch.errors import NoQuadsError, OptionError, StageError
-from quadpatch.fill_rule import FillRule
 from quadpatch.filling.fairing import Energy
 from quadpatch.filling.faults import find_faults
 from quadpatch.filling.fill import close_flat

@@ -8,10 +8,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from quadpatch.calibration.calibration_set import Practice, expect, practise
+from quadpatch.calibration.energy_selection import FillRule, learn_fill_rule
+from quadpatch.calibration.error_model import UNTRIED, Expectation
 from quadpatch.completion import Completion, Problem, complete
 from quadpatch.errors import NoQuadsError
-from quadpatch.expectation import UNTRIED, Expectation
-from quadpatch.fill_rule import FillRule, learn_fill_rule
 from quadpatch.filling.checked_fill import CheckedFill, LoopsToFill, fill_checked
 from quadpatch.filling.fairing import THIN_PLATE, Energy
 from quadpatch.filling.filled_mesh import FilledMesh
@@ -21,7 +22,6 @@ from quadpatch.judge import HoleResult, judge
 from quadpatch.mesh.holes import Hole, Selection, find_holes, select_holes
 from quadpatch.mesh.measures import diagonal, mean_edge_length
 from quadpatch.options import HoleAction, RepairOptions
-from quadpatch.practice import Practice, expect, practise
 from quadpatch.stages import Stages
 from quadpatch.types import BoolArray, TriangleMesh, Triangles
 from quadpatch.verification import limited_to, verified_results, without_faults

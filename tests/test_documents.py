@@ -18,7 +18,8 @@ from client.exits import MEANINGS
 from jobkit.schema import JobState
 from jobkit.schema.jobs import STAGES
 from jobkit.settings import settings_table
-from quadpatch import expectation, judge, paper, pipeline, practice
+from quadpatch import judge, paper, pipeline
+from quadpatch.calibration import calibration_set, error_model
 from quadpatch.filling import fill, triangulation
 from quadpatch.inpainters import dictionary, heights
 from quadpatch.mesh import hole_kinds, slits
@@ -124,13 +125,15 @@ def test_the_numbers_of_the_method_are_those_of_the_code() -> None:
         f"σ² = {gaussian.NOISE}",
         f"fewer than {dictionary.MIN_TRAINING_PATCHES} usable patches",
         "b/a = " + ", ".join(f"{energy.variation / energy.plate:g}" for energy in pipeline.ENERGIES[1:-1]),
-        f"fewer than {practice.MIN_HOLES} practice holes",
-        f"{practice.MAX_HOLES} holes of the median diameter",
-        "one of " + ", ".join(f"{share:g}" for share in practice.SHARES[:-1]) + f" and {practice.SHARES[-1]:g}",
+        f"fewer than {calibration_set.MIN_HOLES} practice holes",
+        f"{calibration_set.MAX_HOLES} holes of the median diameter",
+        "one of "
+        + ", ".join(f"{share:g}" for share in calibration_set.SHARES[:-1])
+        + f" and {calibration_set.SHARES[-1]:g}",
         f"the thin plate and the blend b/a = {fill.SECOND_OPINION.variation / fill.SECOND_OPINION.plate:g} through",
-        f"b is pulled to {expectation.USUAL_SLOPE}",
-        f"a scatter of {expectation.WEIGHT} in ln u",
-        f"Without practice b = {expectation.UNTRIED.slope} and A = {expectation.UNTRIED.factor}",
+        f"b is pulled to {error_model.USUAL_SLOPE}",
+        f"a scatter of {error_model.WEIGHT} in ln u",
+        f"Without practice b = {error_model.UNTRIED.slope} and A = {error_model.UNTRIED.factor}",
         f"exp(−expected error / ({judge.DOUBTFUL_SHARE:g} D))",
         f"{judge.confidence(0.1 * judge.DOUBTFUL_SHARE, 1.0):.2f} where the fill is expected to be off by "
         f"{10 * judge.DOUBTFUL_SHARE:g} % of the diagonal, {judge.confidence(judge.DOUBTFUL_SHARE, 1.0):.2f} at "

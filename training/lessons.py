@@ -1,4 +1,4 @@
-"""Cutting the lessons of the network `residual` out of training meshes, as a repair would: see `quadpatch.lessons`.
+"""Cutting the lessons of the network `residual` out of training meshes, as a repair would: see `quadpatch.calibration.training_pairs`.
 
 Arrays: `channels` and `correction`, float16 (both in spreads of the patch, where its steps of a thousandth are less
 than any scanner's noise), and `asked`, bool.
@@ -8,16 +8,16 @@ from itertools import islice
 
 import numpy as np
 
+from quadpatch.calibration.calibration_set import practise
+from quadpatch.calibration.training_pairs import Ground, Lessons, give_lessons
 from quadpatch.errors import NoQuadsError
 from quadpatch.inpainters.corrections import RESOLUTION
-from quadpatch.lessons import Ground, Lessons, give_lessons
 from quadpatch.mesh.measures import mean_edge_length
 from quadpatch.mesh.smoothing import laplacian_smooth
 from quadpatch.options import PatchOptions
 from quadpatch.patches.layout import lay_out
 from quadpatch.patches.scale import choose_scale, outline_iterations
 from quadpatch.pipeline import suitable_rule
-from quadpatch.practice import practise
 from quadpatch.types import TriangleMesh
 from training.shards import Arrays
 

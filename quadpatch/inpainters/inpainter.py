@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Protocol
 
-from quadpatch.lessons import Ground
+from quadpatch.calibration.training_pairs import Ground
 from quadpatch.types import FloatArray, Patches
 
 

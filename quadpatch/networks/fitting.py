@@ -9,9 +9,9 @@ import numpy as np
 import torch
 from torch import Tensor
 
+from quadpatch.calibration.training_pairs import Lessons, give_lessons
 from quadpatch.inpainters.corrections import RESOLUTION, corrected, network_input
 from quadpatch.inpainters.inpainter import Surroundings
-from quadpatch.lessons import Lessons, give_lessons
 from quadpatch.networks.precision import has_fast_bfloat16
 from quadpatch.networks.residual import Residual, errors, turned
 from quadpatch.options import NetworkOptions

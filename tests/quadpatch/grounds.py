@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from quadpatch.fill_rule import FillRule
+from quadpatch.calibration.energy_selection import FillRule
+from quadpatch.calibration.training_pairs import Ground
 from quadpatch.filling.fairing import THIN_PLATE
 from quadpatch.inpainters.corrections import RESOLUTION
 from quadpatch.inpainters.inpainter import Surroundings
-from quadpatch.lessons import Ground
 from quadpatch.mesh.measures import mean_edge_length
 from quadpatch.mesh.smoothing import laplacian_smooth
 from quadpatch.options import PatchOptions

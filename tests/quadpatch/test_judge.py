@@ -4,8 +4,8 @@ from typing import Any, cast
 import numpy as np
 import pytest
 
+from quadpatch.calibration.error_model import Expectation
 from quadpatch.completion import Completion
-from quadpatch.expectation import Expectation
 from quadpatch.filling.fairing import THIN_PLATE
 from quadpatch.filling.fill import close_holes, fair_holes
 from quadpatch.filling.filled_mesh import FilledMesh

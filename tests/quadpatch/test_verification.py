@@ -3,8 +3,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from quadpatch.calibration.error_model import UNTRIED, Expectation
 from quadpatch.completion import Completion
-from quadpatch.expectation import UNTRIED, Expectation
 from quadpatch.filling.checked_fill import CheckedFill, fill_checked
 from quadpatch.filling.fairing import THIN_PLATE
 from quadpatch.filling.faults import find_faults

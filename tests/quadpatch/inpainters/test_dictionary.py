@@ -1,7 +1,8 @@
 import numpy as np
 import pytest
 
-from quadpatch.fill_rule import FillRule
+from quadpatch.calibration.energy_selection import FillRule
+from quadpatch.calibration.training_pairs import Ground
 from quadpatch.filling.fairing import THIN_PLATE
 from quadpatch.inpainters.dictionary import (
     LEAST_KNOWN,
@@ -11,7 +12,6 @@ from quadpatch.inpainters.dictionary import (
     learn_from_patches,
 )
 from quadpatch.inpainters.inpainter import Surroundings
-from quadpatch.lessons import Ground
 from quadpatch.patches.scale import PatchScale
 from quadpatch.patches.seeds import Seeds
 from quadpatch.sparse.dictionary import Dictionary

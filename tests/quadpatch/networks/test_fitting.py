@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 import torch
 
+from quadpatch.calibration.training_pairs import Ground, Lessons, give_lessons
 from quadpatch.inpainters.corrections import RESOLUTION, corrected, network_input
-from quadpatch.lessons import Ground, Lessons, give_lessons
 from quadpatch.networks.fitting import LESSONS_SHARE, MAX_ROUNDS, FittingInpainter, fit, gather_lessons
 from quadpatch.networks.precision import has_fast_bfloat16
 from quadpatch.networks.residual import Errors, Residual, errors

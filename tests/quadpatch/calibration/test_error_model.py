@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from quadpatch.expectation import UNTRIED, USUAL_SLOPE, Expectation, learn_expectation
+from quadpatch.calibration.error_model import UNTRIED, USUAL_SLOPE, Expectation, learn_expectation
 from quadpatch.filling.fairing import THIN_PLATE
 from quadpatch.filling.fill import close_holes, fair_holes
 from quadpatch.filling.filled_mesh import FilledMesh

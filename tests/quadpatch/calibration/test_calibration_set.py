@@ -3,13 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from quadpatch.filling.fairing import THIN_PLATE, Energy
-from quadpatch.filling.fill import fair_holes
-from quadpatch.filling.filled_mesh import FilledMesh
-from quadpatch.mesh.boundary import boundary_loops
-from quadpatch.mesh.measures import mean_edge_length
-from quadpatch.pipeline import ENERGIES, USUAL_ENERGY
-from quadpatch.practice import (
+from quadpatch.calibration.calibration_set import (
     MAX_HOLES,
     MIN_HOLES,
     Practice,
@@ -20,6 +14,12 @@ from quadpatch.practice import (
     expect,
     practise,
 )
+from quadpatch.filling.fairing import THIN_PLATE, Energy
+from quadpatch.filling.fill import fair_holes
+from quadpatch.filling.filled_mesh import FilledMesh
+from quadpatch.mesh.boundary import boundary_loops
+from quadpatch.mesh.measures import mean_edge_length
+from quadpatch.pipeline import ENERGIES, USUAL_ENERGY
 from quadpatch.raycast import RayScene
 from quadpatch.types import FloatArray, TriangleMesh
 from tests.quadpatch.shapes import bumpy_plate, open_grid, punched, relief, sphere

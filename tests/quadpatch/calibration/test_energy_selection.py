@@ -1,13 +1,13 @@
 import numpy as np
 import pytest
 
-from quadpatch.fill_rule import SHARPNESS, FillRule, learn_fill_rule, rim_misses
+from quadpatch.calibration.calibration_set import choose_energy, error_per_hole, practise
+from quadpatch.calibration.energy_selection import SHARPNESS, FillRule, learn_fill_rule, rim_misses
 from quadpatch.filling.fairing import THIN_PLATE, Energy
 from quadpatch.filling.fill import close_holes, fair_holes
 from quadpatch.mesh.holes import find_holes
 from quadpatch.mesh.measures import mean_edge_length
 from quadpatch.pipeline import ENERGIES, USUAL_ENERGY
-from quadpatch.practice import choose_energy, error_per_hole, practise
 from quadpatch.types import FloatArray, IntArray, TriangleMesh
 from tests.quadpatch.shapes import bumpy_plate, open_grid, punched, sphere
 

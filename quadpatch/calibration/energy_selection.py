@@ -12,13 +12,13 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
+from quadpatch.calibration.calibration_set import ROUNDING, Practice, choose_energy, error_per_hole
 from quadpatch.filling.fairing import Energy, triangles_around
 from quadpatch.filling.fill import close_holes, fair_holes
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.mesh.averages import mean_by
 from quadpatch.mesh.boundary import boundary_loops
 from quadpatch.mesh.distance import distance_to_mesh
-from quadpatch.practice import ROUNDING, Practice, choose_energy, error_per_hole
 from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh
 
 # Weights of fills fall with this power of their expected error: at 8, one that is 10 % worse counts half.

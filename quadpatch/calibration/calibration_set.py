@@ -11,14 +11,14 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
-from quadpatch.expectation import Expectation, learn_expectation
+from quadpatch.calibration.error_model import Expectation, learn_expectation
+from quadpatch.calibration.synthetic_holes import Punched, Spacing, punch
 from quadpatch.filling.fairing import Energy, triangles_around
 from quadpatch.filling.fill import ClosedMesh, close_holes
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.mesh.averages import mean_by
 from quadpatch.mesh.distance import distance_to_mesh
 from quadpatch.mesh.loop_diameter import loop_diameter
-from quadpatch.punching import Punched, Spacing, punch
 from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Vertices
 
 MAX_HOLES = 64

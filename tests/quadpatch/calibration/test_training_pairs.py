@@ -4,10 +4,10 @@ from itertools import islice
 import numpy as np
 import pytest
 
-from quadpatch.fill_rule import FillRule
+from quadpatch.calibration.energy_selection import FillRule
+from quadpatch.calibration.training_pairs import Ground, Lessons, give_lessons
 from quadpatch.filling.fairing import Energy
 from quadpatch.inpainters.corrections import LARGEST, RESOLUTION
-from quadpatch.lessons import Ground, Lessons, give_lessons
 from quadpatch.mesh.measures import mean_edge_length
 from quadpatch.patches.scale import PatchScale
 from quadpatch.types import BoolArray, FloatArray, TriangleMesh

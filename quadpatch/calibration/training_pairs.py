@@ -9,7 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from quadpatch.fill_rule import FillRule
+from quadpatch.calibration.energy_selection import FillRule
+from quadpatch.calibration.synthetic_holes import Spacing, punch
 from quadpatch.inpainters.corrections import in_spreads, network_input
 from quadpatch.mesh.smoothing import laplacian_smooth
 from quadpatch.patches.folding import is_unfolded
@@ -17,7 +18,6 @@ from quadpatch.patches.height_map import sample_height_maps
 from quadpatch.patches.layout import patchify, pick, seeds_near, take
 from quadpatch.patches.scale import PatchScale, outline_iterations
 from quadpatch.patches.seeds import Seeds
-from quadpatch.punching import Spacing, punch
 from quadpatch.raycast import RayScene
 from quadpatch.types import FloatArray, TriangleMesh
 

@@ -1,0 +1,1 @@
+"""Holes cut into undamaged surface, whose truth is known: which fill, how much of a model, which error to expect."""
