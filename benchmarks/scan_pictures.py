@@ -10,6 +10,7 @@ from PIL import Image, ImageDraw, ImageFont
 
 from quadpatch.formats.reading import read_scan
 from quadpatch.mesh.boundary import boundary_loops
+from quadpatch.mesh.raycast import RayScene
 from quadpatch.mesh.weld import weld
 from quadpatch.picture import render_before_after
 from quadpatch.picture.camera import Camera, view_of
@@ -17,7 +18,6 @@ from quadpatch.picture.pair import SURE
 from quadpatch.picture.parts import Part, part_of
 from quadpatch.picture.shading import CLAY, Clay
 from quadpatch.picture.viewpoints import close_ups
-from quadpatch.raycast import RayScene
 from quadpatch.types import IntArray, TriangleMesh, Vertices
 
 _TILE = 300

@@ -18,6 +18,7 @@ from rich.table import Table
 from quadpatch.formats.reading import read_scan
 from quadpatch.mesh.measures import diagonal
 from quadpatch.mesh.normals import vertex_normals
+from quadpatch.mesh.raycast import RayScene
 from quadpatch.mesh.smoothing import laplacian_smooth
 from quadpatch.mesh.weld import weld
 from quadpatch.patches.connectivity import vertices_in_patches
@@ -26,7 +27,6 @@ from quadpatch.patches.height_map import sample_height_maps
 from quadpatch.patches.seeds import project_seeds, seed_points
 from quadpatch.quads.frames import quad_frames
 from quadpatch.quads.mesher import quadrangulate
-from quadpatch.raycast import RayScene
 from quadpatch.types import TriangleMesh
 
 _Result = TypeVar("_Result")

@@ -17,8 +17,8 @@ from safetensors.numpy import save
 
 from quadpatch.errors import ModelError
 from quadpatch.options import Recipe
+from quadpatch.patches.normalisation import HEIGHTS, NORMALISATION
 from quadpatch.sparse.dictionary import Dictionary
-from quadpatch.sparse.signals import HEIGHTS, NORMALISATION
 from quadpatch.types import FloatArray
 
 SHIPPED_MODELS = Path(__file__).parent / "shipped_models"

@@ -24,6 +24,7 @@ from quadpatch.inpainters.inpainter import Inpainter
 from quadpatch.judge import HoleResult, count_new, evidence_of, gather, with_open_holes
 from quadpatch.mesh.holes import Hole, Selection, find_holes, select_holes
 from quadpatch.mesh.measures import diagonal, mean_edge_length
+from quadpatch.mesh.raycast import RayScene
 from quadpatch.mesh.smoothing import laplacian_smooth
 from quadpatch.options import MODEL_FILLS_ONLY, DictionaryOptions, PatchOptions, RepairOptions
 from quadpatch.patches.height_map import sample_height_maps
@@ -31,7 +32,6 @@ from quadpatch.patches.layout import lay_out, pick_patches, seeds_near, take
 from quadpatch.patches.scale import PatchScale
 from quadpatch.patches.seeds import Seeds
 from quadpatch.pipeline import Repair
-from quadpatch.raycast import RayScene
 from quadpatch.reconstruction.displacement import rim_vertices
 from quadpatch.reconstruction.placement import place
 from quadpatch.stages import Stages

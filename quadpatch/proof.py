@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from quadpatch.errors import ModelError
 from quadpatch.inpainters.autoencoder import BATCH, AutoencoderInpainter
-from quadpatch.inpainters.corrections import LARGEST
 from quadpatch.model_file import load_model
 from quadpatch.network_parts import check_parts
+from quadpatch.patches.residual_input import LARGEST
 
 _SEED = 0
 # Patches of a probe: one alone, and as many as a repair hands over at once.

@@ -26,8 +26,8 @@ from jobkit.settings import Settings
 from jobkit.store import ObjectStore, open_store
 from onebox.valkey import running_valkey
 from quadpatch.model_file import save_dictionary
+from quadpatch.patches.normalisation import HEIGHTS, NORMALISATION
 from quadpatch.sparse.dictionary import Dictionary
-from quadpatch.sparse.signals import HEIGHTS, NORMALISATION
 from tests.distribution import SharingScheduling
 from tests.servers import PostgresServer, S3Server, fresh_bucket, fresh_database, running_postgres, running_s3
 from tests.waiting import end, wait_until_answered

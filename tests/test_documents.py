@@ -23,7 +23,7 @@ from quadpatch.calibration import calibration_set, error_model
 from quadpatch.filling import fill, triangulation
 from quadpatch.inpainters import dictionary, heights
 from quadpatch.mesh import hole_kinds, slits
-from quadpatch.patches import scale, sighting
+from quadpatch.patches import ray_visibility, scale
 from quadpatch.report import VERDICTS
 from quadpatch.sparse import gaussian
 from service.problems import to_problem_error
@@ -144,7 +144,7 @@ def test_the_numbers_of_the_method_are_those_of_the_code() -> None:
         f"2 ({scale.OUTLINE_SHARE} r / e)² uniform Laplacian iterations, "
         f"between {scale.OUTLINE_ITERATIONS_RANGE[0]} and {scale.OUTLINE_ITERATIONS_RANGE[1]}",
         f"{paper.SMOOTHING_ITERATIONS} uniform Laplacian iterations",
-        f"normal · z > {sighting.LEAST_FACING}",
+        f"normal · z > {ray_visibility.LEAST_FACING}",
         f"at the rim over {hole_kinds.OUTWARD}",
         f"isoperimetric quotient is {hole_kinds.LEAST_ROUNDNESS} or more",
         f"planarity at most {hole_kinds.END_PLANARITY},",

@@ -7,8 +7,8 @@ from functools import partial
 from torch import nn
 
 from quadpatch.errors import OptionError
-from quadpatch.inpainters.corrections import CHANNELS, RESOLUTION
 from quadpatch.networks.residual import Residual
+from quadpatch.patches.residual_input import CHANNELS, RESOLUTION
 from training.autoencoder import PLANS, build
 
 

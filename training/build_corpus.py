@@ -14,9 +14,9 @@ from pathlib import Path
 import numpy as np
 
 from quadpatch.errors import OptionError
-from quadpatch.inpainters import corrections
 from quadpatch.mesh.measures import mean_edge_length
-from quadpatch.sparse.signals import HEIGHTS, mean_free
+from quadpatch.patches import residual_input
+from quadpatch.patches.normalisation import HEIGHTS, mean_free
 from quadpatch.types import Progress, TriangleMesh, no_progress
 from training import lessons
 from training.corpus import PatchRecipe, cut_patches, read_mesh
@@ -169,7 +169,7 @@ def cut_lessons(mesh: TriangleMesh, options: CorpusOptions, rng: np.random.Gener
 
 CUTTERS: dict[str, Cutter] = {"paper": cut_heights, "residual": cut_lessons}
 # Bins along one side where nothing else is asked for.
-RESOLUTIONS = {"paper": 24, "residual": corrections.RESOLUTION}
+RESOLUTIONS = {"paper": 24, "residual": residual_input.RESOLUTION}
 
 
 def _by_pattern(made: Iterator[Relief]) -> Iterator[tuple[str, list[Relief]]]:

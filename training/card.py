@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from quadpatch.model_file import Card
-from quadpatch.sparse.signals import HEIGHTS, NORMALISATION
+from quadpatch.patches.normalisation import HEIGHTS, NORMALISATION
 from training.dictionary import Learned, LearningOptions
 from training.patterns import PATTERNS
 from training.sources import Source, corpus_sha256

@@ -13,16 +13,16 @@ import numpy as np
 from quadpatch.errors import NoQuadsError
 from quadpatch.formats.reading import read_scan
 from quadpatch.mesh.measures import mean_edge_length
+from quadpatch.mesh.raycast import RayScene
 from quadpatch.mesh.smoothing import laplacian_smooth
 from quadpatch.mesh.weld import weld
 from quadpatch.patches.folding import is_height_map
 from quadpatch.patches.height_map import sample_height_maps
+from quadpatch.patches.normalisation import HEIGHTS, NORMALISATION, to_signals
 from quadpatch.patches.scale import EDGES_PER_BIN, outline_iterations
 from quadpatch.patches.seeds import Seeds, seed_points
 from quadpatch.quads.frames import quad_frames
 from quadpatch.quads.mesher import quadrangulate
-from quadpatch.raycast import RayScene
-from quadpatch.sparse.signals import HEIGHTS, NORMALISATION, to_signals
 from quadpatch.types import BoolArray, FloatArray, Patches, TriangleMesh
 
 # Patches that vary less than this part of their side show noise, not a pattern worth an atom.
@@ -50,7 +50,7 @@ class PatchRecipe:
     max_seeds : int
         At most so many places of one mesh, drawn at random, so that a large scan does not drown a small one.
     normalisation : str
-        How signals are made of them, one of `quadpatch.sparse.signals.NORMALISATIONS`.
+        How signals are made of them, one of `quadpatch.patches.normalisation.NORMALISATIONS`.
     """
 
     resolution: int = 24

@@ -11,9 +11,9 @@ import numpy as np
 from quadpatch.errors import StageError
 from quadpatch.inpainters import heights
 from quadpatch.options import Recipe
+from quadpatch.patches.normalisation import HEIGHTS, NORMALISATIONS
 from quadpatch.sparse.dictionary import Dictionary
 from quadpatch.sparse.ksvd import KsvdOptions, OnIteration, masked_ksvd
-from quadpatch.sparse.signals import HEIGHTS, NORMALISATIONS
 from quadpatch.types import FloatArray, Progress, no_progress
 from training.corpus import PatchRecipe, TrainingPatches, cut_patches, read_mesh, turn_at_random
 from training.evaluation import evaluate

@@ -8,9 +8,9 @@ dictionaries and do not foretell the error of a repair.
 
 import numpy as np
 
+from quadpatch.patches.normalisation import NORMALISATION, NORMALISATIONS, from_signals
 from quadpatch.sparse.dictionary import Dictionary
 from quadpatch.sparse.omp import masked_omp
-from quadpatch.sparse.signals import NORMALISATION, NORMALISATIONS, from_signals
 from quadpatch.types import BoolArray, FloatArray
 from training.spreading import disk, spread
 

@@ -1,4 +1,6 @@
-"""Cutting the lessons of the network `residual` out of training meshes, as a repair would: see `quadpatch.calibration.training_pairs`.
+"""Cutting the lessons of the network `residual` out of training meshes, as a repair would.
+
+See `quadpatch.calibration.training_pairs`.
 
 Arrays: `channels` and `correction`, float16 (both in spreads of the patch, where its steps of a thousandth are less
 than any scanner's noise), and `asked`, bool.
@@ -11,11 +13,11 @@ import numpy as np
 from quadpatch.calibration.calibration_set import practise
 from quadpatch.calibration.training_pairs import Ground, Lessons, give_lessons
 from quadpatch.errors import NoQuadsError
-from quadpatch.inpainters.corrections import RESOLUTION
 from quadpatch.mesh.measures import mean_edge_length
 from quadpatch.mesh.smoothing import laplacian_smooth
 from quadpatch.options import PatchOptions
 from quadpatch.patches.layout import lay_out
+from quadpatch.patches.residual_input import RESOLUTION
 from quadpatch.patches.scale import choose_scale, outline_iterations
 from quadpatch.pipeline import suitable_rule
 from quadpatch.types import TriangleMesh

@@ -20,11 +20,11 @@ from quadpatch.mesh.measures import mean_edge_length
 from quadpatch.model_file import load_model, save_dictionary
 from quadpatch.options import DictionaryOptions, PatchOptions
 from quadpatch.paper import cut_heights, paper_scale
+from quadpatch.patches.normalisation import HEIGHTS, mean_free
 from quadpatch.patches.scale import PatchScale
 from quadpatch.repair import SELF
 from quadpatch.sparse.dictionary import Dictionary
 from quadpatch.sparse.omp import masked_omp
-from quadpatch.sparse.signals import HEIGHTS, mean_free
 from quadpatch.types import BoolArray, FloatArray
 
 PAPER = "paper"

@@ -11,12 +11,12 @@ from benchmarks.quality.bench import Bench, Case
 from benchmarks.quality.measurement import Method, measure, repaired_path
 from benchmarks.quality.results import Results
 from quadpatch.formats.reading import read_scan
+from quadpatch.mesh.raycast import RayScene
 from quadpatch.picture.camera import Camera, view_of
 from quadpatch.picture.pair import SURE
 from quadpatch.picture.parts import part_of
 from quadpatch.picture.shading import CLAY, Clay
 from quadpatch.picture.viewpoints import close_ups
-from quadpatch.raycast import RayScene
 from quadpatch.types import BoolArray, FloatArray, TriangleMesh, Vertices
 
 _TILE = 360

@@ -11,14 +11,14 @@ import numpy as np
 
 from quadpatch.calibration.energy_selection import FillRule
 from quadpatch.calibration.synthetic_holes import Spacing, punch
-from quadpatch.inpainters.corrections import in_spreads, network_input
+from quadpatch.mesh.raycast import RayScene
 from quadpatch.mesh.smoothing import laplacian_smooth
 from quadpatch.patches.folding import is_unfolded
 from quadpatch.patches.height_map import sample_height_maps
 from quadpatch.patches.layout import patchify, pick, seeds_near, take
+from quadpatch.patches.residual_input import in_spreads, network_input
 from quadpatch.patches.scale import PatchScale, outline_iterations
 from quadpatch.patches.seeds import Seeds
-from quadpatch.raycast import RayScene
 from quadpatch.types import FloatArray, TriangleMesh
 
 # Surface left between the holes of one round, in mean edge lengths: closer than in practice, for the sake of many.

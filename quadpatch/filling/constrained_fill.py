@@ -19,7 +19,7 @@ from quadpatch.filling.surroundings import Surroundings
 from quadpatch.filling.triangulation import Forbidden
 from quadpatch.mesh.distance import nearest_points
 from quadpatch.mesh.intersections import heights, touching_boxes
-from quadpatch.raycast import RayScene
+from quadpatch.mesh.raycast import RayScene
 from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Triangles, Vertices
 
 # Triangulations that are tried for one rim.

@@ -5,7 +5,7 @@ object with `kind` = `autoencoder`, `patch_resolution` N and `recipe`:
 
 - `paper`: one channel of heights less the mean of the known bins, scaled so that `height_low`..`height_high` (in patch
   lengths) becomes 0..`scaled_high`, unknown bins 1; the output is the clean patch in the same scale.
-- `residual`: two channels and an answer as in `quadpatch.inpainters.corrections`.
+- `residual`: two channels and an answer as in `quadpatch.patches.residual_input`.
 
 Sessions must not cross a fork: create the inpainter in the process that uses it.
 """
@@ -18,9 +18,9 @@ from typing import Any
 import numpy as np
 
 from quadpatch.errors import ModelError
-from quadpatch.inpainters.corrections import CHANNELS, corrected, network_input
 from quadpatch.inpainters.inpainter import Surroundings
 from quadpatch.onnx_runtime import ort
+from quadpatch.patches.residual_input import CHANNELS, corrected, network_input
 from quadpatch.types import BoolArray, FloatArray, Patches
 
 RECIPES = ("paper", "residual")

@@ -11,10 +11,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from quadpatch.inpainters.inpainter import Surroundings
+from quadpatch.patches.normalisation import from_signals, to_signals
 from quadpatch.sparse.dictionary import Dictionary
 from quadpatch.sparse.gaussian import gaussian_codes, known_covariance, principal_atoms
 from quadpatch.sparse.omp import masked_omp
-from quadpatch.sparse.signals import from_signals, to_signals
 from quadpatch.types import BoolArray, FloatArray, Patches
 
 # Principal directions that patches are coded with; what lies beyond them counts as noise.

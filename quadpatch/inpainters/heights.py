@@ -11,10 +11,10 @@ import numpy as np
 
 from quadpatch.inpainters.inpainter import Surroundings
 from quadpatch.options import DictionaryOptions
+from quadpatch.patches.normalisation import from_signals, mean_free
 from quadpatch.sparse.dictionary import Dictionary
 from quadpatch.sparse.ksvd import KsvdOptions, OnIteration, masked_ksvd
 from quadpatch.sparse.omp import masked_omp
-from quadpatch.sparse.signals import from_signals, mean_free
 from quadpatch.types import BoolArray, FloatArray, Patches, Progress, no_progress
 
 # The paper finds no gain beyond 50 to 100 atoms on the patches of one shape, and takes 500 for those of many.

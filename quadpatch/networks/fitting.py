@@ -10,11 +10,11 @@ import torch
 from torch import Tensor
 
 from quadpatch.calibration.training_pairs import Lessons, give_lessons
-from quadpatch.inpainters.corrections import RESOLUTION, corrected, network_input
 from quadpatch.inpainters.inpainter import Surroundings
 from quadpatch.networks.precision import has_fast_bfloat16
 from quadpatch.networks.residual import Residual, errors, turned
 from quadpatch.options import NetworkOptions
+from quadpatch.patches.residual_input import RESOLUTION, corrected, network_input
 from quadpatch.types import FloatArray, Patches, Progress, no_progress
 
 BATCH = 64

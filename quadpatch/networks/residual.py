@@ -14,7 +14,7 @@ import torch
 from torch import Tensor, nn
 from torch.nn import functional
 
-from quadpatch.inpainters.corrections import CHANNELS
+from quadpatch.patches.residual_input import CHANNELS
 
 # Multiples of 16: processors compute as many channels at once.
 WIDTHS = (32, 64, 96)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
-from quadpatch.patches.sighting import LEAST_FACING
+from quadpatch.patches.ray_visibility import LEAST_FACING
 from quadpatch.types import BoolArray, FloatArray, IntArray, Patches, Vertices
 
 # A vertex belongs to the surface that a patch shows if it lies within this many bins of it.

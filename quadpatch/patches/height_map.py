@@ -3,9 +3,9 @@
 import numpy as np
 
 from quadpatch.mesh.normals import triangle_normals
+from quadpatch.mesh.raycast import RayScene
+from quadpatch.patches.ray_visibility import nearest_facing
 from quadpatch.patches.seeds import Seeds
-from quadpatch.patches.sighting import nearest_facing
-from quadpatch.raycast import RayScene
 from quadpatch.types import BoolArray, FloatArray, Frames, Patches, TriangleMesh, Vertices
 
 # Farthest surface that still belongs to a patch, in patch lengths: as far as its border is from its centre.

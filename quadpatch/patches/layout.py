@@ -6,12 +6,12 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from quadpatch.filling.filled_mesh import FilledMesh
+from quadpatch.mesh.raycast import RayScene
 from quadpatch.patches.height_map import sample_height_maps
 from quadpatch.patches.scale import PatchScale
 from quadpatch.patches.seeds import Seeds, seed_points
 from quadpatch.quads.frames import quad_frames
 from quadpatch.quads.mesher import quadrangulate
-from quadpatch.raycast import RayScene
 from quadpatch.types import BoolArray, FloatArray, IntArray, Patches, TriangleMesh, Vertices
 
 

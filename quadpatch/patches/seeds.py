@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from quadpatch.mesh.normals import triangle_normals
-from quadpatch.patches.sighting import nearest_facing
-from quadpatch.raycast import RayScene
+from quadpatch.mesh.raycast import RayScene
+from quadpatch.patches.ray_visibility import nearest_facing
 from quadpatch.types import Frames, IntArray, QuadMesh, TriangleMesh, Vertices
 
 

@@ -6,10 +6,10 @@ import numpy as np
 
 from quadpatch.errors import EmptyMeshError
 from quadpatch.mesh.normals import area_vectors
+from quadpatch.mesh.raycast import RayScene
 from quadpatch.picture.parts import main_pieces, part_of
 from quadpatch.picture.shading import CLAY, Clay
 from quadpatch.picture.viewpoints import is_inside_out
-from quadpatch.raycast import RayScene
 from quadpatch.types import BoolArray, FloatArray, TriangleMesh
 
 # What was invented with full confidence, and with none.

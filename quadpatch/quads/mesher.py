@@ -24,7 +24,7 @@ from scipy.spatial import cKDTree
 
 from quadpatch.errors import NoQuadsError
 from quadpatch.quads.frames import quad_normals
-from quadpatch.quads.thinning import cluster_vertices
+from quadpatch.quads.vertex_clustering import cluster_vertices
 from quadpatch.types import BoolArray, FloatArray, IntArray, QuadMesh, Quads, TriangleMesh, Vertices
 
 # Cells of the thinned outline along one side of a quad. Four to eight give the edge lengths, covered area and normals

@@ -1,7 +1,7 @@
 """A patch dictionary: unit-norm atoms over the bins of a square patch.
 
 Bins are numbered row by row, as ``heights.reshape(n_patches, N * N)`` does. Atoms code signals, not heights: see
-`quadpatch.sparse.signals` for the way from one to the other.
+`quadpatch.patches.normalisation` for the way from one to the other.
 """
 
 from dataclasses import dataclass

@@ -5,12 +5,12 @@ import numpy as np
 from quadpatch.calibration.energy_selection import FillRule
 from quadpatch.calibration.training_pairs import Ground
 from quadpatch.filling.fairing import THIN_PLATE
-from quadpatch.inpainters.corrections import RESOLUTION
 from quadpatch.inpainters.inpainter import Surroundings
 from quadpatch.mesh.measures import mean_edge_length
 from quadpatch.mesh.smoothing import laplacian_smooth
 from quadpatch.options import PatchOptions
 from quadpatch.patches.layout import lay_out
+from quadpatch.patches.residual_input import RESOLUTION
 from quadpatch.patches.scale import choose_scale, outline_iterations
 from quadpatch.patches.seeds import Seeds
 from quadpatch.types import Patches, TriangleMesh

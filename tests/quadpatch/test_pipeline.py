@@ -5,9 +5,9 @@ from quadpatch.errors import OptionError
 from quadpatch.inpainters.dictionary import DictionaryInpainter
 from quadpatch.mesh.boundary import boundary_loops
 from quadpatch.mesh.measures import diagonal
+from quadpatch.mesh.raycast import RayScene
 from quadpatch.options import HoleOptions, PatchOptions, RepairOptions
 from quadpatch.pipeline import Repair, inpaint
-from quadpatch.raycast import RayScene
 from quadpatch.sparse.dictionary import Dictionary
 from quadpatch.stages import Stages
 from quadpatch.types import FloatArray, TriangleMesh

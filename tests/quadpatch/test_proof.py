@@ -13,8 +13,8 @@ from safetensors.numpy import save
 
 from quadpatch.errors import ModelError
 from quadpatch.model_file import SHIPPED_MODELS, SUFFIXES, load_model
+from quadpatch.patches.normalisation import NORMALISATION
 from quadpatch.proof import prove_model
-from quadpatch.sparse.signals import NORMALISATION
 from tests.quadpatch.inpainters.test_autoencoder import PAPER, RESIDUAL, N, write_network
 
 SHAPE = ["batch", 1, N, N]

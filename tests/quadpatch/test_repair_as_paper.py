@@ -12,9 +12,9 @@ from quadpatch.errors import OptionError, QuadpatchError
 from quadpatch.formats.reading import read_scan
 from quadpatch.model_file import save_dictionary
 from quadpatch.options import DictionaryOptions, HoleOptions, PatchOptions, RepairOptions
+from quadpatch.patches.normalisation import HEIGHTS, NORMALISATION
 from quadpatch.repair import repair_file
 from quadpatch.sparse.dictionary import Dictionary
-from quadpatch.sparse.signals import HEIGHTS, NORMALISATION
 from quadpatch.types import TriangleMesh
 from tests.quadpatch.inpainters.test_autoencoder import PAPER as NETWORK
 from tests.quadpatch.inpainters.test_autoencoder import RESIDUAL, write_network

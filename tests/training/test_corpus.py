@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from quadpatch.mesh.measures import mean_edge_length
-from quadpatch.sparse.signals import HEIGHTS
+from quadpatch.patches.normalisation import HEIGHTS
 from quadpatch.types import TriangleMesh
 from training.corpus import LEAST_KNOWN, PatchRecipe, TrainingPatches, cut_patches, turn_at_random
 from training.procedural import relief_mesh

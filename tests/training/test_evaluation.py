@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
+from quadpatch.patches.normalisation import HEIGHTS
 from quadpatch.sparse.dictionary import Dictionary
-from quadpatch.sparse.signals import HEIGHTS
 from quadpatch.types import FloatArray
 from training.evaluation import complete, evaluate, join
 from training.spreading import disk

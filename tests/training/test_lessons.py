@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from quadpatch.inpainters.corrections import LARGEST, RESOLUTION
+from quadpatch.patches.residual_input import LARGEST, RESOLUTION
 from quadpatch.types import TriangleMesh
 from tests.quadpatch.shapes import open_grid
 from training import lessons

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from torch import nn
 
-from quadpatch.inpainters.corrections import CHANNELS, RESOLUTION
 from quadpatch.networks.residual import Residual
+from quadpatch.patches.residual_input import CHANNELS, RESOLUTION
 from tests.quadpatch.networks.made import stirred
 from training.export import to_onnx, write_network
 from training.residual_evaluation import evaluate_residual

@@ -9,10 +9,10 @@ import torch
 from torch import Tensor, nn
 
 from quadpatch.inpainters.autoencoder import AutoencoderInpainter
-from quadpatch.inpainters.corrections import RESOLUTION
 from quadpatch.networks.residual import Residual, errors
 from quadpatch.networks.weights import load_residual
 from quadpatch.options import HoleOptions, RepairOptions
+from quadpatch.patches.residual_input import RESOLUTION
 from quadpatch.repair import repair_file
 from quadpatch.types import Patches
 from tests.quadpatch.shapes import punched

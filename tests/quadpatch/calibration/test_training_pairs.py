@@ -7,8 +7,8 @@ import pytest
 from quadpatch.calibration.energy_selection import FillRule
 from quadpatch.calibration.training_pairs import Ground, Lessons, give_lessons
 from quadpatch.filling.fairing import Energy
-from quadpatch.inpainters.corrections import LARGEST, RESOLUTION
 from quadpatch.mesh.measures import mean_edge_length
+from quadpatch.patches.residual_input import LARGEST, RESOLUTION
 from quadpatch.patches.scale import PatchScale
 from quadpatch.types import BoolArray, FloatArray, TriangleMesh
 from tests.quadpatch.grounds import ground_of, looking_down

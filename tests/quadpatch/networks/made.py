@@ -5,8 +5,8 @@ from pathlib import Path
 import torch
 from torch import Tensor, nn
 
-from quadpatch.inpainters.corrections import CHANNELS, RESOLUTION
 from quadpatch.networks.residual import Residual
+from quadpatch.patches.residual_input import CHANNELS, RESOLUTION
 from training.export import to_onnx, write_network
 
 

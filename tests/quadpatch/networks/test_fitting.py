@@ -6,11 +6,11 @@ import pytest
 import torch
 
 from quadpatch.calibration.training_pairs import Ground, Lessons, give_lessons
-from quadpatch.inpainters.corrections import RESOLUTION, corrected, network_input
 from quadpatch.networks.fitting import LESSONS_SHARE, MAX_ROUNDS, FittingInpainter, fit, gather_lessons
 from quadpatch.networks.precision import has_fast_bfloat16
 from quadpatch.networks.residual import Errors, Residual, errors
 from quadpatch.options import NetworkOptions
+from quadpatch.patches.residual_input import RESOLUTION, corrected, network_input
 from quadpatch.types import Patches
 from tests.quadpatch.grounds import ground_of, surroundings_of
 from tests.quadpatch.networks.made import stirred

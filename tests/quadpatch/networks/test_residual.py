@@ -4,8 +4,8 @@ import torch
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from quadpatch.inpainters.corrections import CHANNELS
 from quadpatch.networks.residual import LEAST_ERROR, ROUNDING, SLOPES, Residual, errors, turned
+from quadpatch.patches.residual_input import CHANNELS
 from tests.quadpatch.networks.made import random_tensor, stirred
 
 

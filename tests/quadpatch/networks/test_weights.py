@@ -7,9 +7,9 @@ from torch import nn
 
 from quadpatch.errors import ModelError
 from quadpatch.inpainters.autoencoder import AutoencoderInpainter
-from quadpatch.inpainters.corrections import CHANNELS, RESOLUTION
 from quadpatch.networks.residual import Residual
 from quadpatch.networks.weights import load_residual
+from quadpatch.patches.residual_input import CHANNELS, RESOLUTION
 from tests.quadpatch.networks.made import random_tensor, stirred, write_residual
 from training.architectures import find_architecture
 from training.export import to_onnx, write_network

@@ -4,10 +4,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from quadpatch.mesh.normals import vertex_normals
+from quadpatch.mesh.raycast import RayScene
 from quadpatch.patches.connectivity import Connectivity, bilinear, vertices_in_patches
 from quadpatch.patches.height_map import bin_centres, sample_height_maps
 from quadpatch.patches.seeds import Seeds
-from quadpatch.raycast import RayScene
 from quadpatch.types import BoolArray, FloatArray, Patches, TriangleMesh
 
 LENGTH = 0.5

@@ -2,9 +2,9 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
+from quadpatch.mesh.raycast import RayScene
 from quadpatch.patches.height_map import REACH, bin_centres, sample_height_maps
 from quadpatch.patches.seeds import Seeds
-from quadpatch.raycast import RayScene
 from quadpatch.types import FloatArray, Patches, TriangleMesh
 
 

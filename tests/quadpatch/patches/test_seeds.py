@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
 
+from quadpatch.mesh.raycast import RayScene
 from quadpatch.patches.seeds import project_seeds, seed_points
 from quadpatch.quads.frames import quad_frames
-from quadpatch.raycast import RayScene
 from quadpatch.types import QuadMesh, TriangleMesh
 
 

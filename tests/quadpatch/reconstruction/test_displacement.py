@@ -7,9 +7,9 @@ from quadpatch.filling.fairing import THIN_PLATE
 from quadpatch.filling.fill import close_holes, fair_holes
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.mesh.boundary import boundary_loops
+from quadpatch.mesh.raycast import RayScene
 from quadpatch.patches.height_map import sample_height_maps
 from quadpatch.patches.seeds import Seeds
-from quadpatch.raycast import RayScene
 from quadpatch.reconstruction.displacement import displace, join_at_rim, rim_vertices
 from quadpatch.types import FloatArray, IntArray, Patches, TriangleMesh
 from tests.quadpatch.shapes import bumpy_plate, open_grid, punched, random_rotation

@@ -4,9 +4,9 @@ import pytest
 from quadpatch.filling.fill import close_flat
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.mesh.boundary import boundary_loops
+from quadpatch.mesh.raycast import RayScene
 from quadpatch.patches.height_map import sample_height_maps
 from quadpatch.patches.seeds import Seeds
-from quadpatch.raycast import RayScene
 from quadpatch.reconstruction.placement import place
 from quadpatch.types import FloatArray, IntArray, Patches
 from tests.quadpatch.shapes import open_grid, punched

@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from quadpatch.quads.thinning import cluster_vertices, split_fans
+from quadpatch.quads.vertex_clustering import cluster_vertices, split_fans
 from quadpatch.types import TriangleMesh
 
 

@@ -2,7 +2,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from quadpatch.sparse.signals import from_signals, mean_free, to_signals
+from quadpatch.patches.normalisation import from_signals, mean_free, to_signals
 from quadpatch.types import BoolArray, FloatArray
 
 

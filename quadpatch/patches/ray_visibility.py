@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from quadpatch.raycast import RayScene
+from quadpatch.mesh.raycast import RayScene
 from quadpatch.types import FloatArray, IntArray
 
 # A surface seen at more than about 81 degrees off is a wall: its height over the plane says nothing.

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from quadpatch.sparse.signals import FLAT, to_signals
+from quadpatch.patches.normalisation import FLAT, to_signals
 from quadpatch.types import FloatArray, Patches
 
 CHANNELS = 2

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from quadpatch.inpainters.corrections import CHANNELS, LARGEST, corrected, in_spreads, network_input
+from quadpatch.patches.residual_input import CHANNELS, LARGEST, corrected, in_spreads, network_input
 from quadpatch.types import FloatArray, Patches
 
 N = 12

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from quadpatch.raycast import RayScene
+from quadpatch.mesh.raycast import RayScene
 from quadpatch.types import FloatArray, TriangleMesh
 
 
