@@ -19,8 +19,8 @@ from rich.console import Console
 from rich.table import Table
 from threadpoolctl import threadpool_limits
 
-from quadpatch.inpainters.autoencoder import BATCH, THREADS
-from quadpatch.onnx_runtime import ort
+from quadpatch.inpainters.onnx_network import BATCH, THREADS
+from quadpatch.inpainters.onnx_runtime import ort
 
 MATRIX_SIDE = 2048
 ROUNDS = 7

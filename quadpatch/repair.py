@@ -15,18 +15,18 @@ from quadpatch.formats.reading import read_scan
 from quadpatch.formats.scan import Fill, Scan
 from quadpatch.formats.writing import check_suffix, write_scan, written_as
 from quadpatch.inpainters.dictionary import DictionaryInpainter
-from quadpatch.inpainters.heights import HeightsInpainter
 from quadpatch.inpainters.inpainter import Inpainter
+from quadpatch.inpainters.model_file import Model, load_model, shipped_model
+from quadpatch.inpainters.paper_dictionary import HeightsInpainter
 from quadpatch.json_values import json_ready
 from quadpatch.mesh.holes import find_holes, select_holes
 from quadpatch.mesh.measures import diagonal
 from quadpatch.mesh.near_vertices import Tolerance
 from quadpatch.mesh.orientation import triangles_facing_turned
 from quadpatch.mesh.weld import Weld, weld
-from quadpatch.model_file import Model, load_model, shipped_model
 from quadpatch.options import DictionaryOptions, NetworkOptions, RepairOptions, check_weld_tolerance
-from quadpatch.paper import NOTHING_TO_DO, inpaint_as_paper
-from quadpatch.pipeline import Repair, inpaint
+from quadpatch.recipes.default import Repair, inpaint
+from quadpatch.recipes.paper import NOTHING_TO_DO, inpaint_as_paper
 from quadpatch.report import (
     UNKNOWN_UNIT,
     build_report,
@@ -223,7 +223,7 @@ def _resolve(
 
 def _network(path: Path, options: RepairOptions, card: dict[str, Any] | None) -> Inpainter:
     """Open a network. Those of the paper are used by either recipe, others by our own alone."""
-    from quadpatch.inpainters.autoencoder import AutoencoderInpainter  # noqa: PLC0415  onnxruntime is slow to load
+    from quadpatch.inpainters.onnx_network import AutoencoderInpainter  # noqa: PLC0415  onnxruntime is slow to load
 
     network = AutoencoderInpainter.load(path, card)
     if options.recipe == "paper" and network.recipe != "paper":

@@ -9,12 +9,12 @@ from typing import Any, cast
 
 from quadpatch.formats.scan import Scan
 from quadpatch.json_values import json_ready
-from quadpatch.judge import HoleResult
 from quadpatch.mesh.holes import Hole
 from quadpatch.mesh.measures import mean_edge_length
 from quadpatch.mesh.weld import Weld, WeldCounts
 from quadpatch.options import RepairOptions
-from quadpatch.pipeline import Repair
+from quadpatch.recipes.assessment import HoleResult
+from quadpatch.recipes.default import Repair
 from quadpatch.stages import Stages
 from quadpatch.types import TriangleMesh
 

@@ -25,7 +25,7 @@ from jobkit.database import Database
 from jobkit.settings import Settings
 from jobkit.store import ObjectStore, open_store
 from onebox.valkey import running_valkey
-from quadpatch.model_file import save_dictionary
+from quadpatch.inpainters.model_file import save_dictionary
 from quadpatch.patches.normalisation import HEIGHTS, NORMALISATION
 from quadpatch.sparse.dictionary import Dictionary
 from tests.distribution import SharingScheduling

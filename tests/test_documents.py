@@ -18,12 +18,12 @@ from client.exits import MEANINGS
 from jobkit.schema import JobState
 from jobkit.schema.jobs import STAGES
 from jobkit.settings import settings_table
-from quadpatch import judge, paper, pipeline
 from quadpatch.calibration import calibration_set, error_model
 from quadpatch.filling import fill, triangulation
-from quadpatch.inpainters import dictionary, heights
+from quadpatch.inpainters import dictionary, paper_dictionary
 from quadpatch.mesh import hole_kinds, slits
 from quadpatch.patches import ray_visibility, scale
+from quadpatch.recipes import assessment, default, paper
 from quadpatch.report import VERDICTS
 from quadpatch.sparse import gaussian
 from service.problems import to_problem_error
@@ -106,7 +106,7 @@ def test_every_state_verdict_and_stage_is_explained() -> None:
 
 def test_every_reason_of_a_hole_is_explained() -> None:
     method = read("docs/method.md")
-    source = read("quadpatch/mesh/holes.py") + read("quadpatch/judge.py")
+    source = read("quadpatch/mesh/holes.py") + read("quadpatch/assessment.py")
     # A code is followed by a sentence, or stands behind its verdict.
     reasons = re.findall(r'"([a-z_]+)",\s*f?"[^"]* [^"]*"', source)
     reasons += re.findall(r'"(?:filled_smooth|refused)", "(\w+)"', source)
@@ -124,7 +124,7 @@ def test_the_numbers_of_the_method_are_those_of_the_code() -> None:
         f"the {dictionary.PRINCIPAL_ATOMS} principal directions",
         f"σ² = {gaussian.NOISE}",
         f"fewer than {dictionary.MIN_TRAINING_PATCHES} usable patches",
-        "b/a = " + ", ".join(f"{energy.variation / energy.plate:g}" for energy in pipeline.ENERGIES[1:-1]),
+        "b/a = " + ", ".join(f"{energy.variation / energy.plate:g}" for energy in default.ENERGIES[1:-1]),
         f"fewer than {calibration_set.MIN_HOLES} practice holes",
         f"{calibration_set.MAX_HOLES} holes of the median diameter",
         "one of "
@@ -134,12 +134,13 @@ def test_the_numbers_of_the_method_are_those_of_the_code() -> None:
         f"b is pulled to {error_model.USUAL_SLOPE}",
         f"a scatter of {error_model.WEIGHT} in ln u",
         f"Without practice b = {error_model.UNTRIED.slope} and A = {error_model.UNTRIED.factor}",
-        f"exp(−expected error / ({judge.DOUBTFUL_SHARE:g} D))",
-        f"{judge.confidence(0.1 * judge.DOUBTFUL_SHARE, 1.0):.2f} where the fill is expected to be off by "
-        f"{10 * judge.DOUBTFUL_SHARE:g} % of the diagonal, {judge.confidence(judge.DOUBTFUL_SHARE, 1.0):.2f} at "
-        f"{100 * judge.DOUBTFUL_SHARE:g} %",
-        f"{100 * judge.LEAST_COVERAGE:g} % of its new vertices",
-        f"differ by no more than {judge.MOST_DISAGREEMENT} times",
+        f"exp(−expected error / ({assessment.DOUBTFUL_SHARE:g} D))",
+        f"{assessment.confidence(0.1 * assessment.DOUBTFUL_SHARE, 1.0):.2f} where the fill is expected to be off by "
+        f"{10 * assessment.DOUBTFUL_SHARE:g} % of the diagonal, "
+        f"{assessment.confidence(assessment.DOUBTFUL_SHARE, 1.0):.2f} at "
+        f"{100 * assessment.DOUBTFUL_SHARE:g} %",
+        f"{100 * assessment.LEAST_COVERAGE:g} % of its new vertices",
+        f"differ by no more than {assessment.MOST_DISAGREEMENT} times",
         f"over {triangulation.MAX_TABLE_SIZE} vertices",
         f"2 ({scale.OUTLINE_SHARE} r / e)² uniform Laplacian iterations, "
         f"between {scale.OUTLINE_ITERATIONS_RANGE[0]} and {scale.OUTLINE_ITERATIONS_RANGE[1]}",
@@ -154,11 +155,11 @@ def test_the_numbers_of_the_method_are_those_of_the_code() -> None:
         f"{slits.SLIT_WAY} of the perimeter in the mean",
         f"length {paper.HOLES_PER_LENGTH} d, but at least {paper.LEAST_EDGES_PER_BIN} e · {paper.RESOLUTION} ",
         f"{paper.RESOLUTION} bins; overlap {paper.OVERLAP}.",
-        f"has up to {heights.LOCAL_ATOMS} atoms",
-        f"many up to {heights.GLOBAL_ATOMS} as in the paper",
-        f"a patch uses {heights.NONZERO} of them",
-        f"{heights.ITERATIONS} rounds over up to {heights.MAX_TRAINING_PATCHES} patches known in at least "
-        f"{100 * heights.LEAST_KNOWN:g} % of their bins",
+        f"has up to {paper_dictionary.LOCAL_ATOMS} atoms",
+        f"many up to {paper_dictionary.GLOBAL_ATOMS} as in the paper",
+        f"a patch uses {paper_dictionary.NONZERO} of them",
+        f"{paper_dictionary.ITERATIONS} rounds over up to {paper_dictionary.MAX_TRAINING_PATCHES} patches "
+        f"known in at least {100 * paper_dictionary.LEAST_KNOWN:g} % of their bins",
     ]
     prose = " ".join(method.split())
     assert not [claim for claim in claims if claim.strip() not in prose]

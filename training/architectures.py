@@ -22,7 +22,7 @@ class Architecture:
     resolution : int
         Bins along one side of its patches.
     recipe : str
-        How patches are prepared for it, one of `quadpatch.inpainters.autoencoder.RECIPES`; a corpus is cut for one.
+        How patches are prepared for it, one of `quadpatch.inpainters.onnx_network.RECIPES`; a corpus is cut for one.
     channels : int
         Of its input.
     build : callable

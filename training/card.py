@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from quadpatch.model_file import Card
+from quadpatch.inpainters.model_file import Card
 from quadpatch.patches.normalisation import HEIGHTS, NORMALISATION
 from training.dictionary import Learned, LearningOptions
 from training.patterns import PATTERNS

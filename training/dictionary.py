@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from quadpatch.errors import StageError
-from quadpatch.inpainters import heights
+from quadpatch.inpainters import paper_dictionary
 from quadpatch.options import Recipe
 from quadpatch.patches.normalisation import HEIGHTS, NORMALISATIONS
 from quadpatch.sparse.dictionary import Dictionary
@@ -53,7 +53,8 @@ class LearningOptions:
 USUAL: dict[Recipe, LearningOptions] = {
     "default": LearningOptions(),
     "paper": LearningOptions(
-        PatchRecipe(scales=(1.0,), normalisation=HEIGHTS), KsvdOptions(heights.GLOBAL_ATOMS, heights.NONZERO)
+        PatchRecipe(scales=(1.0,), normalisation=HEIGHTS),
+        KsvdOptions(paper_dictionary.GLOBAL_ATOMS, paper_dictionary.NONZERO),
     ),
 }
 

@@ -17,8 +17,8 @@ import torch
 from torch import nn
 
 from quadpatch.files import write_whole
-from quadpatch.model_file import Card
-from quadpatch.onnx_runtime import ort
+from quadpatch.inpainters.model_file import Card
+from quadpatch.inpainters.onnx_runtime import ort
 from training.errors import ExportError
 from training.pixel_shuffle import with_pixel_shuffle
 

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 import onnx
 
-import quadpatch.onnx_runtime  # noqa: F401  first: it switches the telemetry off
+import quadpatch.inpainters.onnx_runtime  # noqa: F401  first: it switches the telemetry off
 
 # isort: split
 from onnxruntime.quantization import CalibrationDataReader, QuantFormat, QuantType, quantize_static

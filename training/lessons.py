@@ -19,7 +19,7 @@ from quadpatch.options import PatchOptions
 from quadpatch.patches.layout import lay_out
 from quadpatch.patches.residual_input import RESOLUTION
 from quadpatch.patches.scale import choose_scale, outline_iterations
-from quadpatch.pipeline import suitable_rule
+from quadpatch.recipes.default import suitable_rule
 from quadpatch.types import TriangleMesh
 from training.shards import Arrays
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from quadpatch.inpainters.autoencoder import AutoencoderInpainter
+from quadpatch.inpainters.onnx_network import AutoencoderInpainter
 from quadpatch.types import BoolArray, FloatArray, Patches
 from training.evaluation import HOLE_SHARES
 from training.paper_task import spread_rows

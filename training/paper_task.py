@@ -1,6 +1,6 @@
 """Training the paper's networks: clean patches out of holed ones (section 5 of the paper).
 
-Heights are scaled as `quadpatch.inpainters.autoencoder` scales them in a repair: less the mean of the bins that can be
+Heights are scaled as `quadpatch.inpainters.onnx_network` scales them in a repair: less the mean of the bins that can be
 seen, `low`..`high` of the training set becoming 0..0.83, bins that can't be seen 1.
 
 The loss is the binary cross-entropy against the clean patch over all bins that were measured, less the entropy of the
@@ -18,7 +18,7 @@ import torch
 from torch import Tensor, nn
 from torch.nn import functional
 
-from quadpatch.inpainters.autoencoder import PaperScale
+from quadpatch.inpainters.onnx_network import PaperScale
 from quadpatch.types import IntArray
 from training.architectures import Architecture
 from training.holes import N_TURNS, Holes, draw_holes, turn

@@ -10,7 +10,7 @@ from jobkit.schema import ModelVersion
 from jobkit.settings import load_settings
 from jobkit.store import open_store
 from quadpatch.errors import OptionError
-from quadpatch.proof import prove_model
+from quadpatch.inpainters.proof import prove_model
 
 
 def parse_reference(text: str) -> tuple[str, int | None]:

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from quadpatch.inpainters.autoencoder import AutoencoderInpainter
+from quadpatch.inpainters.onnx_network import AutoencoderInpainter
 from training.paper_task import spread_rows
 from training.shards import Corpus, PatchSet
 

@@ -8,7 +8,7 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
 from quadpatch.errors import OptionError
-from quadpatch.model_file import save_dictionary
+from quadpatch.inpainters.model_file import save_dictionary
 from training.card import dictionary_card, write_card_page
 from training.curve import text_curve, write_curve
 from training.dictionary import Learned, LearningOptions, learn_dictionary

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 from matplotlib.figure import Figure
 
-from quadpatch.inpainters.autoencoder import AutoencoderInpainter
+from quadpatch.inpainters.onnx_network import AutoencoderInpainter
 from quadpatch.types import BoolArray, FloatArray, Patches
 from training.paper_task import spread_rows
 from training.shards import Arrays

@@ -22,10 +22,10 @@ from benchmarks.quality.bench import Bench, Shape
 from benchmarks.quality.measurement import Method
 from benchmarks.quality.network_options import Budget
 from benchmarks.quality.results import NETWORKS, Key, Results
-from quadpatch.inpainters.heights import MIN_TRAINING_PATCHES, is_learnable
-from quadpatch.paper import cut_heights
+from quadpatch.inpainters.paper_dictionary import MIN_TRAINING_PATCHES, is_learnable
 from quadpatch.patches.normalisation import mean_free
 from quadpatch.patches.scale import PatchScale
+from quadpatch.recipes.paper import cut_heights
 from quadpatch.types import IntArray, Patches
 from training import autoencoder, holes, paper_task, trainer
 from training.architectures import Architecture

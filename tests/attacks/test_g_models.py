@@ -23,10 +23,10 @@ from jobkit.registry import MODEL_PREFIX, Registry
 from jobkit.schema import JobSpec, ModelState, ResolvedModel
 from jobkit.settings import Settings
 from jobkit.store import ObjectStore
-from quadpatch.model_file import SHIPPED_MODELS
+from quadpatch.inpainters.model_file import SHIPPED_MODELS
 from service.app import create_app
 from tests.integration.conftest import ply_bytes, punched_relief
-from tests.quadpatch.inpainters.test_autoencoder import N, write_network
+from tests.quadpatch.inpainters.test_onnx_network import N, write_network
 from tests.worker.test_repairs import working
 from worker.jobs import prove_model, run_job
 

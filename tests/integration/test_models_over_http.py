@@ -9,7 +9,7 @@ import httpx
 from client.sdk import Client
 from jobkit.schema import JobSpec
 from tests.integration.conftest import RunningBox
-from tests.quadpatch.inpainters.test_autoencoder import PAPER, write_network
+from tests.quadpatch.inpainters.test_onnx_network import PAPER, write_network
 from tests.waiting import GUARD_S
 
 

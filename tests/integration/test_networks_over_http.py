@@ -11,7 +11,7 @@ import pytest
 from client.sdk import Client
 from jobkit.schema import JobSpec, JobState
 from quadpatch.formats.reading import read_scan
-from quadpatch.model_file import SHIPPED_MODELS
+from quadpatch.inpainters.model_file import SHIPPED_MODELS
 from tests.waiting import GUARD_S
 
 NETWORKS = sorted(path.stem for path in SHIPPED_MODELS.glob("*.onnx"))

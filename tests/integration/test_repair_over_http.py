@@ -10,7 +10,7 @@ import pytest
 from client.sdk import Client
 from jobkit.schema import JobSpec, JobState, MeshState
 from quadpatch.formats.reading import read_scan
-from quadpatch.model_file import shipped_model
+from quadpatch.inpainters.model_file import shipped_model
 from quadpatch.repair import inspect_file
 from tests.integration.conftest import ply_bytes, punched_relief, stl_bytes
 from tests.waiting import GUARD_S

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from quadpatch.filling.faults import find_faults
-from quadpatch.judge import HoleResult
 from quadpatch.mesh.boundary import boundary_loops
 from quadpatch.mesh.holes import find_holes
 from quadpatch.options import HoleOptions, RepairOptions
-from quadpatch.pipeline import Repair, inpaint
+from quadpatch.recipes.assessment import HoleResult
+from quadpatch.recipes.default import Repair, inpaint
 from quadpatch.types import IntArray, TriangleMesh
 from tests.quadpatch.filling.fills import assert_keeps
 from tests.quadpatch.shapes import (

@@ -10,14 +10,14 @@ from hypothesis import strategies as st
 
 from quadpatch.errors import OptionError, QuadpatchError
 from quadpatch.formats.reading import read_scan
-from quadpatch.model_file import save_dictionary
+from quadpatch.inpainters.model_file import save_dictionary
 from quadpatch.options import DictionaryOptions, HoleOptions, PatchOptions, RepairOptions
 from quadpatch.patches.normalisation import HEIGHTS, NORMALISATION
 from quadpatch.repair import repair_file
 from quadpatch.sparse.dictionary import Dictionary
 from quadpatch.types import TriangleMesh
-from tests.quadpatch.inpainters.test_autoencoder import PAPER as NETWORK
-from tests.quadpatch.inpainters.test_autoencoder import RESIDUAL, write_network
+from tests.quadpatch.inpainters.test_onnx_network import PAPER as NETWORK
+from tests.quadpatch.inpainters.test_onnx_network import RESIDUAL, write_network
 from tests.quadpatch.shapes import punched, relief, write_ply
 
 PLACES = [(x, y, 0.0) for x in (-0.5, 0.5) for y in (-0.45, 0.5)]

@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from quadpatch import model_file
 from quadpatch.cli import app
 from quadpatch.errors import ModelError, OptionError
 from quadpatch.formats.reading import read_scan
+from quadpatch.inpainters import model_file
 from quadpatch.mesh.distance import distance_to_mesh
 from quadpatch.options import NetworkOptions, PatchOptions, RepairOptions
 from quadpatch.repair import BASE_NETWORK, SELF_NETWORK, repair_file
@@ -138,8 +138,9 @@ def test_a_box_without_the_network_to_start_from_says_so(
 def run_without(package: str, models: Path, *arguments: str | Path) -> subprocess.CompletedProcess[str]:
     """Run the command line in a process that can not import a package."""
     program = (
-        f"import sys; sys.modules[{package!r}] = None; from pathlib import Path; from quadpatch import model_file; "
-        f"model_file.SHIPPED_MODELS = Path({str(models)!r}); from quadpatch.cli import app; app(sys.argv[1:])"
+        f"import sys; sys.modules[{package!r}] = None; from pathlib import Path; "
+        f"from quadpatch.inpainters import model_file; model_file.SHIPPED_MODELS = Path({str(models)!r}); "
+        "from quadpatch.cli import app; app(sys.argv[1:])"
     )
     command = [sys.executable, "-c", program, *map(str, arguments)]
     return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)

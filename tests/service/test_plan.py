@@ -11,10 +11,10 @@ from hypothesis import strategies as st
 
 from jobkit.schema import JobSpec, Plan, ResolvedModel
 from jobkit.settings import Settings
-from quadpatch.judge import HoleResult
 from quadpatch.options import HoleOptions, HoleRule, RepairOptions
-from quadpatch.paper import inpaint_as_paper
-from quadpatch.pipeline import inpaint
+from quadpatch.recipes.assessment import HoleResult
+from quadpatch.recipes.default import inpaint
+from quadpatch.recipes.paper import inpaint_as_paper
 from quadpatch.repair import inspect_file
 from quadpatch.types import TriangleMesh
 from service.plan import make_plan

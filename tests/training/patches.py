@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from quadpatch.inpainters.autoencoder import PaperScale
+from quadpatch.inpainters.onnx_network import PaperScale
 from quadpatch.types import FloatArray
 from training.architectures import find_architecture
 from training.paper_task import PaperTask

@@ -10,7 +10,7 @@ import pytest
 import torch
 from torch import Tensor, nn
 
-from quadpatch.inpainters.autoencoder import AutoencoderInpainter
+from quadpatch.inpainters.onnx_network import AutoencoderInpainter
 from training.architectures import ARCHITECTURES
 from training.autoencoder import Autoencoder, Layer, Plan
 from training.errors import ExportError

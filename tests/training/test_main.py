@@ -12,7 +12,7 @@ from jobkit.database import Database
 from jobkit.registry import Registry
 from jobkit.store import open_store
 from quadpatch.errors import OptionError
-from quadpatch.model_file import load_model, model_card
+from quadpatch.inpainters.model_file import load_model, model_card
 from quadpatch.options import HoleOptions, PatchOptions, RepairOptions
 from quadpatch.repair import repair_file
 from quadpatch.types import TriangleMesh

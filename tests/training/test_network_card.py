@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from quadpatch.inpainters.autoencoder import AutoencoderInpainter
-from quadpatch.model_file import SHIPPED_MODELS
+from quadpatch.inpainters.model_file import SHIPPED_MODELS
+from quadpatch.inpainters.onnx_network import AutoencoderInpainter
 
 MAX_BYTES = 10 * 1024 * 1024
 NETWORKS = sorted(SHIPPED_MODELS.glob("*.onnx"))

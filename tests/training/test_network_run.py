@@ -16,7 +16,7 @@ from typer.testing import CliRunner
 from jobkit.database import Database
 from jobkit.registry import Registry
 from jobkit.store import open_store
-from quadpatch.inpainters.autoencoder import AutoencoderInpainter
+from quadpatch.inpainters.onnx_network import AutoencoderInpainter
 from quadpatch.options import HoleOptions, PatchOptions, RepairOptions
 from quadpatch.repair import repair_file
 from tests.quadpatch.shapes import punched

@@ -5,7 +5,7 @@ import pytest
 import torch
 from torch import Tensor, nn
 
-from quadpatch.inpainters.autoencoder import AutoencoderInpainter
+from quadpatch.inpainters.onnx_network import AutoencoderInpainter
 from quadpatch.types import Patches
 from tests.training.patches import SCALE, small_task, write_corpus
 from training.architectures import ARCHITECTURES

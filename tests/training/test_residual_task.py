@@ -8,7 +8,7 @@ import pytest
 import torch
 from torch import Tensor, nn
 
-from quadpatch.inpainters.autoencoder import AutoencoderInpainter
+from quadpatch.inpainters.onnx_network import AutoencoderInpainter
 from quadpatch.networks.residual import Residual, errors
 from quadpatch.networks.weights import load_residual
 from quadpatch.options import HoleOptions, RepairOptions

@@ -3,7 +3,7 @@
 import sys
 from pathlib import Path
 
-from quadpatch import model_file
+from quadpatch.inpainters import model_file
 from worker import engine
 
 # What an import of it meets from now on is an ImportError.

@@ -7,7 +7,7 @@ from jobkit.database import Database
 from jobkit.registry import Registry
 from jobkit.schema import ModelVersion, ResolvedModel
 from jobkit.store import ObjectStore
-from quadpatch.model_file import save_dictionary
+from quadpatch.inpainters.model_file import save_dictionary
 from quadpatch.sparse.dictionary import Dictionary
 from worker.failures import EngineFailedError
 from worker.models import model_argument

@@ -21,7 +21,7 @@ from jobkit.selection import resolve_method
 from jobkit.settings import Settings
 from jobkit.store import ObjectStore
 from tests.integration.conftest import ply_bytes, punched_relief
-from tests.quadpatch.inpainters.test_autoencoder import PAPER, N, write_network
+from tests.quadpatch.inpainters.test_onnx_network import PAPER, N, write_network
 from tests.worker.test_repairs import working
 from worker.context import Context
 from worker.jobs import prove_model, run_job

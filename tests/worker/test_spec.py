@@ -7,7 +7,7 @@ import quadpatch.options
 from jobkit.meshes import MeshSource
 from jobkit.schema import Fitting, JobSpec
 from jobkit.selection import PAPER_NORMALISATION
-from quadpatch.model_file import RECIPES
+from quadpatch.inpainters.model_file import RECIPES
 from quadpatch.options import HoleOptions, HoleRule, NetworkOptions, PatchOptions, RepairOptions
 from worker.limits import EngineLimits
 from worker.spec import inspect_request, method_options, output_format, repair_request, source_name

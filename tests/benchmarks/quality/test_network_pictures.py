@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from benchmarks.quality.network_pictures import choose_patches, completed_tiles, patch_picture
-from tests.quadpatch.inpainters.test_autoencoder import PAPER, write_network
+from tests.quadpatch.inpainters.test_onnx_network import PAPER, write_network
 from tests.training.patches import waves
 from training.shards import Arrays
 

@@ -4,7 +4,7 @@ import pytest
 
 from benchmarks.quality.paper_dictionaries import Learner
 from benchmarks.quality.results import Results
-from quadpatch.model_file import load_model
+from quadpatch.inpainters.model_file import load_model
 from quadpatch.options import RepairOptions
 from tests.benchmarks.quality.small_bench import small_bench
 

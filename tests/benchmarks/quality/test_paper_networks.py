@@ -8,7 +8,7 @@ from benchmarks.quality.bench import Shape
 from benchmarks.quality.network_options import Budget
 from benchmarks.quality.paper_networks import HELD_OUT_EVERY, NetworkTrainer, TrainedNetwork, held_out_rows
 from benchmarks.quality.results import NETWORKS, Results
-from quadpatch.inpainters.autoencoder import AutoencoderInpainter
+from quadpatch.inpainters.onnx_network import AutoencoderInpainter
 from quadpatch.options import RepairOptions
 from quadpatch.patches.scale import PatchScale
 from tests.benchmarks.quality.small_bench import small_bench

@@ -7,7 +7,7 @@ from quadpatch.filling.fairing import THIN_PLATE, Energy
 from quadpatch.filling.fill import close_holes, fair_holes
 from quadpatch.mesh.holes import find_holes
 from quadpatch.mesh.measures import mean_edge_length
-from quadpatch.pipeline import ENERGIES, USUAL_ENERGY
+from quadpatch.recipes.default import ENERGIES, USUAL_ENERGY
 from quadpatch.types import FloatArray, IntArray, TriangleMesh
 from tests.quadpatch.shapes import bumpy_plate, open_grid, punched, sphere
 

@@ -6,7 +6,7 @@ import torch
 from torch import nn
 
 from quadpatch.errors import ModelError
-from quadpatch.inpainters.autoencoder import AutoencoderInpainter
+from quadpatch.inpainters.onnx_network import AutoencoderInpainter
 from quadpatch.networks.residual import Residual
 from quadpatch.networks.weights import load_residual
 from quadpatch.patches.residual_input import CHANNELS, RESOLUTION

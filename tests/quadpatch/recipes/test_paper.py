@@ -5,15 +5,23 @@ import pytest
 
 from quadpatch.errors import OptionError, StageError
 from quadpatch.filling.fill import close_flat
-from quadpatch.inpainters.heights import LOCAL_ATOMS, HeightsInpainter
+from quadpatch.inpainters.paper_dictionary import LOCAL_ATOMS, HeightsInpainter
 from quadpatch.mesh.distance import distance_to_mesh
 from quadpatch.mesh.raycast import RayScene
 from quadpatch.options import DictionaryOptions, HoleOptions, PatchOptions, RepairOptions
-from quadpatch.paper import NO_FAIRING, OVERLAP, RESOLUTION, cut_heights, inpaint_as_paper, learn_as_paper, paper_scale
 from quadpatch.patches.height_map import sample_height_maps
 from quadpatch.patches.scale import PatchScale
 from quadpatch.patches.seeds import Seeds
-from quadpatch.pipeline import Repair
+from quadpatch.recipes.default import Repair
+from quadpatch.recipes.paper import (
+    NO_FAIRING,
+    OVERLAP,
+    RESOLUTION,
+    cut_heights,
+    inpaint_as_paper,
+    learn_as_paper,
+    paper_scale,
+)
 from quadpatch.sparse.dictionary import Dictionary
 from quadpatch.stages import Stages
 from quadpatch.types import FloatArray, Patches, TriangleMesh

@@ -12,10 +12,10 @@ from onnx import TensorProto, helper
 from safetensors.numpy import save
 
 from quadpatch.errors import ModelError
-from quadpatch.model_file import SHIPPED_MODELS, SUFFIXES, load_model
+from quadpatch.inpainters.model_file import SHIPPED_MODELS, SUFFIXES, load_model
+from quadpatch.inpainters.proof import prove_model
 from quadpatch.patches.normalisation import NORMALISATION
-from quadpatch.proof import prove_model
-from tests.quadpatch.inpainters.test_autoencoder import PAPER, RESIDUAL, N, write_network
+from tests.quadpatch.inpainters.test_onnx_network import PAPER, RESIDUAL, N, write_network
 
 SHAPE = ["batch", 1, N, N]
 

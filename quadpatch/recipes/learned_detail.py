@@ -11,13 +11,13 @@ from quadpatch.calibration.training_pairs import Ground
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.inpainters.dictionary import learn_from_patches
 from quadpatch.inpainters.inpainter import Inpainter, Surroundings
-from quadpatch.judge import Evidence, gather, trusted
 from quadpatch.mesh.smoothing import laplacian_smooth
 from quadpatch.options import RepairOptions
 from quadpatch.patches.folding import is_unfolded
 from quadpatch.patches.layout import lay_out, patchify, pick, seeds_near, take
 from quadpatch.patches.scale import PatchScale, choose_scale, outline_iterations
 from quadpatch.patches.seeds import Seeds
+from quadpatch.recipes.assessment import Evidence, gather, trusted
 from quadpatch.reconstruction.displacement import displace, join_at_rim, rim_vertices
 from quadpatch.stages import Stages
 from quadpatch.types import BoolArray, FloatArray, Patches, TriangleMesh

@@ -10,7 +10,7 @@ import pytest
 from onnx import TensorProto, helper
 
 from quadpatch.errors import ModelError
-from quadpatch.inpainters.autoencoder import BATCH, AutoencoderInpainter
+from quadpatch.inpainters.onnx_network import BATCH, AutoencoderInpainter
 from quadpatch.types import Patches
 
 N = 16

@@ -4,18 +4,18 @@ import numpy as np
 import pytest
 
 from quadpatch.calibration.error_model import UNTRIED, Expectation
-from quadpatch.completion import Completion
 from quadpatch.filling.checked_fill import CheckedFill, fill_checked
 from quadpatch.filling.fairing import THIN_PLATE
 from quadpatch.filling.faults import find_faults
 from quadpatch.filling.fill import close_holes, fair_holes
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.filling.islands import JoinedRims
-from quadpatch.judge import HoleResult, confidence, judge
 from quadpatch.mesh.holes import Hole, Selection, find_holes
 from quadpatch.patches.scale import PatchScale
+from quadpatch.recipes.assessment import HoleResult, confidence, judge
+from quadpatch.recipes.learned_detail import Completion
+from quadpatch.recipes.verification import limited_to, verified_results, with_named_faults, without_faults
 from quadpatch.types import FloatArray, IntArray, TriangleMesh
-from quadpatch.verification import limited_to, verified_results, with_named_faults, without_faults
 from tests.quadpatch.filling.fills import assert_keeps
 from tests.quadpatch.filling.handmade import as_holes
 from tests.quadpatch.shapes import bumpy_plate, punched

@@ -21,7 +21,7 @@ from quadpatch.patches.normalisation import HEIGHTS, NORMALISATION
 from quadpatch.sparse.dictionary import Dictionary
 from quadpatch.types import FloatArray
 
-SHIPPED_MODELS = Path(__file__).parent / "shipped_models"
+SHIPPED_MODELS = Path(__file__).parent.parent / "shipped_models"
 SUFFIXES = (".safetensors", ".onnx")
 MAX_FILE_BYTES = 256 * 1024**2
 MAX_HEADER_BYTES = 1024**2

@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quadpatch.errors import ModelError
-from quadpatch.inpainters.autoencoder import BATCH, AutoencoderInpainter
-from quadpatch.model_file import load_model
-from quadpatch.network_parts import check_parts
+from quadpatch.inpainters.model_file import load_model
+from quadpatch.inpainters.onnx_network import BATCH, AutoencoderInpainter
+from quadpatch.inpainters.onnx_parts import check_parts
 from quadpatch.patches.residual_input import LARGEST
 
 _SEED = 0

@@ -11,20 +11,20 @@ import numpy as np
 from quadpatch.calibration.calibration_set import Practice, expect, practise
 from quadpatch.calibration.energy_selection import FillRule, learn_fill_rule
 from quadpatch.calibration.error_model import UNTRIED, Expectation
-from quadpatch.completion import Completion, Problem, complete
 from quadpatch.errors import NoQuadsError
 from quadpatch.filling.checked_fill import CheckedFill, LoopsToFill, fill_checked
 from quadpatch.filling.fairing import THIN_PLATE, Energy
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.filling.islands import JoinedRims, join_islands
 from quadpatch.inpainters.inpainter import Inpainter
-from quadpatch.judge import HoleResult, judge
 from quadpatch.mesh.holes import Hole, Selection, find_holes, select_holes
 from quadpatch.mesh.measures import diagonal, mean_edge_length
 from quadpatch.options import HoleAction, RepairOptions
+from quadpatch.recipes.assessment import HoleResult, judge
+from quadpatch.recipes.learned_detail import Completion, Problem, complete
+from quadpatch.recipes.verification import limited_to, verified_results, without_faults
 from quadpatch.stages import Stages
 from quadpatch.types import BoolArray, TriangleMesh, Triangles
-from quadpatch.verification import limited_to, verified_results, without_faults
 
 # From rough to smooth: a noisy or sharp-edged surface is continued best by the first, a smooth one by the last.
 ENERGIES = (

@@ -19,7 +19,7 @@ import numpy as np
 
 from quadpatch.errors import ModelError
 from quadpatch.inpainters.inpainter import Surroundings
-from quadpatch.onnx_runtime import ort
+from quadpatch.inpainters.onnx_runtime import ort
 from quadpatch.patches.residual_input import CHANNELS, corrected, network_input
 from quadpatch.types import BoolArray, FloatArray, Patches
 

@@ -10,9 +10,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from safetensors.numpy import save
 
-from quadpatch import model_file
 from quadpatch.errors import ModelError
-from quadpatch.model_file import SHIPPED_MODELS, load_model, model_card, save_dictionary, shipped_model
+from quadpatch.inpainters import model_file
+from quadpatch.inpainters.model_file import SHIPPED_MODELS, load_model, model_card, save_dictionary, shipped_model
 from quadpatch.sparse.dictionary import Dictionary
 from quadpatch.types import FloatArray
 

@@ -5,15 +5,15 @@ import numpy as np
 import pytest
 
 from quadpatch.calibration.error_model import Expectation
-from quadpatch.completion import Completion
 from quadpatch.filling.fairing import THIN_PLATE
 from quadpatch.filling.fill import close_holes, fair_holes
 from quadpatch.filling.filled_mesh import FilledMesh
-from quadpatch.judge import LEAST_COVERAGE, MOST_DISAGREEMENT, Evidence, confidence, gather, judge, trusted
 from quadpatch.mesh.holes import Selection, find_holes, select_holes
 from quadpatch.mesh.measures import diagonal
 from quadpatch.options import HoleOptions
 from quadpatch.patches.scale import PatchScale
+from quadpatch.recipes.assessment import LEAST_COVERAGE, MOST_DISAGREEMENT, Evidence, confidence, gather, judge, trusted
+from quadpatch.recipes.learned_detail import Completion
 from quadpatch.reconstruction.displacement import Displacement, rim_vertices
 from quadpatch.types import BoolArray, FloatArray, TriangleMesh
 from tests.quadpatch.shapes import bumpy_plate, punched

@@ -1,7 +1,13 @@
 import numpy as np
 import pytest
 
-from quadpatch.inpainters.heights import LEAST_KNOWN, MIN_TRAINING_PATCHES, NONZERO, HeightsInpainter, learn_heights
+from quadpatch.inpainters.paper_dictionary import (
+    LEAST_KNOWN,
+    MIN_TRAINING_PATCHES,
+    NONZERO,
+    HeightsInpainter,
+    learn_heights,
+)
 from quadpatch.options import DictionaryOptions
 from quadpatch.sparse.dictionary import Dictionary
 from quadpatch.types import BoolArray, FloatArray, Patches

@@ -13,15 +13,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from quadpatch.calibration.energy_selection import FillRule
-from quadpatch.completion import Completion
 from quadpatch.errors import NoQuadsError, OptionError, StageError
 from quadpatch.filling.fairing import Energy
 from quadpatch.filling.faults import find_faults
 from quadpatch.filling.fill import close_flat
 from quadpatch.filling.filled_mesh import FilledMesh
-from quadpatch.inpainters.heights import GLOBAL_ATOMS, HeightsInpainter, learn_heights
 from quadpatch.inpainters.inpainter import Inpainter
-from quadpatch.judge import HoleResult, count_new, evidence_of, gather, with_open_holes
+from quadpatch.inpainters.paper_dictionary import GLOBAL_ATOMS, HeightsInpainter, learn_heights
 from quadpatch.mesh.holes import Hole, Selection, find_holes, select_holes
 from quadpatch.mesh.measures import diagonal, mean_edge_length
 from quadpatch.mesh.raycast import RayScene
@@ -31,12 +29,14 @@ from quadpatch.patches.height_map import sample_height_maps
 from quadpatch.patches.layout import lay_out, pick_patches, seeds_near, take
 from quadpatch.patches.scale import PatchScale
 from quadpatch.patches.seeds import Seeds
-from quadpatch.pipeline import Repair
+from quadpatch.recipes.assessment import HoleResult, count_new, evidence_of, gather, with_open_holes
+from quadpatch.recipes.default import Repair
+from quadpatch.recipes.learned_detail import Completion
+from quadpatch.recipes.verification import with_named_faults
 from quadpatch.reconstruction.displacement import rim_vertices
 from quadpatch.reconstruction.placement import place
 from quadpatch.stages import Stages
 from quadpatch.types import BoolArray, FloatArray, Patches, Progress, TriangleMesh, Triangles, no_progress
-from quadpatch.verification import with_named_faults
 
 # The paper gives patch length, resolution and overlap for each of its objects. Where nobody does: patches nearly twice
 # as wide as the holes, bins as in the paper's networks, every vertex in about nine patches.

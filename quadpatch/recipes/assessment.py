@@ -19,7 +19,7 @@ from quadpatch.reconstruction.displacement import Displacement
 from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh
 
 if TYPE_CHECKING:
-    from quadpatch.completion import Completion
+    from quadpatch.recipes.learned_detail import Completion
 
 # A hole is completed by the model only where its patches see at least this share of the new vertices.
 LEAST_COVERAGE = 0.6

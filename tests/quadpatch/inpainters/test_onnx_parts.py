@@ -6,9 +6,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from quadpatch.errors import ModelError
-from quadpatch.model_file import SHIPPED_MODELS
-from quadpatch.network_parts import MAX_DEPTH, check_parts
-from tests.quadpatch.inpainters.test_autoencoder import PAPER, write_network
+from quadpatch.inpainters.model_file import SHIPPED_MODELS
+from quadpatch.inpainters.onnx_parts import MAX_DEPTH, check_parts
+from tests.quadpatch.inpainters.test_onnx_network import PAPER, write_network
 
 
 @pytest.fixture(scope="module")

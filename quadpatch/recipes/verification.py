@@ -4,13 +4,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from quadpatch.completion import Completion
 from quadpatch.filling.checked_fill import CheckedFill
 from quadpatch.filling.faults import Faults, find_faults
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.filling.islands import JoinedRims
-from quadpatch.judge import HoleResult, confidence
 from quadpatch.mesh.holes import Hole
+from quadpatch.recipes.assessment import HoleResult, confidence
+from quadpatch.recipes.learned_detail import Completion
 from quadpatch.types import BoolArray, Triangles
 
 _NO_PLANE_PATCH = "no_plane_patch", "in its plane the rim crosses itself, or encloses no area"
