@@ -25,8 +25,9 @@ from quadpatch.mesh.near_vertices import Tolerance
 from quadpatch.mesh.orientation import triangles_facing_turned
 from quadpatch.mesh.weld import Weld, weld
 from quadpatch.options import DictionaryOptions, NetworkOptions, RepairOptions, check_weld_tolerance
-from quadpatch.recipes.default import Repair, inpaint
+from quadpatch.recipes.default import inpaint
 from quadpatch.recipes.paper import NOTHING_TO_DO, inpaint_as_paper
+from quadpatch.recipes.result import Repair
 from quadpatch.report import (
     UNKNOWN_UNIT,
     build_report,

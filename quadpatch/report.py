@@ -13,8 +13,7 @@ from quadpatch.mesh.holes import Hole
 from quadpatch.mesh.measures import mean_edge_length
 from quadpatch.mesh.weld import Weld, WeldCounts
 from quadpatch.options import RepairOptions
-from quadpatch.recipes.assessment import HoleResult
-from quadpatch.recipes.default import Repair
+from quadpatch.recipes.result import HoleResult, Repair
 from quadpatch.stages import Stages
 from quadpatch.types import TriangleMesh
 

@@ -5,8 +5,7 @@ of what was measured: a fill off by 0.03 % of the diagonal has 0.90, one off by 
 size, not the hole's, so that it tells which holes of a part to distrust.
 """
 
-from dataclasses import dataclass, field, fields
-from typing import TYPE_CHECKING
+from dataclasses import fields
 
 import numpy as np
 
@@ -15,11 +14,9 @@ from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.mesh.averages import mean_by
 from quadpatch.mesh.holes import Hole, Selection
 from quadpatch.mesh.measures import diagonal
+from quadpatch.recipes.result import Completion, Evidence, HoleResult
 from quadpatch.reconstruction.displacement import Displacement
 from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh
-
-if TYPE_CHECKING:
-    from quadpatch.recipes.learned_detail import Completion
 
 # A hole is completed by the model only where its patches see at least this share of the new vertices.
 LEAST_COVERAGE = 0.6
@@ -29,58 +26,6 @@ MOST_DISAGREEMENT = 1.5
 
 # An expected error of this share of the object's diagonal leaves a confidence of 0.37.
 DOUBTFUL_SHARE = 0.003
-
-
-@dataclass(frozen=True)
-class HoleResult:
-    """What became of one hole. Lengths in mesh units.
-
-    Attributes
-    ----------
-    verdict : str
-        `filled` by the model, `filled_smooth` by geometry alone, `skipped` by rule, `refused` as impossible.
-    code, reason : str
-        Why, for programs and for people; empty for `filled`.
-    confidence : float or None
-        0..1, by the expected error in relation to the object's size; None where nothing was filled.
-    expected_error : float or None
-        Expected mean distance of the fill to the true surface.
-    measures : dict
-        What the verdict rests on; `folds` and `crossings` count the faults that the check left.
-    fill : str
-        Which geometric fill carries it: `energies` (what suits the surface), `flat` (a plane patch), or a plainer one,
-        `thin_plate` or `constrained`, where others fold or run through other surface. Empty
-        where nothing was filled.
-    """
-
-    hole: Hole
-    verdict: str
-    code: str = ""
-    reason: str = ""
-    confidence: float | None = None
-    expected_error: float | None = None
-    n_new_vertices: int = 0
-    n_new_triangles: int = 0
-    measures: dict[str, float] = field(default_factory=dict)
-    fill: str = ""
-
-
-@dataclass(frozen=True)
-class Evidence:
-    """What the patches said about every hole, (n_holes,) float64 each, by position in the list of loops.
-
-    Attributes
-    ----------
-    coverage : share of the hole's new vertices that a patch sees
-    spread : mean standard deviation between patches, mesh units
-    departure : mean length of the displacement, mesh units
-    rim_misfit : mean error of the model at the rim, where the truth is known, mesh units
-    """
-
-    coverage: FloatArray
-    spread: FloatArray
-    departure: FloatArray
-    rim_misfit: FloatArray
 
 
 def gather(
@@ -108,7 +53,7 @@ def judge(
     holes: list[Hole],
     selection: Selection,
     filled: FilledMesh,
-    completion: "Completion | None",
+    completion: Completion | None,
     expectation: Expectation,
 ) -> list[HoleResult]:
     """Say of every hole what became of it, in the order of their ids."""
@@ -167,14 +112,14 @@ def count_new(filled: FilledMesh) -> tuple[list[int], list[int]]:
     return n_vertices, n_triangles
 
 
-def evidence_of(i: int, completion: "Completion | None") -> dict[str, float]:
+def evidence_of(i: int, completion: Completion | None) -> dict[str, float]:
     """Name what the patches said about one hole; nothing where none were asked."""
     if completion is None or completion.evidence is None:
         return {}
     return {sign.name: float(getattr(completion.evidence, sign.name)[i]) for sign in fields(Evidence)}
 
 
-def _verdict(i: int, n_new_vertices: int, completion: "Completion | None") -> tuple[str, str, str]:
+def _verdict(i: int, n_new_vertices: int, completion: Completion | None) -> tuple[str, str, str]:
     if completion is None:
         return "filled_smooth", "geometry", "no learned model took part"
     if completion.trust[i]:

@@ -4,8 +4,6 @@ The stages are those of Sarkar, Varanasi and Stricker, "Learning Quadrangulated 
 geometric fill, outline, quads, patches, learning, completion, reconstruction, verdicts.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from quadpatch.calibration.calibration_set import Practice, expect, practise
@@ -17,11 +15,12 @@ from quadpatch.filling.fairing import THIN_PLATE, Energy
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.filling.islands import JoinedRims, join_islands
 from quadpatch.inpainters.inpainter import Inpainter
-from quadpatch.mesh.holes import Hole, Selection, find_holes, select_holes
+from quadpatch.mesh.holes import Selection, find_holes, select_holes
 from quadpatch.mesh.measures import diagonal, mean_edge_length
 from quadpatch.options import HoleAction, RepairOptions
-from quadpatch.recipes.assessment import HoleResult, judge
-from quadpatch.recipes.learned_detail import Completion, Problem, complete
+from quadpatch.recipes.assessment import judge
+from quadpatch.recipes.learned_detail import Problem, complete
+from quadpatch.recipes.result import Repair
 from quadpatch.recipes.verification import limited_to, verified_results, without_faults
 from quadpatch.stages import Stages
 from quadpatch.types import BoolArray, TriangleMesh, Triangles
@@ -38,33 +37,6 @@ USUAL_ENERGY = ENERGIES[2]
 # For surfaces without room for practice: they are coarse for their holes, and a rim of few edges shows no curvature to
 # carry on.
 UNTRIED_ENERGY = THIN_PLATE
-
-
-@dataclass(frozen=True)
-class Repair:
-    """The repaired mesh, and how it came to be.
-
-    Attributes
-    ----------
-    filled : FilledMesh
-        Measured vertices and triangles first, bit for bit.
-    chosen : list of Hole
-        In the order of the filled loops.
-    results : list of HoleResult
-        One per hole, by id.
-    rule : FillRule
-        What the fill was faired by.
-    completion : Completion or None
-        None where geometry alone filled the holes.
-    warnings : list of str
-    """
-
-    filled: FilledMesh
-    chosen: list[Hole]
-    results: list[HoleResult]
-    rule: FillRule
-    completion: Completion | None
-    warnings: list[str]
 
 
 def inpaint(

@@ -17,7 +17,8 @@ from quadpatch.patches.folding import is_unfolded
 from quadpatch.patches.layout import lay_out, patchify, pick, seeds_near, take
 from quadpatch.patches.scale import PatchScale, choose_scale, outline_iterations
 from quadpatch.patches.seeds import Seeds
-from quadpatch.recipes.assessment import Evidence, gather, trusted
+from quadpatch.recipes.assessment import gather, trusted
+from quadpatch.recipes.result import Completion, Evidence
 from quadpatch.reconstruction.displacement import displace, join_at_rim, rim_vertices
 from quadpatch.stages import Stages
 from quadpatch.types import BoolArray, FloatArray, Patches, TriangleMesh
@@ -27,40 +28,6 @@ UNTRIED_SHARE = 0.0
 
 # Patches that a self-similar dictionary is learned from.
 _MAX_SEEDS_TO_LEARN_FROM = 2000
-
-
-@dataclass(frozen=True)
-class Completion:
-    """The fill, displaced by what the model says.
-
-    Attributes
-    ----------
-    filled : FilledMesh
-    evidence : Evidence or None
-        None where practice believed nothing of what the model says, and it was not asked.
-    trust : (n_holes,) bool
-        Holes that were displaced.
-    believed : float
-        Share of the displacement that was applied, 0..1, as practice on this mesh advised.
-    expectation : Expectation or None
-        How large an error to expect, as practice holes taught; None without practice.
-    scale : PatchScale
-    n_patches : int
-    undone : (n_holes,) bool or None
-        Holes whose displacement was taken back, since it made their fill fold or run through other surface.
-    left_out : (n_holes,) bool or None
-        Holes that a rule keeps the model out of.
-    """
-
-    filled: FilledMesh
-    evidence: Evidence | None
-    trust: BoolArray
-    believed: float
-    expectation: Expectation | None
-    scale: PatchScale
-    n_patches: int
-    undone: BoolArray | None = None
-    left_out: BoolArray | None = None
 
 
 @dataclass(frozen=True)

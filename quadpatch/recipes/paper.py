@@ -29,9 +29,8 @@ from quadpatch.patches.height_map import sample_height_maps
 from quadpatch.patches.layout import lay_out, pick_patches, seeds_near, take
 from quadpatch.patches.scale import PatchScale
 from quadpatch.patches.seeds import Seeds
-from quadpatch.recipes.assessment import HoleResult, count_new, evidence_of, gather, with_open_holes
-from quadpatch.recipes.default import Repair
-from quadpatch.recipes.learned_detail import Completion
+from quadpatch.recipes.assessment import count_new, evidence_of, gather, with_open_holes
+from quadpatch.recipes.result import Completion, HoleResult, Repair
 from quadpatch.recipes.verification import with_named_faults
 from quadpatch.reconstruction.displacement import rim_vertices
 from quadpatch.reconstruction.placement import place

@@ -9,8 +9,8 @@ from quadpatch.filling.faults import Faults, find_faults
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.filling.islands import JoinedRims
 from quadpatch.mesh.holes import Hole
-from quadpatch.recipes.assessment import HoleResult, confidence
-from quadpatch.recipes.learned_detail import Completion
+from quadpatch.recipes.assessment import confidence
+from quadpatch.recipes.result import Completion, HoleResult
 from quadpatch.types import BoolArray, Triangles
 
 _NO_PLANE_PATCH = "no_plane_patch", "in its plane the rim crosses itself, or encloses no area"

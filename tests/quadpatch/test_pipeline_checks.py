@@ -9,8 +9,8 @@ from quadpatch.filling.faults import find_faults
 from quadpatch.mesh.boundary import boundary_loops
 from quadpatch.mesh.holes import find_holes
 from quadpatch.options import HoleOptions, RepairOptions
-from quadpatch.recipes.assessment import HoleResult
-from quadpatch.recipes.default import Repair, inpaint
+from quadpatch.recipes.default import inpaint
+from quadpatch.recipes.result import HoleResult, Repair
 from quadpatch.types import IntArray, TriangleMesh
 from tests.quadpatch.filling.fills import assert_keeps
 from tests.quadpatch.shapes import (

@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 from jobkit.schema import JobSpec, Plan, ResolvedModel
 from jobkit.settings import Settings
 from quadpatch.options import HoleOptions, HoleRule, RepairOptions
-from quadpatch.recipes.assessment import HoleResult
 from quadpatch.recipes.default import inpaint
 from quadpatch.recipes.paper import inpaint_as_paper
+from quadpatch.recipes.result import HoleResult
 from quadpatch.repair import inspect_file
 from quadpatch.types import TriangleMesh
 from service.plan import make_plan

@@ -12,8 +12,8 @@ from quadpatch.mesh.holes import Selection, find_holes, select_holes
 from quadpatch.mesh.measures import diagonal
 from quadpatch.options import HoleOptions
 from quadpatch.patches.scale import PatchScale
-from quadpatch.recipes.assessment import LEAST_COVERAGE, MOST_DISAGREEMENT, Evidence, confidence, gather, judge, trusted
-from quadpatch.recipes.learned_detail import Completion
+from quadpatch.recipes.assessment import LEAST_COVERAGE, MOST_DISAGREEMENT, confidence, gather, judge, trusted
+from quadpatch.recipes.result import Completion, Evidence
 from quadpatch.reconstruction.displacement import Displacement, rim_vertices
 from quadpatch.types import BoolArray, FloatArray, TriangleMesh
 from tests.quadpatch.shapes import bumpy_plate, punched

@@ -7,7 +7,8 @@ from quadpatch.mesh.boundary import boundary_loops
 from quadpatch.mesh.measures import diagonal
 from quadpatch.mesh.raycast import RayScene
 from quadpatch.options import HoleOptions, PatchOptions, RepairOptions
-from quadpatch.recipes.default import Repair, inpaint
+from quadpatch.recipes.default import inpaint
+from quadpatch.recipes.result import Repair
 from quadpatch.sparse.dictionary import Dictionary
 from quadpatch.stages import Stages
 from quadpatch.types import FloatArray, TriangleMesh

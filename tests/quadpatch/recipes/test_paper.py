@@ -12,7 +12,6 @@ from quadpatch.options import DictionaryOptions, HoleOptions, PatchOptions, Repa
 from quadpatch.patches.height_map import sample_height_maps
 from quadpatch.patches.scale import PatchScale
 from quadpatch.patches.seeds import Seeds
-from quadpatch.recipes.default import Repair
 from quadpatch.recipes.paper import (
     NO_FAIRING,
     OVERLAP,
@@ -22,6 +21,7 @@ from quadpatch.recipes.paper import (
     learn_as_paper,
     paper_scale,
 )
+from quadpatch.recipes.result import Repair
 from quadpatch.sparse.dictionary import Dictionary
 from quadpatch.stages import Stages
 from quadpatch.types import FloatArray, Patches, TriangleMesh

@@ -12,8 +12,8 @@ from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.filling.islands import JoinedRims
 from quadpatch.mesh.holes import Hole, Selection, find_holes
 from quadpatch.patches.scale import PatchScale
-from quadpatch.recipes.assessment import HoleResult, confidence, judge
-from quadpatch.recipes.learned_detail import Completion
+from quadpatch.recipes.assessment import confidence, judge
+from quadpatch.recipes.result import Completion, HoleResult
 from quadpatch.recipes.verification import limited_to, verified_results, with_named_faults, without_faults
 from quadpatch.types import FloatArray, IntArray, TriangleMesh
 from tests.quadpatch.filling.fills import assert_keeps

@@ -1,0 +1,123 @@
+"""What comes out of a repair: of each hole, of the model, and as a whole."""
+
+from dataclasses import dataclass, field
+
+from quadpatch.calibration.energy_selection import FillRule
+from quadpatch.calibration.error_model import Expectation
+from quadpatch.filling.filled_mesh import FilledMesh
+from quadpatch.mesh.holes import Hole
+from quadpatch.patches.scale import PatchScale
+from quadpatch.types import BoolArray, FloatArray
+
+
+@dataclass(frozen=True)
+class HoleResult:
+    """What became of one hole. Lengths in mesh units.
+
+    Attributes
+    ----------
+    verdict : str
+        `filled` by the model, `filled_smooth` by geometry alone, `skipped` by rule, `refused` as impossible.
+    code, reason : str
+        Why, for programs and for people; empty for `filled`.
+    confidence : float or None
+        0..1, by the expected error in relation to the object's size; None where nothing was filled.
+    expected_error : float or None
+        Expected mean distance of the fill to the true surface.
+    measures : dict
+        What the verdict rests on; `folds` and `crossings` count the faults that the check left.
+    fill : str
+        Which geometric fill carries it: `energies` (what suits the surface), `flat` (a plane patch), or a plainer one,
+        `thin_plate` or `constrained`, where others fold or run through other surface. Empty
+        where nothing was filled.
+    """
+
+    hole: Hole
+    verdict: str
+    code: str = ""
+    reason: str = ""
+    confidence: float | None = None
+    expected_error: float | None = None
+    n_new_vertices: int = 0
+    n_new_triangles: int = 0
+    measures: dict[str, float] = field(default_factory=dict)
+    fill: str = ""
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """What the patches said about every hole, (n_holes,) float64 each, by position in the list of loops.
+
+    Attributes
+    ----------
+    coverage : share of the hole's new vertices that a patch sees
+    spread : mean standard deviation between patches, mesh units
+    departure : mean length of the displacement, mesh units
+    rim_misfit : mean error of the model at the rim, where the truth is known, mesh units
+    """
+
+    coverage: FloatArray
+    spread: FloatArray
+    departure: FloatArray
+    rim_misfit: FloatArray
+
+
+@dataclass(frozen=True)
+class Completion:
+    """The fill, displaced by what the model says.
+
+    Attributes
+    ----------
+    filled : FilledMesh
+    evidence : Evidence or None
+        None where practice believed nothing of what the model says, and it was not asked.
+    trust : (n_holes,) bool
+        Holes that were displaced.
+    believed : float
+        Share of the displacement that was applied, 0..1, as practice on this mesh advised.
+    expectation : Expectation or None
+        How large an error to expect, as practice holes taught; None without practice.
+    scale : PatchScale
+    n_patches : int
+    undone : (n_holes,) bool or None
+        Holes whose displacement was taken back, since it made their fill fold or run through other surface.
+    left_out : (n_holes,) bool or None
+        Holes that a rule keeps the model out of.
+    """
+
+    filled: FilledMesh
+    evidence: Evidence | None
+    trust: BoolArray
+    believed: float
+    expectation: Expectation | None
+    scale: PatchScale
+    n_patches: int
+    undone: BoolArray | None = None
+    left_out: BoolArray | None = None
+
+
+@dataclass(frozen=True)
+class Repair:
+    """The repaired mesh, and how it came to be.
+
+    Attributes
+    ----------
+    filled : FilledMesh
+        Measured vertices and triangles first, bit for bit.
+    chosen : list of Hole
+        In the order of the filled loops.
+    results : list of HoleResult
+        One per hole, by id.
+    rule : FillRule
+        What the fill was faired by.
+    completion : Completion or None
+        None where geometry alone filled the holes.
+    warnings : list of str
+    """
+
+    filled: FilledMesh
+    chosen: list[Hole]
+    results: list[HoleResult]
+    rule: FillRule
+    completion: Completion | None
+    warnings: list[str]
