@@ -12,12 +12,12 @@ from quadpatch.formats.reading import read_scan
 from quadpatch.mesh.boundary import boundary_loops
 from quadpatch.mesh.raycast import RayScene
 from quadpatch.mesh.weld import weld
-from quadpatch.picture import render_before_after
-from quadpatch.picture.camera import Camera, view_of
-from quadpatch.picture.pair import SURE
-from quadpatch.picture.parts import Part, part_of
-from quadpatch.picture.shading import CLAY, Clay
-from quadpatch.picture.viewpoints import close_ups
+from quadpatch.preview.camera import Camera, view_of
+from quadpatch.preview.pair import SURE
+from quadpatch.preview.parts import Part, part_of
+from quadpatch.preview.shading import CLAY, Clay
+from quadpatch.preview.sheet import render_before_after
+from quadpatch.preview.viewpoints import close_ups
 from quadpatch.types import IntArray, TriangleMesh, Vertices
 
 _TILE = 300

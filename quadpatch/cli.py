@@ -203,7 +203,7 @@ def _holes(count: int) -> str:
 
 def _draw(repaired: "RepairedFile", picture: Path | None, closeups: Path | None) -> None:
     """Draw what was asked for; what fails is a warning in the report."""
-    from quadpatch.drawing import add_close_ups, add_picture  # noqa: PLC0415  see fill
+    from quadpatch.preview.drawing import add_close_ups, add_picture  # noqa: PLC0415  see fill
 
     if picture:
         add_picture(repaired, picture)

@@ -10,10 +10,10 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from quadpatch.drawing import add_close_up_archive, add_picture
 from quadpatch.files import write_whole
 from quadpatch.inpainters.proof import prove_model
 from quadpatch.options import RepairOptions
+from quadpatch.preview.drawing import add_close_up_archive, add_picture
 from quadpatch.repair import inspect_file, repair_and_keep
 from worker.engine_frame import run_framed
 from worker.engine_reports import Reporter

@@ -12,11 +12,11 @@ from benchmarks.quality.measurement import Method, measure, repaired_path
 from benchmarks.quality.results import Results
 from quadpatch.formats.reading import read_scan
 from quadpatch.mesh.raycast import RayScene
-from quadpatch.picture.camera import Camera, view_of
-from quadpatch.picture.pair import SURE
-from quadpatch.picture.parts import part_of
-from quadpatch.picture.shading import CLAY, Clay
-from quadpatch.picture.viewpoints import close_ups
+from quadpatch.preview.camera import Camera, view_of
+from quadpatch.preview.pair import SURE
+from quadpatch.preview.parts import part_of
+from quadpatch.preview.shading import CLAY, Clay
+from quadpatch.preview.viewpoints import close_ups
 from quadpatch.types import BoolArray, FloatArray, TriangleMesh, Vertices
 
 _TILE = 360

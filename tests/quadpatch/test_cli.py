@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner, Result
 
-from quadpatch import drawing
 from quadpatch.cli import app, summary
 from quadpatch.formats.reading import read_scan
+from quadpatch.preview import drawing
 from tests.quadpatch.shapes import bumpy_plate, punched, sphere, write_ply
 from tests.waiting import GUARD_S
 

@@ -3,8 +3,8 @@
 import numpy as np
 
 from quadpatch.mesh.raycast import RayScene
-from quadpatch.picture.camera import UP, Camera, view_of
-from quadpatch.picture.parts import Part
+from quadpatch.preview.camera import UP, Camera, view_of
+from quadpatch.preview.parts import Part
 from quadpatch.types import FloatArray
 
 # Directions tried for a view: about 20 degrees between neighbours.

@@ -5,11 +5,11 @@ import pytest
 from PIL import Image
 
 from quadpatch.mesh.holes import find_holes
-from quadpatch.picture.hole_pictures import NumberedHole, draw_hole, mean_normal
-from quadpatch.picture.pair import SURE, Pair, prepare
-from quadpatch.picture.shading import BACK
+from quadpatch.preview.hole_pictures import NumberedHole, draw_hole, mean_normal
+from quadpatch.preview.pair import SURE, Pair, prepare
+from quadpatch.preview.shading import BACK
 from quadpatch.types import FloatArray, TriangleMesh
-from tests.quadpatch.picture.test_sheet import share_of_hue
+from tests.quadpatch.preview.test_sheet import share_of_hue
 from tests.quadpatch.shapes import cylinder, punched, sphere
 
 DIRECTION = np.array([0.6, 0.0, 0.8])

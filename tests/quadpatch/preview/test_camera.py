@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from quadpatch.picture.camera import view_of
+from quadpatch.preview.camera import view_of
 from quadpatch.types import FloatArray
 
 

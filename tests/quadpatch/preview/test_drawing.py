@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from quadpatch import drawing
-from quadpatch.drawing import add_close_up_archive, add_close_ups, add_picture
-from quadpatch.picture.hole_pictures import NumberedHole
+from quadpatch.preview import drawing
+from quadpatch.preview.drawing import add_close_up_archive, add_close_ups, add_picture
+from quadpatch.preview.hole_pictures import NumberedHole
 from quadpatch.repair import RepairedFile, repair_and_keep
 from quadpatch.types import TriangleMesh
 from tests.quadpatch.shapes import joined, punched, sphere, write_ply

@@ -5,7 +5,7 @@ import numpy as np
 from quadpatch.mesh.normals import triangle_normals, unit
 from quadpatch.mesh.raycast import RayScene
 from quadpatch.mesh.weld import weld
-from quadpatch.picture.camera import Camera
+from quadpatch.preview.camera import Camera
 from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Vertices
 
 BACKGROUND = np.array([0.965, 0.968, 0.972])

@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 from quadpatch.mesh.raycast import RayScene
-from quadpatch.picture.camera import Camera
-from quadpatch.picture.shading import BACK, BACKGROUND, CLAY, Clay
+from quadpatch.preview.camera import Camera
+from quadpatch.preview.shading import BACK, BACKGROUND, CLAY, Clay
 from quadpatch.types import FloatArray, TriangleMesh
 
 FRONT = Camera(np.zeros(3), np.array([1.0, 0, 0]), np.array([0.0, 1, 0]), np.array([0.0, 0, 1]), 4.0, 5.0)

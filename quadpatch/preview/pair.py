@@ -7,9 +7,9 @@ import numpy as np
 from quadpatch.errors import EmptyMeshError
 from quadpatch.mesh.normals import area_vectors
 from quadpatch.mesh.raycast import RayScene
-from quadpatch.picture.parts import main_pieces, part_of
-from quadpatch.picture.shading import CLAY, Clay
-from quadpatch.picture.viewpoints import is_inside_out
+from quadpatch.preview.parts import main_pieces, part_of
+from quadpatch.preview.shading import CLAY, Clay
+from quadpatch.preview.viewpoints import is_inside_out
 from quadpatch.types import BoolArray, FloatArray, TriangleMesh
 
 # What was invented with full confidence, and with none.

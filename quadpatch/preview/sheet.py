@@ -6,12 +6,12 @@ from pathlib import Path
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
-from quadpatch.picture.camera import Camera
-from quadpatch.picture.pair import SURE, UNSURE, Pair, prepare
-from quadpatch.picture.parts import filled_holes, main_pieces, part_of
-from quadpatch.picture.png import to_pixels, write_png
-from quadpatch.picture.shading import BACK, CLAY
-from quadpatch.picture.viewpoints import close_ups, overview
+from quadpatch.preview.camera import Camera
+from quadpatch.preview.pair import SURE, UNSURE, Pair, prepare
+from quadpatch.preview.parts import filled_holes, main_pieces, part_of
+from quadpatch.preview.png import to_pixels, write_png
+from quadpatch.preview.shading import BACK, CLAY
+from quadpatch.preview.viewpoints import close_ups, overview
 from quadpatch.types import BoolArray, FloatArray, TriangleMesh
 
 # In pixels. Three pairs of tiles are as wide as the two panels.

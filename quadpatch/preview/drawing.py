@@ -15,9 +15,9 @@ from typing import Any
 from quadpatch.files import write_whole
 from quadpatch.mesh.holes import Hole
 from quadpatch.optional import failure_of
-from quadpatch.picture.hole_pictures import NumberedHole, draw_hole
-from quadpatch.picture.pair import Pair, prepare
-from quadpatch.picture.sheet import render_before_after
+from quadpatch.preview.hole_pictures import NumberedHole, draw_hole
+from quadpatch.preview.pair import Pair, prepare
+from quadpatch.preview.sheet import render_before_after
 from quadpatch.repair import RepairedFile
 from quadpatch.types import Progress, no_progress
 

@@ -2,9 +2,9 @@ import numpy as np
 import pytest
 
 from quadpatch.mesh.raycast import RayScene
-from quadpatch.picture.camera import view_of
-from quadpatch.picture.parts import Part, part_of
-from quadpatch.picture.viewpoints import close_ups, is_inside_out, overview, spread_directions, visible_areas
+from quadpatch.preview.camera import view_of
+from quadpatch.preview.parts import Part, part_of
+from quadpatch.preview.viewpoints import close_ups, is_inside_out, overview, spread_directions, visible_areas
 from quadpatch.types import BoolArray, TriangleMesh
 
 FRONT = view_of(np.eye(3), np.array([0.0, 0, 1]), 1.0)

@@ -5,9 +5,9 @@ import pytest
 from PIL import Image
 
 from quadpatch.errors import EmptyMeshError
-from quadpatch.picture import render_before_after
-from quadpatch.picture.pair import SURE, UNSURE
-from quadpatch.picture.shading import BACK
+from quadpatch.preview.pair import SURE, UNSURE
+from quadpatch.preview.shading import BACK
+from quadpatch.preview.sheet import render_before_after
 from quadpatch.types import BoolArray, FloatArray, TriangleMesh
 
 

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from quadpatch.mesh.normals import area_vectors
-from quadpatch.picture.parts import filled_holes, main_pieces, part_of
+from quadpatch.preview.parts import filled_holes, main_pieces, part_of
 from quadpatch.types import TriangleMesh
 
 

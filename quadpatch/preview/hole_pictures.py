@@ -5,9 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
-from quadpatch.picture.camera import UP, Camera, view_of
-from quadpatch.picture.pair import Pair
-from quadpatch.picture.png import png_bytes, to_pixels
+from quadpatch.preview.camera import UP, Camera, view_of
+from quadpatch.preview.pair import Pair
+from quadpatch.preview.png import png_bytes, to_pixels
 from quadpatch.types import FloatArray, Vertices
 
 # In pixels.

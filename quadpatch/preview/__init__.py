@@ -1,0 +1,1 @@
+"""Pictures of a finished repair, before and after, drawn by casting rays."""
