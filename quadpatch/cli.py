@@ -22,7 +22,7 @@ from rich.text import Text
 
 from quadpatch import types
 from quadpatch.errors import OptionError, QuadpatchError
-from quadpatch.files import check_folder, check_outputs, is_stream, write_whole
+from quadpatch.formats.output_files import check_folder, check_outputs, is_stream, write_whole
 from quadpatch.options import Cap, DictionaryOptions, HoleOptions, NetworkOptions, PatchOptions, Recipe, RepairOptions
 from quadpatch.rule_text import read_rule
 

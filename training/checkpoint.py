@@ -8,7 +8,7 @@ from typing import Any
 import torch
 from torch import Tensor
 
-from quadpatch.files import write_whole
+from quadpatch.formats.output_files import write_whole
 from training.errors import CheckpointError
 
 FORMAT = 1

@@ -16,7 +16,7 @@ import onnx
 import torch
 from torch import nn
 
-from quadpatch.files import write_whole
+from quadpatch.formats.output_files import write_whole
 from quadpatch.inpainters.model_file import Card
 from quadpatch.inpainters.onnx_runtime import ort
 from training.errors import ExportError

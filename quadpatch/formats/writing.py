@@ -4,9 +4,9 @@ from dataclasses import replace
 from pathlib import Path
 
 from quadpatch.errors import FormatError
-from quadpatch.files import is_stream, write_whole
 from quadpatch.formats.conversion import encode_as_obj, encode_as_off, encode_as_ply, encode_as_stl
 from quadpatch.formats.gltf.encoder import encode_as_glb, encode_as_gltf
+from quadpatch.formats.output_files import is_stream, write_whole
 from quadpatch.formats.scan import Fill, Scan
 from quadpatch.formats.threemf.encoder import encode_as_threemf
 from quadpatch.formats.whole import assemble

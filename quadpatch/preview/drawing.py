@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from quadpatch.files import write_whole
+from quadpatch.formats.output_files import write_whole
 from quadpatch.mesh.holes import Hole
 from quadpatch.optional import failure_of
 from quadpatch.preview.hole_pictures import NumberedHole, draw_hole

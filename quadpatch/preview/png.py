@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from quadpatch.files import write_whole
+from quadpatch.formats.output_files import write_whole
 from quadpatch.types import FloatArray
 
 

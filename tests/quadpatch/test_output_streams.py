@@ -12,9 +12,9 @@ from pathlib import Path
 import pytest
 
 import client.outputs
-from quadpatch import files
 from quadpatch.errors import FormatError, OptionError
-from quadpatch.files import check_folder, check_outputs, write_whole
+from quadpatch.formats import output_files
+from quadpatch.formats.output_files import check_folder, check_outputs, write_whole
 from quadpatch.formats.writing import check_suffix
 from quadpatch.repair import repair_file
 from tests.quadpatch.shapes import bumpy_plate, punched, write_ply
@@ -70,8 +70,8 @@ def test_a_report_goes_to_standard_output_once_although_pictures_are_drawn_after
 def test_the_names_of_streams_are_those_of_the_client(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "pipe")
     for path in (*map(Path, NAMES), tmp_path / "pipe", tmp_path):
-        assert files.descriptor_of(path) == client.outputs.descriptor_of(path)
-        assert files.is_stream(path) == client.outputs.is_stream(path)
+        assert output_files.descriptor_of(path) == client.outputs.descriptor_of(path)
+        assert output_files.is_stream(path) == client.outputs.is_stream(path)
 
 
 def test_a_descriptor_is_written_where_it_stands(tmp_path: Path) -> None:

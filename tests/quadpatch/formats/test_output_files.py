@@ -4,7 +4,7 @@ from pathlib import Path
 import pytest
 
 from quadpatch.errors import OptionError
-from quadpatch.files import check_outputs, write_whole
+from quadpatch.formats.output_files import check_outputs, write_whole
 
 
 def test_a_file_is_written_and_nothing_beside_it(tmp_path: Path) -> None:
