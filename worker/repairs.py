@@ -23,7 +23,7 @@ from jobkit.reconcile import submit_job
 from jobkit.schema import Job, JobError, JobResult, JobState
 from jobkit.stages import StageSeconds
 from jobkit.telemetry import StageSpans
-from quadpatch.optional import failure_of
+from quadpatch.stages import failure_of
 from worker.context import Context
 from worker.failures import OUTAGE_DELAY_S, Failure, StopReason
 from worker.limits import EngineLimits

@@ -10,7 +10,7 @@ from jobkit.schema import FileRole, HoleCounts, JobResult, ResultFile
 from jobkit.stages import StageSeconds
 from jobkit.store import ObjectStore, result_key
 from quadpatch.formats.output_files import write_whole
-from quadpatch.optional import failure_of
+from quadpatch.stages import failure_of
 from worker.failures import Failure
 from worker.request import CLOSE_UPS_NAME, PREVIEW_NAME, REPORT_NAME, EngineRequest
 

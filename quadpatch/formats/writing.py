@@ -10,7 +10,7 @@ from quadpatch.formats.output_files import is_stream, write_whole
 from quadpatch.formats.scan import Fill, Scan
 from quadpatch.formats.threemf.encoder import encode_as_threemf
 from quadpatch.formats.whole import assemble
-from quadpatch.optional import failure_of
+from quadpatch.stages import failure_of
 
 _ENCODERS = {
     "ply": encode_as_ply,

@@ -14,11 +14,11 @@ from typing import Any
 
 from quadpatch.formats.output_files import write_whole
 from quadpatch.mesh.holes import Hole
-from quadpatch.optional import failure_of
 from quadpatch.preview.hole_pictures import NumberedHole, draw_hole
 from quadpatch.preview.pair import Pair, prepare
 from quadpatch.preview.sheet import render_before_after
 from quadpatch.repair import RepairedFile
+from quadpatch.stages import failure_of
 from quadpatch.types import Progress, no_progress
 
 # Of an archive of close-ups. One takes about a second of a busy core and a hundred kilobytes.
