@@ -18,7 +18,6 @@ from quadpatch.inpainters.dictionary import DictionaryInpainter
 from quadpatch.inpainters.inpainter import Inpainter
 from quadpatch.inpainters.model_file import Model, load_model, shipped_model
 from quadpatch.inpainters.paper_dictionary import HeightsInpainter
-from quadpatch.json_values import json_ready
 from quadpatch.mesh.holes import find_holes, select_holes
 from quadpatch.mesh.measures import diagonal
 from quadpatch.mesh.near_vertices import Tolerance
@@ -34,6 +33,7 @@ from quadpatch.report import (
     describe_hole,
     describe_mesh,
     describe_redundancy,
+    json_ready,
     with_hole_numbers,
 )
 from quadpatch.stages import Stages, harmless

@@ -4,15 +4,19 @@ A number that is not finite is null.
 """
 
 import json
+import math
+from collections.abc import Mapping
 from dataclasses import asdict
 from typing import Any, cast
 
+import numpy as np
+
 from quadpatch.formats.scan import Scan
-from quadpatch.json_values import json_ready
 from quadpatch.mesh.holes import Hole
 from quadpatch.mesh.measures import mean_edge_length
 from quadpatch.mesh.weld import Weld, WeldCounts
 from quadpatch.options import RepairOptions
+from quadpatch.printable import printable
 from quadpatch.recipes.result import HoleResult, Repair
 from quadpatch.stages import Stages
 from quadpatch.types import TriangleMesh
@@ -133,3 +137,30 @@ def _hole(result: HoleResult) -> dict[str, Any]:
         "new_triangles": result.n_new_triangles,
         "measures": result.measures,
     }
+
+
+def json_ready(value: Any) -> Any:
+    """Turn nested values into plain ones.
+
+    Parameters
+    ----------
+    value : Any
+        Mappings, sequences, arrays, numpy scalars and plain values.
+
+    Returns
+    -------
+    Any
+        Dicts, lists, printable strings, booleans, integers, finite floats and None. JSON knows no NaN and no
+        infinity: both become None.
+    """
+    if isinstance(value, Mapping):
+        return {printable(str(name)): json_ready(item) for name, item in value.items()}
+    if isinstance(value, np.ndarray | np.generic):
+        return json_ready(value.tolist())
+    if isinstance(value, list | tuple):
+        return [json_ready(item) for item in value]
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    if isinstance(value, str):
+        return printable(value)
+    return value

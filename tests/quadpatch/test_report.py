@@ -2,7 +2,7 @@ import json
 
 import numpy as np
 
-from quadpatch.json_values import json_ready
+from quadpatch.report import json_ready
 
 
 def test_every_value_of_numpy_becomes_a_plain_one() -> None:
