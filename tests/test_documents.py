@@ -3,6 +3,7 @@
 import ast
 import importlib
 import re
+import tomllib
 from collections.abc import Iterator
 from http import HTTPStatus
 from pathlib import Path
@@ -223,3 +224,12 @@ def test_the_picture_is_small_enough_for_a_page() -> None:
     assert path.stat().st_size < 300_000
     with Image.open(path) as picture:
         assert min(picture.size) >= 500
+
+
+@pytest.mark.parametrize("package", ["quadpatch"])
+def test_the_order_inside_a_package_is_that_of_its_contract(package: str) -> None:
+    contracts = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["tool"]["importlinter"]["contracts"]
+    (layers,) = [contract["layers"] for contract in contracts if contract.get("containers") == [package]]
+    text = (ROOT / "docs" / "architecture.md").read_text("utf-8")
+    block = text.partition(f"Inside `{package}`")[2].split("```\n")[1]
+    assert [re.split(r"\s{2,}", line)[0] for line in block.splitlines()] == layers
