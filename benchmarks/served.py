@@ -13,7 +13,7 @@ from pathlib import Path
 import psutil
 
 from jobkit.attempts import Attempts
-from jobkit.database import Database
+from jobkit.database.session import Database
 from jobkit.endings import Attempt
 from jobkit.jobs import Jobs, NewJob
 from jobkit.meshes import Meshes

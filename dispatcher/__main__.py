@@ -12,9 +12,9 @@ from contextlib import ExitStack, closing
 
 from dispatcher.duties import duties_of
 from dispatcher.loop import Dispatch
-from jobkit.database import Database
+from jobkit.database.leadership import DISPATCHER, Leadership
+from jobkit.database.session import Database
 from jobkit.errors import SettingsError
-from jobkit.leadership import DISPATCHER, Leadership
 from jobkit.logs import set_up_logs
 from jobkit.privacy import hide_memory
 from jobkit.queue import TaskQueue

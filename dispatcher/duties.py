@@ -5,8 +5,8 @@ from dispatcher.loop import Duty
 from dispatcher.retention import Sweeper, remove_expired
 from dispatcher.scrubbing import Scrubbing
 from dispatcher.webhooks import deliver_webhooks, forget_old_deliveries
-from jobkit.database import Database
-from jobkit.leadership import Leadership
+from jobkit.database.leadership import Leadership
+from jobkit.database.session import Database
 from jobkit.overdue import TimeLimits
 from jobkit.queue import TaskQueue
 from jobkit.reconcile import reconcile

@@ -9,8 +9,8 @@ import threading
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+from jobkit.database.leadership import Leadership
 from jobkit.errors import JobkitError
-from jobkit.leadership import Leadership
 
 _log = logging.getLogger("quadpatch.dispatcher")
 

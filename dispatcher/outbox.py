@@ -17,11 +17,11 @@ from sqlalchemy.orm import Session
 
 from dispatcher.backoff import next_delay_s
 from dispatcher.sending import Answer, Outgoing
-from jobkit.clock import shared_now
-from jobkit.database import Database
+from jobkit.database.clock import shared_now
+from jobkit.database.session import Database
+from jobkit.database.tables import DeliveryRow, DeliveryTryRow, WebhookRow
 from jobkit.deliveries import message_id
 from jobkit.schema import DeliveryState
-from jobkit.tables import DeliveryRow, DeliveryTryRow, WebhookRow
 from jobkit.webhooks import give_up_pending
 
 MAX_PER_WEBHOOK = 4

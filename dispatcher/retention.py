@@ -2,9 +2,9 @@
 
 from collections.abc import Callable
 
-from jobkit.clock import shared_now
-from jobkit.database import Database
-from jobkit.idempotency import forget_keys
+from jobkit.database.clock import shared_now
+from jobkit.database.idempotency import forget_keys
+from jobkit.database.session import Database
 from jobkit.missing import Missing, MissingObjects
 from jobkit.retention import expire_jobs, expire_meshes
 from jobkit.settings import Settings

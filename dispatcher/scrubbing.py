@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from jobkit.database import Database
+from jobkit.database.session import Database
 from jobkit.scrub import Scrub, ScrubLimits
 from jobkit.settings import Settings
 from jobkit.store import ObjectStore

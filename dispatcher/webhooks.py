@@ -15,8 +15,8 @@ from datetime import timedelta
 
 from dispatcher.outbox import Claim, claim_due, is_anything_due, note_answer
 from dispatcher.sending import Answer, Sender
-from jobkit.clock import utc_now
-from jobkit.database import Database
+from jobkit.database.clock import utc_now
+from jobkit.database.session import Database
 from jobkit.deliveries import Deliveries
 from jobkit.settings import Settings
 

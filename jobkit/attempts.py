@@ -10,8 +10,10 @@ from typing import Any
 
 from sqlalchemy import func, or_, select, update
 
-from jobkit.clock import shared_now, utc_now
-from jobkit.database import Database
+from jobkit.database.clock import shared_now, utc_now
+from jobkit.database.job_rows import existing_job, to_job
+from jobkit.database.session import Database
+from jobkit.database.tables import AttemptRow, JobRow
 from jobkit.endings import (
     Attempt,
     Ending,
@@ -26,10 +28,8 @@ from jobkit.endings import (
 )
 from jobkit.errors import StaleAttemptError
 from jobkit.events import append_event
-from jobkit.job_rows import existing_job, to_job
 from jobkit.schema import Job, JobError, JobResult, JobState
 from jobkit.stages import StageSeconds, add_stages
-from jobkit.tables import AttemptRow, JobRow
 from jobkit.transitions import Move, make_move, update_job
 
 AT_WORK = (JobState.RUNNING.value, JobState.CANCELING.value)

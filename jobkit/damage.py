@@ -6,9 +6,9 @@ from datetime import datetime
 from sqlalchemy import delete
 from sqlalchemy.orm import Session
 
-from jobkit.database import Database
+from jobkit.database.session import Database
+from jobkit.database.tables import DamagedRow
 from jobkit.errors import ObjectDamagedError
-from jobkit.tables import DamagedRow
 
 OBJECT_KINDS = ("mesh", "model", "result")
 

@@ -7,12 +7,13 @@ from typing import Any
 from sqlalchemy import CursorResult, delete, select
 from sqlalchemy.orm import Session
 
-from jobkit.clock import utc_now
-from jobkit.database import Database
+from jobkit.database.clock import utc_now
+from jobkit.database.idempotency import Idempotency, once
+from jobkit.database.readable_rows import readable
+from jobkit.database.session import Database
+from jobkit.database.tables import DeliveryRow, DeliveryTryRow, WebhookRow
 from jobkit.errors import DeliveryNotFoundError, DeliveryPendingError, WebhookDisabledError
-from jobkit.idempotency import Idempotency, once
 from jobkit.outbox import new_delivery
-from jobkit.readable import readable
 from jobkit.schema import (
     Delivery,
     DeliveryDetail,
@@ -22,7 +23,6 @@ from jobkit.schema import (
     DeliveryTry,
     Message,
 )
-from jobkit.tables import DeliveryRow, DeliveryTryRow, WebhookRow
 from jobkit.webhooks import existing_webhook
 
 

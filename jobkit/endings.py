@@ -7,10 +7,10 @@ from typing import Any
 from sqlalchemy import update
 from sqlalchemy.orm import Session
 
+from jobkit.database.counters import count_attempt
+from jobkit.database.tables import AttemptRow, JobRow
 from jobkit.errors import StaleAttemptError
 from jobkit.schema import EventType, JobError, JobResult, JobState
-from jobkit.tables import AttemptRow, JobRow
-from jobkit.tallies import count_attempt
 from jobkit.transitions import Move, make_move
 
 

@@ -20,10 +20,10 @@ from typing import Any
 from sqlalchemy import Row, Select, select
 from sqlalchemy.orm import Session
 
-from jobkit.clock import shared_now
-from jobkit.database import Database
+from jobkit.database.clock import shared_now
+from jobkit.database.session import Database
+from jobkit.database.tables import JobRow, MeshRow
 from jobkit.schema import Job, JobState
-from jobkit.tables import JobRow, MeshRow
 
 _SUCCEEDED = [state.value for state in JobState if state.has_result]
 _AT_WORK = (JobState.RUNNING.value, JobState.CANCELING.value)

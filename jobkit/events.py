@@ -10,9 +10,9 @@ from pydantic import ValidationError
 from sqlalchemy import Row, select
 from sqlalchemy.orm import Session
 
-from jobkit.readable import readable
+from jobkit.database.readable_rows import readable
+from jobkit.database.tables import EventRow, JobRow
 from jobkit.schema import Event, EventType, JobState
-from jobkit.tables import EventRow, JobRow
 
 _log = logging.getLogger("quadpatch.rows")
 

@@ -7,16 +7,16 @@ from sqlalchemy import bindparam, select
 from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
-from jobkit.clock import shared_now, utc_now
-from jobkit.database import Database
+from jobkit.database.clock import shared_now, utc_now
+from jobkit.database.idempotency import Idempotency, earlier_row, remember
+from jobkit.database.job_rows import existing_job, to_job
+from jobkit.database.readable_rows import readable
+from jobkit.database.session import Database
+from jobkit.database.tables import JobRow, MeshRow, ModelRow
 from jobkit.errors import JobFinishedError, JobNotFoundError, MeshNotFoundError, ModelNotFoundError
 from jobkit.events import append_event, read_events
-from jobkit.idempotency import Idempotency, earlier_row, remember
 from jobkit.ids import new_job_id
-from jobkit.job_rows import existing_job, to_job
-from jobkit.readable import readable
 from jobkit.schema import EventPage, Job, JobPage, JobSpec, JobState, ResolvedModel
-from jobkit.tables import JobRow, MeshRow, ModelRow
 from jobkit.transitions import Move, make_move
 
 

@@ -11,13 +11,13 @@ from sqlalchemy import exists, select, update
 from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
-from jobkit.clock import shared_now, utc_now
-from jobkit.database import Database
+from jobkit.database.clock import shared_now, utc_now
+from jobkit.database.expiry import expiry
+from jobkit.database.session import Database
+from jobkit.database.tables import JobRow, MeshRow
 from jobkit.errors import MeshNotFoundError, StaleAttemptError
-from jobkit.expiry import expiry
 from jobkit.schema import Format, Mesh, MeshFacts, MeshLinks, MeshProblem, MeshState
 from jobkit.store import StoredObject
-from jobkit.tables import JobRow, MeshRow
 
 # Code of the problem of a mesh whose bytes are gone from the store.
 MESH_MISSING = "mesh_missing"

@@ -12,13 +12,13 @@ from typing import Any
 
 from sqlalchemy import select, update
 
-from jobkit.clock import utc_now
-from jobkit.database import Database
+from jobkit.database.clock import utc_now
+from jobkit.database.session import Database
+from jobkit.database.tables import JobRow, MeshRow, ModelRow
 from jobkit.errors import ObjectNotFoundError
 from jobkit.meshes import MESH_MISSING, is_missing, restart
 from jobkit.schema import JobState, MeshProblem, MeshState
 from jobkit.store import ObjectStore, result_key
-from jobkit.tables import JobRow, MeshRow, ModelRow
 
 # Rows of one kind in one look: a request each to a remote store.
 MOST = 1000

@@ -8,14 +8,14 @@ from sqlalchemy import select
 from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
-from jobkit.clock import utc_now
-from jobkit.database import Database
+from jobkit.database.clock import utc_now
+from jobkit.database.session import Database
+from jobkit.database.tables import AliasRow, DeletedModelRow, JobRow, ModelRow
 from jobkit.errors import ModelNotFoundError
 from jobkit.model_errors import AliasInUseError, ModelInUseError
 from jobkit.model_rows import to_version, version_row
 from jobkit.registry import DEFAULT_KINDS
 from jobkit.schema import JobState, ModelVersion
-from jobkit.tables import AliasRow, DeletedModelRow, JobRow, ModelRow
 
 _OPEN_STATES = tuple(state.value for state in JobState if not state.is_terminal)
 

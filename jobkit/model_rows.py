@@ -3,11 +3,11 @@
 from sqlalchemy import case, select
 from sqlalchemy.orm import Session
 
+from jobkit.database.readable_rows import readable
+from jobkit.database.tables import AliasRow, ModelRow
 from jobkit.errors import ModelNotFoundError
 from jobkit.model_errors import ModelNotProvenError, ModelRefusedError
-from jobkit.readable import readable
 from jobkit.schema import Alias, Deprecation, Model, ModelLinks, ModelState, ModelVersion
-from jobkit.tables import AliasRow, ModelRow
 
 # What clients get of a row as it stands there.
 _PLAIN = ModelVersion.model_fields.keys() - {"aliases", "links", "deprecated"}

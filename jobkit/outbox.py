@@ -10,12 +10,12 @@ from types import MappingProxyType
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from jobkit.clock import shared_now
+from jobkit.database.clock import shared_now
+from jobkit.database.job_rows import existing_job, to_job
+from jobkit.database.readable_rows import readable
+from jobkit.database.tables import DeliveryRow, WebhookRow
 from jobkit.ids import new_message_id
-from jobkit.job_rows import existing_job, to_job
-from jobkit.readable import readable
 from jobkit.schema import DeliveryState, EventType, Job, Message, WebhookEvent
-from jobkit.tables import DeliveryRow, WebhookRow
 
 EVENTS: Mapping[EventType, WebhookEvent] = MappingProxyType(
     {

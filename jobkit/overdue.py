@@ -12,12 +12,12 @@ from sqlalchemy import ColumnElement, select
 from sqlalchemy.orm import Session
 
 from jobkit.attempts import AT_WORK
-from jobkit.database import Database
+from jobkit.database.job_rows import existing_job
+from jobkit.database.session import Database
+from jobkit.database.tables import AttemptRow, JobRow
 from jobkit.endings import Attempt, Ending, another_try, cancel_attempt, counts_out, end_attempt, failure
 from jobkit.errors import JobNotFoundError, StaleAttemptError
-from jobkit.job_rows import existing_job
 from jobkit.schema import JobError, JobState
-from jobkit.tables import AttemptRow, JobRow
 from jobkit.transitions import Move, make_move
 
 # A worker that lives acknowledges a cancel within a second; after this long nobody waits for a dead one.

@@ -10,12 +10,12 @@ from datetime import datetime, timedelta
 from sqlalchemy import select, update
 from sqlalchemy.orm import Session
 
-from jobkit.clock import shared_now
-from jobkit.database import Database
+from jobkit.database.clock import shared_now
+from jobkit.database.session import Database
+from jobkit.database.tables import ModelRow
 from jobkit.errors import StaleAttemptError
 from jobkit.model_rows import to_version, version_row
 from jobkit.schema import ModelProblem, ModelState, ModelVersion
-from jobkit.tables import ModelRow
 
 # Proofs before a version is refused.
 MAX_PROOFS = 3

@@ -9,14 +9,14 @@ from datetime import datetime, timedelta
 
 from sqlalchemy import exists, or_, select, update
 
-from jobkit.clock import shared_now
-from jobkit.database import Database
+from jobkit.database.clock import shared_now
+from jobkit.database.session import Database
+from jobkit.database.tables import JobRow, MeshRow, ModelRow
 from jobkit.meshes import MAX_ANALYSES
 from jobkit.overdue import TimeLimits, end_overdue
 from jobkit.proofs import give_up_proofs, parts_of, reference_of
 from jobkit.queue import TaskQueue, job_entry, mesh_entry, model_entry
 from jobkit.schema import JobState, MeshProblem, MeshState, ModelState
-from jobkit.tables import JobRow, MeshRow, ModelRow
 
 # Of jobs that something may still have to be done about.
 _OPEN_STATES = tuple(state.value for state in JobState if not state.is_terminal)

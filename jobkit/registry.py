@@ -14,18 +14,18 @@ from sqlalchemy import func, select
 from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
-from jobkit.clock import utc_now
-from jobkit.database import Database
+from jobkit.database.clock import utc_now
+from jobkit.database.readable_rows import readable
+from jobkit.database.session import Database
+from jobkit.database.tables import AliasRow, DeletedModelRow, ModelRow
 from jobkit.errors import ModelKindError, NameTakenError
 from jobkit.model_errors import ModelDeprecatedError
 from jobkit.model_header import Card, artifact_format, read_dictionary_card, to_wire_card
 from jobkit.model_rows import check_proven, meant_row, to_alias, to_model, to_version, version_row
 from jobkit.network_header import check_network, read_network_card
-from jobkit.readable import readable
 from jobkit.removals import assure
 from jobkit.schema import SELF, Alias, Model, ModelKind, ModelList, ModelState, ModelVersion
 from jobkit.store import CHUNK_BYTES, ObjectStore, StoredObject
-from jobkit.tables import AliasRow, DeletedModelRow, ModelRow
 
 MODEL_PREFIX = "models"
 # Of one name, published at the same moment.

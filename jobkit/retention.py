@@ -14,8 +14,9 @@ from sqlalchemy import CursorResult, Select, delete, exists, func, select, updat
 from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
-from jobkit.clock import utc_now
-from jobkit.database import Database
+from jobkit.database.clock import utc_now
+from jobkit.database.session import Database
+from jobkit.database.tables import AttemptRow, EventRow, IdempotencyRow, JobRow, MeshRow
 from jobkit.errors import (
     JobNotFinishedError,
     JobNotFoundError,
@@ -25,7 +26,6 @@ from jobkit.errors import (
 )
 from jobkit.schema import JobState
 from jobkit.store import ObjectStore
-from jobkit.tables import AttemptRow, EventRow, IdempotencyRow, JobRow, MeshRow
 
 # Of one transaction: long enough to be quick, short enough to hold up nobody.
 BATCH = 50

@@ -18,16 +18,16 @@ from enum import Enum
 from sqlalchemy import select, update
 from sqlalchemy.orm import Session
 
-from jobkit.clock import shared_now
 from jobkit.damage import NamedObject, forget_damaged, note_damaged
-from jobkit.database import Database
+from jobkit.database.clock import shared_now
+from jobkit.database.counters import add_up
+from jobkit.database.session import Database
+from jobkit.database.tables import MeshRow, ScrubRow
 from jobkit.errors import ObjectNotFoundError, StoreUnavailableError
 from jobkit.meshes import MESH_DAMAGED, is_damaged, restart
 from jobkit.schema import MeshProblem, MeshState
 from jobkit.scrub_due import Due, due_objects
 from jobkit.store import ObjectStore
-from jobkit.tables import MeshRow, ScrubRow
-from jobkit.tallies import add_up
 
 # Of one round; the next one comes as long after it.
 ROUND_S = 60.0

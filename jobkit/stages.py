@@ -5,8 +5,8 @@ from dataclasses import dataclass, field
 
 from sqlalchemy.orm import Session
 
-from jobkit.tables import StageRow
-from jobkit.tallies import add_up
+from jobkit.database.counters import add_up
+from jobkit.database.tables import StageRow
 
 
 @dataclass(frozen=True)

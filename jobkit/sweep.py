@@ -19,12 +19,12 @@ from itertools import islice
 
 from sqlalchemy import func, select
 
-from jobkit.database import Database
+from jobkit.database.session import Database
+from jobkit.database.tables import JobRow, MeshRow, ModelRow
 from jobkit.errors import ObjectNotFoundError
 from jobkit.removals import START_S, claim, let_go, named_keys
 from jobkit.schema import JobState
 from jobkit.store import ListedObject, ObjectStore, result_key
-from jobkit.tables import JobRow, MeshRow, ModelRow
 
 GRACE = timedelta(hours=24)
 CONTENT_PREFIXES = ("meshes", "models")

@@ -8,10 +8,10 @@ from typing import Any
 from sqlalchemy import ColumnElement, CursorResult, update
 from sqlalchemy.orm import Session
 
+from jobkit.database.tables import JobRow
 from jobkit.events import append_event
 from jobkit.outbox import write_messages
 from jobkit.schema import TRANSITIONS, EventType, JobState
-from jobkit.tables import JobRow
 
 
 @dataclass(frozen=True)

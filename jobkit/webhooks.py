@@ -9,12 +9,13 @@ from typing import Any
 from sqlalchemy import delete, func, select, update
 from sqlalchemy.orm import Session
 
-from jobkit.clock import utc_now
-from jobkit.database import Database
+from jobkit.database.clock import utc_now
+from jobkit.database.idempotency import Idempotency, forget_made, is_repeated, once
+from jobkit.database.readable_rows import readable
+from jobkit.database.session import Database
+from jobkit.database.tables import DeliveryRow, WebhookRow
 from jobkit.errors import TooManyWebhooksError, WebhookNotFoundError
-from jobkit.idempotency import Idempotency, forget_made, is_repeated, once
 from jobkit.ids import new_webhook_id
-from jobkit.readable import readable
 from jobkit.schema import (
     DeliveryState,
     NewWebhook,
@@ -24,7 +25,6 @@ from jobkit.schema import (
     WebhookList,
     WebhookWithSecret,
 )
-from jobkit.tables import DeliveryRow, WebhookRow
 
 MAX_WEBHOOKS = 100
 # Receivers that know one of the two secrets verify every message while they change over.

@@ -8,12 +8,10 @@ from sqlalchemy import ColumnElement, func, or_, select
 from sqlalchemy.orm import InstrumentedAttribute, Session
 
 from jobkit.attempts import AT_WORK
-from jobkit.clock import shared_now
 from jobkit.damage import OBJECT_KINDS
-from jobkit.database import Database
-from jobkit.schema import DeliveryState, JobState, MeshState, ModelState
-from jobkit.scrub_due import oldest_look
-from jobkit.tables import (
+from jobkit.database.clock import shared_now
+from jobkit.database.session import Database
+from jobkit.database.tables import (
     AliasRow,
     AttemptCountRow,
     DamagedRow,
@@ -24,6 +22,8 @@ from jobkit.tables import (
     ScrubRow,
     StageRow,
 )
+from jobkit.schema import DeliveryState, JobState, MeshState, ModelState
+from jobkit.scrub_due import oldest_look
 
 # They show from the start with a 0: a rate does not see what comes into being as a 1.
 _EXPECTED_OUTCOMES = (

@@ -4,7 +4,7 @@ import hashlib
 
 from starlette.responses import Response
 
-from jobkit.idempotency import Idempotency
+from jobkit.database.idempotency import Idempotency
 
 
 def idempotency_of(principal: str, key: str | None, *request: str) -> Idempotency | None:

@@ -16,9 +16,9 @@ from prometheus_client import CollectorRegistry, ProcessCollector
 from prometheus_client.core import GaugeMetricFamily, Metric
 from prometheus_client.registry import Collector
 
-from jobkit.database import Database
+from jobkit.database.leadership import DISPATCHER, current_leader
+from jobkit.database.session import Database
 from jobkit.errors import DatabaseUnavailableError, QueueUnavailableError
-from jobkit.leadership import DISPATCHER, current_leader
 from jobkit.queue import TaskQueue
 from jobkit.settings import Settings
 from service.figures import database_figures

@@ -10,8 +10,8 @@ from typing import Literal
 
 from pydantic import BaseModel, Field
 
+from jobkit.database.leadership import DISPATCHER, current_leader
 from jobkit.errors import JobkitError, QueueUnavailableError
-from jobkit.leadership import DISPATCHER, current_leader
 from jobkit.schema import FieldError
 from service.services import Services
 

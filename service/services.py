@@ -9,7 +9,7 @@ from fastapi import Depends, Request
 
 from jobkit.addresses import check_url
 from jobkit.attempts import Attempts
-from jobkit.database import Database
+from jobkit.database.session import Database
 from jobkit.deliveries import Deliveries
 from jobkit.estimates import Estimates
 from jobkit.jobs import Jobs

@@ -18,7 +18,7 @@ from fastapi.sse import KEEPALIVE_COMMENT, EventSourceResponse, format_sse_event
 from sqlalchemy.exc import SQLAlchemyError
 from starlette.types import Receive, Scope, Send
 
-from jobkit.database import Database
+from jobkit.database.session import Database
 from jobkit.errors import DatabaseUnavailableError
 from jobkit.events import News, read_news
 from jobkit.schema import Event

@@ -3,6 +3,7 @@
 import logging
 from dataclasses import dataclass
 
+from jobkit.database.idempotency import Idempotency
 from jobkit.errors import (
     MeshNotReadyError,
     MeshRejectedError,
@@ -10,7 +11,6 @@ from jobkit.errors import (
     OverLimitError,
     QueueUnavailableError,
 )
-from jobkit.idempotency import Idempotency
 from jobkit.jobs import NewJob
 from jobkit.logs import current_request_id
 from jobkit.reconcile import submit_analysis, submit_job, submit_proof

@@ -21,7 +21,7 @@ import numpy as np
 import pytest
 from pydantic import SecretStr
 
-from jobkit.database import Database
+from jobkit.database.session import Database
 from jobkit.settings import Settings
 from jobkit.store import ObjectStore, open_store
 from onebox.valkey import running_valkey

@@ -20,7 +20,7 @@ import psycopg
 from moto.server import ThreadedMotoServer
 from psycopg.sql import SQL, Composable, Identifier
 
-from jobkit.database import Database
+from jobkit.database.session import Database
 from tests.waiting import GUARD_S, wait_until
 from worker.leash import leash
 

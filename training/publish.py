@@ -3,7 +3,7 @@
 import re
 from pathlib import Path
 
-from jobkit.database import Database
+from jobkit.database.session import Database
 from jobkit.ids import MODEL_NAME
 from jobkit.registry import Registry
 from jobkit.schema import ModelVersion

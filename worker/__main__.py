@@ -10,7 +10,7 @@ import os
 import sys
 from contextlib import ExitStack, closing
 
-from jobkit.database import Database
+from jobkit.database.session import Database
 from jobkit.errors import SettingsError
 from jobkit.logs import log_about, set_up_logs
 from jobkit.privacy import hide_memory

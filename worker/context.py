@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from jobkit.attempts import Attempts
-from jobkit.database import Database
+from jobkit.database.session import Database
 from jobkit.jobs import Jobs
 from jobkit.meshes import Meshes
 from jobkit.proofs import Proofs

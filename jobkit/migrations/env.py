@@ -1,8 +1,8 @@
-"""Runs migrations on the connection that jobkit.database hands over."""
+"""Runs migrations on the connection that jobkit.database.session hands over."""
 
 from alembic import context
 
-from jobkit.tables import MeshRow
+from jobkit.database.tables import MeshRow
 
 connection = context.config.attributes["connection"]
 context.configure(connection=connection, target_metadata=MeshRow.metadata, render_as_batch=True)

@@ -10,7 +10,7 @@ from fastapi import Depends, Header, Path, Request
 from pydantic import BaseModel
 from starlette.responses import Response
 
-from jobkit.idempotency import Idempotency
+from jobkit.database.idempotency import Idempotency
 from jobkit.ids import JOB_ID_PATTERN, SHA256_PATTERN, WEBHOOK_ID_PATTERN
 from jobkit.schema import Job, Problem
 from jobkit.schema.base import EXAMPLE_JOB_ID, EXAMPLE_SHA256, NAME_PATTERN

@@ -7,7 +7,7 @@ from fastapi import APIRouter, Header, Query, Request
 from starlette.concurrency import run_in_threadpool
 from starlette.responses import Response
 
-from jobkit.idempotency import note_request, refuse_conflict
+from jobkit.database.idempotency import note_request, refuse_conflict
 from jobkit.removals import assure
 from jobkit.schema import Format, Mesh, MeshState
 from service.content import Content, content_response

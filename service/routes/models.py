@@ -7,7 +7,7 @@ from fastapi import APIRouter, Query, Request
 from starlette.concurrency import run_in_threadpool
 from starlette.responses import Response
 
-from jobkit.idempotency import note_request, refuse_conflict
+from jobkit.database.idempotency import note_request, refuse_conflict
 from jobkit.model_header import Card
 from jobkit.proofs import reference_of
 from jobkit.registry import MODEL_PREFIX, MOST_VERSIONS

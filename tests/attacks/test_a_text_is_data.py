@@ -14,7 +14,7 @@ from sqlalchemy import text
 from starlette.testclient import TestClient
 
 from dispatcher.webhooks import deliver_webhooks
-from jobkit.database import Database, read_json_column, write_json
+from jobkit.database.session import Database, read_json_column, write_json
 from jobkit.deliveries import Deliveries
 from jobkit.errors import JobkitError
 from jobkit.logs import JsonFormatter, TextFormatter

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from starlette.testclient import TestClient
 
-from jobkit.database import Database
+from jobkit.database.session import Database
 from jobkit.digests import verified_chunks
 from jobkit.errors import ObjectDamagedError
 from jobkit.jobs import Jobs, NewJob

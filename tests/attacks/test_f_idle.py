@@ -11,7 +11,7 @@ from sqlalchemy import event
 from sqlalchemy.engine import Engine
 
 from dispatcher.webhooks import deliver_webhooks
-from jobkit.database import Database
+from jobkit.database.session import Database
 from jobkit.jobs import Jobs, NewJob
 from jobkit.meshes import Meshes
 from jobkit.overdue import TimeLimits

@@ -11,7 +11,7 @@ from onnx import TensorProto, helper
 from sqlalchemy import text
 from starlette.testclient import TestClient
 
-from jobkit.database import Database
+from jobkit.database.session import Database
 from jobkit.errors import ModelKindError, UnusableModelError
 from jobkit.jobs import Jobs, NewJob
 from jobkit.meshes import Meshes

@@ -10,9 +10,9 @@ import yaml
 from sqlalchemy import func, select
 from starlette.testclient import TestClient
 
-from jobkit.clock import utc_now
-from jobkit.idempotency import KEPT, Idempotency, forget_keys, note_request
-from jobkit.tables import DeliveryRow, IdempotencyRow, JobRow, WebhookRow
+from jobkit.database.clock import utc_now
+from jobkit.database.idempotency import KEPT, Idempotency, forget_keys, note_request
+from jobkit.database.tables import DeliveryRow, IdempotencyRow, JobRow, WebhookRow
 from service.services import Services
 
 DOCUMENT = yaml.safe_load((Path(__file__).resolve().parents[2] / "openapi.yaml").read_text("utf-8"))

@@ -7,7 +7,7 @@ import pytest
 
 from jobkit.addresses import check_url, parse_networks
 from jobkit.attempts import Attempts
-from jobkit.database import Database
+from jobkit.database.session import Database
 from jobkit.deliveries import Deliveries
 from jobkit.jobs import Jobs, NewJob
 from jobkit.meshes import Meshes

@@ -3,9 +3,9 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from dispatcher.loop import Dispatch, Duty
-from jobkit.database import Database
+from jobkit.database.leadership import Leadership, current_leader
+from jobkit.database.session import Database
 from jobkit.errors import QueueUnavailableError
-from jobkit.leadership import Leadership, current_leader
 from tests.waiting import GUARD_S
 
 NAME = "dispatcher"

@@ -6,11 +6,11 @@ from sqlalchemy import update
 from dispatcher.backoff import DELAYS_S, JITTER
 from dispatcher.outbox import MAX_PER_WEBHOOK, PATIENCE, Claim, claim_due, is_anything_due, note_answer
 from dispatcher.sending import Answer
-from jobkit.clock import utc_now
-from jobkit.database import Database
+from jobkit.database.clock import utc_now
+from jobkit.database.session import Database
+from jobkit.database.tables import DeliveryRow, WebhookRow
 from jobkit.deliveries import Deliveries
 from jobkit.schema import DeliveryState
-from jobkit.tables import DeliveryRow, WebhookRow
 from jobkit.webhooks import Webhooks
 from tests.dispatcher.conftest import Subscribe
 

@@ -4,9 +4,9 @@ from datetime import timedelta
 
 from dispatcher.duties import duties_of
 from dispatcher.retention import Sweeper, remove_expired
-from jobkit.database import Database
+from jobkit.database.leadership import Leadership
+from jobkit.database.session import Database
 from jobkit.jobs import Jobs
-from jobkit.leadership import Leadership
 from jobkit.meshes import Meshes
 from jobkit.queue import TaskQueue
 from jobkit.retention import pin_mesh

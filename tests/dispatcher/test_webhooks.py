@@ -16,14 +16,14 @@ from standardwebhooks import Webhook, WebhookVerificationError
 
 from dispatcher.outbox import MAX_PER_WEBHOOK, claim_due
 from dispatcher.webhooks import deliver_webhooks, forget_old_deliveries
-from jobkit.clock import utc_now
-from jobkit.database import Database
+from jobkit.database.clock import utc_now
+from jobkit.database.session import Database
+from jobkit.database.tables import DeliveryRow
 from jobkit.deliveries import Deliveries
 from jobkit.jobs import Jobs
 from jobkit.outbox import UNTOLD
 from jobkit.schema import DeliveryState
 from jobkit.settings import Settings
-from jobkit.tables import DeliveryRow
 from jobkit.webhooks import Webhooks
 from tests.dispatcher.conftest import FailJob, Subscribe
 from tests.dispatcher.receivers import receiving

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import psutil
 
-from jobkit.database import Database
+from jobkit.database.session import Database
 from jobkit.errors import DatabaseUnavailableError
 from tests.faults.backends import Backend, BackendName, open_backend
 from tests.faults.cluster import APIS, WORKERS, Cluster, Setup

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 import psutil
 
-from jobkit.clock import utc_now
-from jobkit.database import Database
+from jobkit.database.clock import utc_now
+from jobkit.database.session import Database
 from jobkit.errors import JobkitError
 from tests.faults.backends import Backend
 from tests.faults.cluster import APIS, DISPATCHERS, VALKEY, WORKERS, Cluster

@@ -9,11 +9,11 @@ from pathlib import Path
 import psutil
 from sqlalchemy import select
 
-from jobkit.database import Database
+from jobkit.database.session import Database
+from jobkit.database.tables import AttemptRow, EventRow, JobRow
 from jobkit.errors import ObjectNotFoundError
 from jobkit.schema import JobResult, JobState
 from jobkit.store import ObjectStore, result_key
-from jobkit.tables import AttemptRow, EventRow, JobRow
 from tests.faults.load import Book
 from tests.faults.strikes import Strike
 

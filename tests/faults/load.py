@@ -14,7 +14,7 @@ from typing import Any, Literal
 import httpx
 import numpy as np
 
-from jobkit.clock import utc_now
+from jobkit.database.clock import utc_now
 from jobkit.schema import JobState
 from tests.faults.cluster import API_KEY
 from tests.integration.conftest import ply_bytes

@@ -6,9 +6,9 @@ from datetime import datetime
 
 from sqlalchemy import select
 
-from jobkit.database import Database
+from jobkit.database.session import Database
+from jobkit.database.tables import JobRow, LeaderRow
 from jobkit.schema import JobState
-from jobkit.tables import JobRow, LeaderRow
 from tests.faults.cluster import WORKERS, Cluster
 
 

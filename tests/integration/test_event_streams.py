@@ -11,7 +11,7 @@ import httpx
 import pytest
 
 from jobkit.attempts import Attempts
-from jobkit.database import Database
+from jobkit.database.session import Database
 from jobkit.jobs import Jobs
 from jobkit.schema import JobResult
 from tests.service.sse import SentEvent, sent_events

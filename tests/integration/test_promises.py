@@ -12,12 +12,12 @@ from rq import Queue
 from rq.serializers import JSONSerializer
 from sqlalchemy import update
 
-from jobkit.clock import utc_now
-from jobkit.database import Database
+from jobkit.database.clock import utc_now
+from jobkit.database.session import Database
+from jobkit.database.tables import JobRow
 from jobkit.queue import TaskQueue, job_entry
 from jobkit.reconcile import GRACE_S
 from jobkit.settings import Settings
-from jobkit.tables import JobRow
 from tests.dispatcher.process import dispatching
 from tests.waiting import GUARD_S, wait_until
 

@@ -8,10 +8,10 @@ import pytest
 from sqlalchemy import update
 from standardwebhooks import Webhook
 
-from jobkit.clock import utc_now
-from jobkit.database import Database
+from jobkit.database.clock import utc_now
+from jobkit.database.session import Database
+from jobkit.database.tables import DeliveryRow
 from jobkit.settings import Settings
-from jobkit.tables import DeliveryRow
 from tests.dispatcher.process import dispatching
 from tests.dispatcher.receivers import LOOPBACK, receiving
 from tests.waiting import GUARD_S, wait_until

@@ -10,14 +10,8 @@ from pathlib import Path
 from sqlalchemy import delete, select, update
 
 from jobkit.attempts import Attempts
-from jobkit.database import Database
-from jobkit.jobs import Jobs, NewJob
-from jobkit.meshes import Meshes
-from jobkit.removals import assure
-from jobkit.schema import Job, JobError, JobResult, JobSpec, Mesh, ResolvedModel, ResultFile
-from jobkit.store import ListedObject, ObjectStore, ObjectWriter, StoredObject, result_key
-from jobkit.sweep import CONTENT_PREFIXES, RESULT_PREFIX
-from jobkit.tables import (
+from jobkit.database.session import Database
+from jobkit.database.tables import (
     AttemptRow,
     DamagedRow,
     EventRow,
@@ -27,6 +21,12 @@ from jobkit.tables import (
     ModelRow,
     RemovalRow,
 )
+from jobkit.jobs import Jobs, NewJob
+from jobkit.meshes import Meshes
+from jobkit.removals import assure
+from jobkit.schema import Job, JobError, JobResult, JobSpec, Mesh, ResolvedModel, ResultFile
+from jobkit.store import ListedObject, ObjectStore, ObjectWriter, StoredObject, result_key
+from jobkit.sweep import CONTENT_PREFIXES, RESULT_PREFIX
 
 DAY = timedelta(days=1)
 

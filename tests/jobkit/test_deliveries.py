@@ -2,12 +2,12 @@ from datetime import timedelta
 
 import pytest
 
-from jobkit.clock import utc_now
-from jobkit.database import Database
+from jobkit.database.clock import utc_now
+from jobkit.database.session import Database
+from jobkit.database.tables import DeliveryRow, DeliveryTryRow
 from jobkit.deliveries import Deliveries
 from jobkit.errors import DeliveryNotFoundError, DeliveryPendingError
 from jobkit.schema import DeliveryState, NewWebhook
-from jobkit.tables import DeliveryRow, DeliveryTryRow
 from jobkit.webhooks import Webhooks
 
 

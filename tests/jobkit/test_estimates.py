@@ -7,12 +7,12 @@ from hypothesis import strategies as st
 from sqlalchemy import update
 
 from jobkit.attempts import Attempts
-from jobkit.clock import utc_now
-from jobkit.database import Database
+from jobkit.database.clock import utc_now
+from jobkit.database.session import Database
+from jobkit.database.tables import JobRow, MeshRow
 from jobkit.estimates import MIN_PAST, Estimates, PastJob, Speeds, left_at_work, left_in_queue
 from jobkit.jobs import Jobs, NewJob
 from jobkit.schema import Job, JobError, JobResult, JobState
-from jobkit.tables import JobRow, MeshRow
 
 MIB = 1 << 20
 seconds = st.floats(0.1, 1e4)

@@ -4,9 +4,9 @@ from dataclasses import replace
 import pytest
 
 from jobkit.attempts import Attempts
-from jobkit.database import Database
+from jobkit.database.idempotency import Idempotency
+from jobkit.database.session import Database
 from jobkit.errors import IdempotencyError, JobFinishedError, JobNotFoundError, MeshNotFoundError
-from jobkit.idempotency import Idempotency
 from jobkit.jobs import Jobs, NewJob
 from jobkit.meshes import Meshes
 from jobkit.schema import Job, JobResult, JobSpec, JobState, ResolvedModel

@@ -2,7 +2,7 @@ from collections.abc import Callable
 
 import pytest
 
-from jobkit.database import Database
+from jobkit.database.session import Database
 from jobkit.errors import MeshNotFoundError, StaleAttemptError
 from jobkit.meshes import Meshes
 from jobkit.schema import BoundingBox, Mesh, MeshFacts, MeshProblem, MeshState

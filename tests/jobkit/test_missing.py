@@ -2,7 +2,7 @@ from collections.abc import Callable
 
 import pytest
 
-from jobkit.database import Database
+from jobkit.database.session import Database
 from jobkit.errors import StoreUnavailableError
 from jobkit.jobs import Jobs, NewJob
 from jobkit.meshes import MESH_MISSING, Meshes

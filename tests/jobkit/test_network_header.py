@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from onnx import TensorProto, helper
 
-from jobkit.database import Database
+from jobkit.database.session import Database
 from jobkit.local_store import LocalStore
 from jobkit.network_header import read_network_card
 from jobkit.registry import Registry

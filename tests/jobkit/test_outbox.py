@@ -6,13 +6,13 @@ import pytest
 from sqlalchemy import event, select
 
 from jobkit.attempts import Attempts
-from jobkit.clock import utc_now
-from jobkit.database import Database
+from jobkit.database.clock import utc_now
+from jobkit.database.session import Database
+from jobkit.database.tables import DeliveryRow
 from jobkit.endings import end_attempt, failure
 from jobkit.jobs import Jobs, NewJob
 from jobkit.outbox import UNTOLD
 from jobkit.schema import Job, JobError, JobResult, JobState, NewWebhook
-from jobkit.tables import DeliveryRow
 from jobkit.webhooks import Webhooks
 
 ERROR = JobError(code="no_quads", message="the outline is too small")

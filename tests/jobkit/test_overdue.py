@@ -3,8 +3,8 @@ from datetime import timedelta
 import pytest
 
 from jobkit.attempts import Attempts
-from jobkit.clock import utc_now
-from jobkit.database import Database
+from jobkit.database.clock import utc_now
+from jobkit.database.session import Database
 from jobkit.errors import StaleAttemptError
 from jobkit.jobs import Jobs, NewJob
 from jobkit.overdue import CANCEL_PATIENCE_S, TimeLimits, end_overdue

@@ -9,8 +9,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from sqlalchemy import select
 
-from jobkit.clock import utc_now
-from jobkit.database import Database
+from jobkit.database.clock import utc_now
+from jobkit.database.session import Database
+from jobkit.database.tables import JobRow, MeshRow
 from jobkit.errors import ConflictError, NotFoundError, StaleAttemptError, StoreUnavailableError
 from jobkit.jobs import Jobs
 from jobkit.meshes import Meshes, is_missing
@@ -20,7 +21,6 @@ from jobkit.retention import delete_job, delete_mesh, expire_jobs, expire_meshes
 from jobkit.schema import JobState
 from jobkit.store import ObjectStore, StoredObject, result_key
 from jobkit.sweep import GRACE, sweep_objects
-from jobkit.tables import JobRow, MeshRow
 from tests.jobkit.holdings import (
     AgingStore,
     KilledError,

@@ -11,19 +11,19 @@ import pytest
 from sqlalchemy import select, update
 
 from jobkit.attempts import Attempts
-from jobkit.clock import utc_now
-from jobkit.database import Database
+from jobkit.database.clock import utc_now
+from jobkit.database.idempotency import Idempotency
+from jobkit.database.leadership import Leadership
+from jobkit.database.session import Database
+from jobkit.database.tables import AttemptRow, JobRow, LeaderRow
 from jobkit.endings import Attempt, another_try, end_attempt
 from jobkit.errors import JobFinishedError, StaleAttemptError
-from jobkit.idempotency import Idempotency
 from jobkit.jobs import Jobs, NewJob
-from jobkit.leadership import Leadership
 from jobkit.meshes import Meshes
 from jobkit.overdue import TimeLimits, end_overdue
 from jobkit.registry import Registry
 from jobkit.schema import Job, JobError, JobResult, JobState, Mesh
 from jobkit.store import ObjectStore, StoredObject
-from jobkit.tables import AttemptRow, JobRow, LeaderRow
 from tests.waiting import GUARD_S, let_others_run
 
 LIMITS = TimeLimits(queue_s=1e6, total_s=1e6, memory_mb=1000)

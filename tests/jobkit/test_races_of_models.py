@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from jobkit.database import Database
+from jobkit.database.session import Database
 from jobkit.errors import JobkitError, ModelNotFoundError, StaleAttemptError
 from jobkit.jobs import Jobs, NewJob
 from jobkit.model_errors import ModelDeprecatedError, ModelInUseError

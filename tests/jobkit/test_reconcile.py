@@ -7,8 +7,8 @@ from rq import Queue
 from rq.serializers import JSONSerializer
 
 from jobkit.attempts import Attempts
-from jobkit.clock import utc_now
-from jobkit.database import Database
+from jobkit.database.clock import utc_now
+from jobkit.database.session import Database
 from jobkit.errors import QueueUnavailableError
 from jobkit.jobs import Jobs
 from jobkit.meshes import MAX_ANALYSES, Meshes

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from jobkit.clock import utc_now
-from jobkit.database import Database
+from jobkit.database.clock import utc_now
+from jobkit.database.session import Database
 from jobkit.errors import ModelNotFoundError, NameTakenError, UnusableModelError
 from jobkit.local_store import LocalStore
 from jobkit.registry import Registry

@@ -5,8 +5,10 @@ import pytest
 from sqlalchemy import func, select
 
 from jobkit.attempts import Attempts
-from jobkit.clock import utc_now
-from jobkit.database import Database
+from jobkit.database.clock import utc_now
+from jobkit.database.idempotency import Idempotency
+from jobkit.database.session import Database
+from jobkit.database.tables import AttemptRow, EventRow, IdempotencyRow, JobRow
 from jobkit.errors import (
     JobNotFinishedError,
     JobNotFoundError,
@@ -14,13 +16,11 @@ from jobkit.errors import (
     MeshNotFoundError,
     StoreUnavailableError,
 )
-from jobkit.idempotency import Idempotency
 from jobkit.jobs import Jobs, NewJob
 from jobkit.meshes import Meshes
 from jobkit.retention import BATCH, delete_job, delete_mesh, expire_jobs, expire_meshes, pin_job, pin_mesh
 from jobkit.schema import Job, Mesh
 from jobkit.store import ObjectStore
-from jobkit.tables import AttemptRow, EventRow, IdempotencyRow, JobRow
 from tests.jobkit.holdings import DAY, AgingStore, KilledError, age_rows, fail, finish, keys_in, upload
 
 KEY = Idempotency("station", "order-17", "a" * 64)

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from jobkit.clock import utc_now
-from jobkit.database import Database
+from jobkit.database.clock import utc_now
+from jobkit.database.session import Database
 from jobkit.errors import StoreUnavailableError
 from jobkit.jobs import Jobs
 from jobkit.meshes import MESH_DAMAGED, Meshes

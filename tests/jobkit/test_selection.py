@@ -3,7 +3,7 @@ from pathlib import Path
 
 import pytest
 
-from jobkit.database import Database
+from jobkit.database.session import Database
 from jobkit.errors import ModelKindError, ModelNotFoundError, NoNetworkError
 from jobkit.registry import Registry
 from jobkit.schema import CnnMethod, DictionaryMethod, Fitting, SmoothMethod

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from jobkit.database import Database
+from jobkit.database.session import Database
 from jobkit.errors import ModelNotFoundError
 from jobkit.model_lifetime import delete_version, deprecate_version
 from jobkit.registry import MODEL_PREFIX, Registry

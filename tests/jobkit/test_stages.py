@@ -6,12 +6,12 @@ from hypothesis import strategies as st
 from sqlalchemy import delete, select
 
 from jobkit.attempts import Attempts
-from jobkit.database import Database
+from jobkit.database.session import Database
+from jobkit.database.tables import AttemptCountRow, AttemptRow, StageRow
 from jobkit.errors import StaleAttemptError
 from jobkit.jobs import Jobs
 from jobkit.schema import Job, JobError, JobResult
 from jobkit.stages import StageSeconds, add_stages
-from jobkit.tables import AttemptCountRow, AttemptRow, StageRow
 
 RESULT = JobResult(format="ply", files=[])
 LOST = JobError(code="worker_lost", message="gone", retryable=True)

@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 
 from jobkit.attempts import Attempts
-from jobkit.clock import utc_now
-from jobkit.database import Database
+from jobkit.database.clock import utc_now
+from jobkit.database.session import Database
 from jobkit.errors import StoreUnavailableError
 from jobkit.jobs import Jobs, NewJob
 from jobkit.meshes import Meshes

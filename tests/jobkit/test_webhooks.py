@@ -6,13 +6,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import ValidationError
 
-from jobkit.clock import utc_now
-from jobkit.database import Database
+from jobkit.database.clock import utc_now
+from jobkit.database.session import Database
+from jobkit.database.tables import WebhookRow
 from jobkit.deliveries import Deliveries
 from jobkit.errors import AddressRefusedError, TooManyWebhooksError, WebhookDisabledError, WebhookNotFoundError
 from jobkit.schema import NewWebhook, WebhookChange
 from jobkit.schema.webhooks import ENDINGS
-from jobkit.tables import WebhookRow
 from jobkit.webhooks import MAX_WEBHOOKS, Webhooks
 
 NEW = NewWebhook(url="https://mes.example.com/hook")

@@ -6,7 +6,7 @@ import anyio
 import pytest
 
 from jobkit.attempts import Attempts
-from jobkit.database import Database
+from jobkit.database.session import Database
 from jobkit.errors import JobNotFoundError
 from jobkit.estimates import Estimates
 from jobkit.jobs import Glance, Jobs, NewJob

@@ -11,7 +11,7 @@ import yaml
 from prometheus_client.parser import text_string_to_metric_families
 from starlette.testclient import TestClient
 
-from jobkit.leadership import DISPATCHER, Leadership
+from jobkit.database.leadership import DISPATCHER, Leadership
 from jobkit.schema import HoleCounts, JobResult, ModelVersion
 from jobkit.stages import StageSeconds
 from service.services import Services

@@ -7,7 +7,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from jobkit.attempts import Attempts
-from jobkit.database import Database
+from jobkit.database.session import Database
 from jobkit.endings import Attempt
 from jobkit.jobs import Jobs, NewJob
 from jobkit.meshes import Meshes

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from jobkit.database import Database
+from jobkit.database.session import Database
 from jobkit.registry import Registry
 from jobkit.store import open_store
 from quadpatch.errors import OptionError

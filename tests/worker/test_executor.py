@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from jobkit.database import Database
+from jobkit.database.session import Database
 from jobkit.jobs import Jobs, NewJob
 from jobkit.meshes import Meshes
 from jobkit.queue import TaskQueue

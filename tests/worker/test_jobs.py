@@ -10,7 +10,8 @@ from opentelemetry.sdk.trace.export import SimpleSpanProcessor
 from opentelemetry.sdk.trace.export.in_memory_span_exporter import InMemorySpanExporter
 from sqlalchemy import select
 
-from jobkit.database import Database
+from jobkit.database.session import Database
+from jobkit.database.tables import StageRow
 from jobkit.jobs import Jobs, NewJob
 from jobkit.logs import _add_subject
 from jobkit.meshes import Meshes
@@ -18,7 +19,6 @@ from jobkit.queue import TaskQueue
 from jobkit.schema import Job, JobSpec, JobState, ResolvedModel
 from jobkit.settings import Settings
 from jobkit.store import ObjectStore
-from jobkit.tables import StageRow
 from jobkit.telemetry import Telemetry
 from tests.integration.conftest import ply_bytes, punched_relief
 from worker.context import Context, use_context

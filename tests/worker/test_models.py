@@ -3,7 +3,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from jobkit.database import Database
+from jobkit.database.session import Database
 from jobkit.registry import Registry
 from jobkit.schema import ModelVersion, ResolvedModel
 from jobkit.store import ObjectStore

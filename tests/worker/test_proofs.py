@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from onnx import TensorProto, helper, numpy_helper
 
-from jobkit.database import Database
+from jobkit.database.session import Database
 from jobkit.errors import ModelNotFoundError, StaleAttemptError
 from jobkit.jobs import NewJob
 from jobkit.model_lifetime import delete_version, deprecate_version

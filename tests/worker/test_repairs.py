@@ -12,7 +12,8 @@ from sqlalchemy import select, update
 from sqlalchemy.orm import Session
 
 from jobkit.attempts import Attempts
-from jobkit.database import Database
+from jobkit.database.session import Database
+from jobkit.database.tables import JobRow, MeshRow
 from jobkit.errors import DatabaseUnavailableError, StaleAttemptError
 from jobkit.jobs import Jobs, NewJob
 from jobkit.meshes import MAX_ANALYSES, Meshes
@@ -20,7 +21,6 @@ from jobkit.queue import TaskQueue
 from jobkit.schema import Job, JobSpec, JobState, MeshState, ResolvedModel
 from jobkit.settings import Settings
 from jobkit.store import ObjectStore, open_store, result_key
-from jobkit.tables import JobRow, MeshRow
 from tests.integration.conftest import ply_bytes, punched_relief
 from worker.context import Context, use_context
 from worker.jobs import inspect_mesh, run_job

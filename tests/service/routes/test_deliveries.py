@@ -3,9 +3,9 @@ from typing import Any
 import pytest
 from starlette.testclient import TestClient
 
-from jobkit.clock import utc_now
+from jobkit.database.clock import utc_now
+from jobkit.database.tables import DeliveryRow
 from jobkit.ids import new_message_id
-from jobkit.tables import DeliveryRow
 from service.services import Services
 
 

@@ -7,7 +7,7 @@ from pydantic import SecretStr
 from redis import Redis
 from starlette.testclient import TestClient
 
-from jobkit.leadership import DISPATCHER, Leadership
+from jobkit.database.leadership import DISPATCHER, Leadership
 from jobkit.settings import Settings
 from onebox.valkey import running_valkey
 from service.app import create_app

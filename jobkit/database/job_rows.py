@@ -3,10 +3,10 @@
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
+from jobkit.database.expiry import expiry
+from jobkit.database.tables import JobRow
 from jobkit.errors import JobNotFoundError
-from jobkit.expiry import expiry
 from jobkit.schema import Job, JobLinks, JobState
-from jobkit.tables import JobRow
 
 
 def existing_job(session: Session, job_id: str, *, locked: bool = False) -> JobRow:

@@ -11,9 +11,9 @@ from datetime import datetime, timedelta
 from sqlalchemy import delete, select
 from sqlalchemy.exc import IntegrityError
 
-from jobkit.clock import shared_now
-from jobkit.database import Database
-from jobkit.tables import LeaderRow
+from jobkit.database.clock import shared_now
+from jobkit.database.session import Database
+from jobkit.database.tables import LeaderRow
 
 # What dispatchers lead.
 DISPATCHER = "dispatcher"

@@ -11,10 +11,10 @@ from alembic.migration import MigrationContext
 from sqlalchemy import func, inspect, select, text
 from sqlalchemy.exc import DataError, DBAPIError, IntegrityError
 
-from jobkit.database import Database
+from jobkit.database.session import Database
+from jobkit.database.table_base import Base
+from jobkit.database.tables import JobRow, MeshRow, ModelRow
 from jobkit.errors import DatabaseUnavailableError, SettingsError
-from jobkit.table_base import Base
-from jobkit.tables import JobRow, MeshRow, ModelRow
 from tests.servers import PostgresServer, fresh_database, running_postgres
 from tests.waiting import GUARD_S, let_others_run
 

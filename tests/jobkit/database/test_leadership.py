@@ -4,9 +4,9 @@ from datetime import timedelta
 
 from sqlalchemy import select
 
-from jobkit.database import Database
-from jobkit.leadership import Leadership, current_leader
-from jobkit.tables import LeaderRow
+from jobkit.database.leadership import Leadership, current_leader
+from jobkit.database.session import Database
+from jobkit.database.tables import LeaderRow
 from tests.waiting import GUARD_S, wait_until
 
 

@@ -148,7 +148,7 @@ _JSON = {"json_serializer": write_json, "json_deserializer": read_json_column}
 def migration_config() -> Config:
     """Return Alembic's configuration without a file."""
     config = Config()
-    config.set_main_option("script_location", str(Path(__file__).parent / "migrations"))
+    config.set_main_option("script_location", str(Path(__file__).parents[1] / "migrations"))
     return config
 
 

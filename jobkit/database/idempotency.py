@@ -13,10 +13,10 @@ from sqlalchemy import CursorResult, delete
 from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
-from jobkit.clock import utc_now
-from jobkit.database import Database
+from jobkit.database.clock import utc_now
+from jobkit.database.session import Database
+from jobkit.database.tables import IdempotencyRow
 from jobkit.errors import IdempotencyError
-from jobkit.tables import IdempotencyRow
 
 KEPT = timedelta(days=7)
 

@@ -7,8 +7,8 @@ from sqlalchemy import Table, inspect
 from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.orm import Session
 
-from jobkit.table_base import Base
-from jobkit.tables import AttemptCountRow
+from jobkit.database.table_base import Base
+from jobkit.database.tables import AttemptCountRow
 
 
 def count_attempt(session: Session, outcome: str, code: str | None) -> None:

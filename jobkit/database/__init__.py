@@ -1,0 +1,1 @@
+"""The database: sessions, tables, and what rows of several resources share."""
