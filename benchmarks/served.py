@@ -19,7 +19,7 @@ from jobkit.jobs import Jobs, NewJob
 from jobkit.meshes import Meshes
 from jobkit.schema import HoleCounts, JobResult, JobSpec, ResolvedModel
 from jobkit.settings import Settings
-from jobkit.store import open_store
+from jobkit.storage.open import open_store
 from onebox.box import ready_check, usable_port
 from onebox.valkey import running_valkey
 

@@ -20,7 +20,8 @@ from jobkit.privacy import hide_memory
 from jobkit.queue import TaskQueue
 from jobkit.readiness import ready_file
 from jobkit.settings import Settings, load_settings
-from jobkit.store import ObjectStore, open_store
+from jobkit.storage.base import ObjectStore
+from jobkit.storage.open import open_store
 
 _EXIT_SETTINGS = 2
 _RENEWALS_PER_LEASE = 3

@@ -12,7 +12,7 @@ from jobkit.queue import TaskQueue
 from jobkit.reconcile import reconcile
 from jobkit.scrub import ROUND_S
 from jobkit.settings import Settings
-from jobkit.store import ObjectStore
+from jobkit.storage.base import ObjectStore
 
 _HOUR_S = 3_600.0
 

@@ -8,7 +8,7 @@ from jobkit.database.session import Database
 from jobkit.missing import Missing, MissingObjects
 from jobkit.retention import expire_jobs, expire_meshes
 from jobkit.settings import Settings
-from jobkit.store import ObjectStore
+from jobkit.storage.base import ObjectStore
 from jobkit.sweep import Swept, sweep_objects
 
 

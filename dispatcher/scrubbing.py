@@ -5,7 +5,7 @@ from collections.abc import Callable
 from jobkit.database.session import Database
 from jobkit.scrub import Scrub, ScrubLimits
 from jobkit.settings import Settings
-from jobkit.store import ObjectStore
+from jobkit.storage.base import ObjectStore
 
 _MB = 1 << 20
 

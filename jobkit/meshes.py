@@ -17,7 +17,7 @@ from jobkit.database.session import Database
 from jobkit.database.tables import JobRow, MeshRow
 from jobkit.errors import MeshNotFoundError, StaleAttemptError
 from jobkit.schema import Format, Mesh, MeshFacts, MeshLinks, MeshProblem, MeshState
-from jobkit.store import StoredObject
+from jobkit.storage.base import StoredObject
 
 # Code of the problem of a mesh whose bytes are gone from the store.
 MESH_MISSING = "mesh_missing"

@@ -18,7 +18,7 @@ from jobkit.database.tables import JobRow, MeshRow, ModelRow
 from jobkit.errors import ObjectNotFoundError
 from jobkit.meshes import MESH_MISSING, is_missing, restart
 from jobkit.schema import JobState, MeshProblem, MeshState
-from jobkit.store import ObjectStore, result_key
+from jobkit.storage.base import ObjectStore, result_key
 
 # Rows of one kind in one look: a request each to a remote store.
 MOST = 1000

@@ -23,9 +23,9 @@ from jobkit.model_errors import ModelDeprecatedError
 from jobkit.model_header import Card, artifact_format, read_dictionary_card, to_wire_card
 from jobkit.model_rows import check_proven, meant_row, to_alias, to_model, to_version, version_row
 from jobkit.network_header import check_network, read_network_card
-from jobkit.removals import assure
 from jobkit.schema import SELF, Alias, Model, ModelKind, ModelList, ModelState, ModelVersion
-from jobkit.store import CHUNK_BYTES, ObjectStore, StoredObject
+from jobkit.storage.base import CHUNK_BYTES, ObjectStore, StoredObject
+from jobkit.storage.removals import assure
 
 MODEL_PREFIX = "models"
 # Of one name, published at the same moment.

@@ -25,7 +25,7 @@ from jobkit.errors import (
     StoreUnavailableError,
 )
 from jobkit.schema import JobState
-from jobkit.store import ObjectStore
+from jobkit.storage.base import ObjectStore
 
 # Of one transaction: long enough to be quick, short enough to hold up nobody.
 BATCH = 50

@@ -18,7 +18,6 @@ from enum import Enum
 from sqlalchemy import select, update
 from sqlalchemy.orm import Session
 
-from jobkit.damage import NamedObject, forget_damaged, note_damaged
 from jobkit.database.clock import shared_now
 from jobkit.database.counters import add_up
 from jobkit.database.session import Database
@@ -26,8 +25,9 @@ from jobkit.database.tables import MeshRow, ScrubRow
 from jobkit.errors import ObjectNotFoundError, StoreUnavailableError
 from jobkit.meshes import MESH_DAMAGED, is_damaged, restart
 from jobkit.schema import MeshProblem, MeshState
-from jobkit.scrub_due import Due, due_objects
-from jobkit.store import ObjectStore
+from jobkit.storage.base import ObjectStore
+from jobkit.storage.damage import NamedObject, forget_damaged, note_damaged
+from jobkit.storage.scrub_due import Due, due_objects
 
 # Of one round; the next one comes as long after it.
 ROUND_S = 60.0

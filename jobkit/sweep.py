@@ -22,9 +22,9 @@ from sqlalchemy import func, select
 from jobkit.database.session import Database
 from jobkit.database.tables import JobRow, MeshRow, ModelRow
 from jobkit.errors import ObjectNotFoundError
-from jobkit.removals import START_S, claim, let_go, named_keys
 from jobkit.schema import JobState
-from jobkit.store import ListedObject, ObjectStore, result_key
+from jobkit.storage.base import ListedObject, ObjectStore, result_key
+from jobkit.storage.removals import START_S, claim, let_go, named_keys
 
 GRACE = timedelta(hours=24)
 CONTENT_PREFIXES = ("meshes", "models")
@@ -122,7 +122,7 @@ def _is_wanted(key: str, wanted: dict[str, set[str]]) -> bool:
 
 
 def _sweep_contents(database: Database, store: ObjectStore, batch: list[ListedObject], before: datetime) -> Swept:
-    """Delete meshes and models that no row names; see `jobkit.removals` for uploads of the same bytes meanwhile."""
+    """Delete meshes and models that no row names; `jobkit.storage.removals` handles uploads of the same bytes."""
     keys = {found.key for found in batch}
     with database.read() as session:
         keys -= named_keys(session, keys)

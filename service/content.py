@@ -13,8 +13,8 @@ from urllib.parse import quote
 from starlette.requests import Request
 from starlette.responses import Response, StreamingResponse
 
-from jobkit.damage import refuse_damaged
-from jobkit.digests import digest_field, verified_chunks
+from jobkit.storage.damage import refuse_damaged
+from jobkit.storage.digests import digest_field, verified_chunks
 from service.head import is_head
 from service.problems import ProblemError
 from service.services import Services

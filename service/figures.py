@@ -8,7 +8,6 @@ from sqlalchemy import ColumnElement, func, or_, select
 from sqlalchemy.orm import InstrumentedAttribute, Session
 
 from jobkit.attempts import AT_WORK
-from jobkit.damage import OBJECT_KINDS
 from jobkit.database.clock import shared_now
 from jobkit.database.session import Database
 from jobkit.database.tables import (
@@ -23,7 +22,8 @@ from jobkit.database.tables import (
     StageRow,
 )
 from jobkit.schema import DeliveryState, JobState, MeshState, ModelState
-from jobkit.scrub_due import oldest_look
+from jobkit.storage.damage import OBJECT_KINDS
+from jobkit.storage.scrub_due import oldest_look
 
 # They show from the start with a 0: a rate does not see what comes into being as a 1.
 _EXPECTED_OUTCOMES = (

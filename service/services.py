@@ -19,7 +19,8 @@ from jobkit.queue import TaskQueue
 from jobkit.registry import Registry
 from jobkit.settings import Settings
 from jobkit.shipped import seed_shipped
-from jobkit.store import ObjectStore, open_store
+from jobkit.storage.base import ObjectStore
+from jobkit.storage.open import open_store
 from jobkit.webhooks import Webhooks
 from service.board import Board
 from service.streams import EventStreams

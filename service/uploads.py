@@ -10,7 +10,7 @@ from python_multipart.multipart import parse_options_header
 from starlette.concurrency import run_in_threadpool
 
 from jobkit.errors import TooLargeError
-from jobkit.store import ObjectStore, ObjectWriter, StoredObject
+from jobkit.storage.base import ObjectStore, ObjectWriter, StoredObject
 from service.digests import CheckedBody, StatedDigests, refuse_coding
 from service.multipart import PartData, PartStart, malformed_multipart, read_parts
 from service.problems import ProblemError, invalid_request

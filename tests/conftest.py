@@ -23,7 +23,8 @@ from pydantic import SecretStr
 
 from jobkit.database.session import Database
 from jobkit.settings import Settings
-from jobkit.store import ObjectStore, open_store
+from jobkit.storage.base import ObjectStore
+from jobkit.storage.open import open_store
 from onebox.valkey import running_valkey
 from quadpatch.inpainters.model_file import save_dictionary
 from quadpatch.patches.normalisation import HEIGHTS, NORMALISATION

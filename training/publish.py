@@ -8,7 +8,7 @@ from jobkit.ids import MODEL_NAME
 from jobkit.registry import Registry
 from jobkit.schema import ModelVersion
 from jobkit.settings import load_settings
-from jobkit.store import open_store
+from jobkit.storage.open import open_store
 from quadpatch.errors import OptionError
 from quadpatch.inpainters.proof import prove_model
 

@@ -17,7 +17,8 @@ from jobkit.privacy import hide_memory
 from jobkit.queue import TaskQueue
 from jobkit.readiness import ready_file
 from jobkit.settings import Settings, load_settings
-from jobkit.store import ObjectStore, open_store
+from jobkit.storage.base import ObjectStore
+from jobkit.storage.open import open_store
 from jobkit.telemetry import open_telemetry
 from worker.confinement import weaknesses
 from worker.context import Context, use_context, worker_name

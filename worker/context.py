@@ -21,7 +21,7 @@ from jobkit.proofs import Proofs
 from jobkit.queue import TaskQueue
 from jobkit.registry import Registry
 from jobkit.settings import Settings
-from jobkit.store import ObjectStore
+from jobkit.storage.base import ObjectStore
 from jobkit.telemetry import Telemetry
 from worker.nursing import Nursery
 

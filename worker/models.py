@@ -6,11 +6,11 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
-from jobkit.digests import sha256_of
 from jobkit.errors import NotFoundError
 from jobkit.registry import Registry
 from jobkit.schema import Deprecation, ResolvedModel
-from jobkit.store import CHUNK_BYTES, ObjectStore
+from jobkit.storage.base import CHUNK_BYTES, ObjectStore
+from jobkit.storage.digests import sha256_of
 from worker.failures import EngineFailedError, Failure
 
 # What `quadpatch.repair.repair_file` calls the ways to fill a hole without a model file.

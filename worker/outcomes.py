@@ -6,9 +6,9 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TypeVar
 
-from jobkit.digests import verified_file
 from jobkit.errors import NotFoundError, ObjectDamagedError, StoreUnavailableError
 from jobkit.meshes import MESH_DAMAGED, MeshSource
+from jobkit.storage.digests import verified_file
 from worker.context import Context
 from worker.failures import (
     EngineFailedError,

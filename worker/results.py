@@ -8,7 +8,7 @@ from typing import Any
 from jobkit.endings import Attempt
 from jobkit.schema import FileRole, HoleCounts, JobResult, ResultFile
 from jobkit.stages import StageSeconds
-from jobkit.store import ObjectStore, result_key
+from jobkit.storage.base import ObjectStore, result_key
 from quadpatch.formats.output_files import write_whole
 from quadpatch.stages import failure_of
 from worker.failures import Failure

@@ -8,8 +8,8 @@ from starlette.concurrency import run_in_threadpool
 from starlette.responses import Response
 
 from jobkit.database.idempotency import note_request, refuse_conflict
-from jobkit.removals import assure
 from jobkit.schema import Format, Mesh, MeshState
+from jobkit.storage.removals import assure
 from service.content import Content, content_response
 from service.formats import clean_filename, stated_format
 from service.idempotency import note_replayed

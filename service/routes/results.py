@@ -8,7 +8,7 @@ from starlette.responses import Response
 
 from jobkit.errors import JobHasNoResultError, JobNotFinishedError, ObjectNotFoundError, ResultMissingError
 from jobkit.schema import FileRole, Job
-from jobkit.store import result_key
+from jobkit.storage.base import result_key
 from service.content import OCTETS, Content, content_response, repaired_name
 from service.routes.common import BINARY, CONDITIONAL, JobIdPath, not_modified, problems
 from service.services import Services, ServicesDep

@@ -10,14 +10,14 @@ import pytest
 from starlette.testclient import TestClient
 
 from jobkit.database.session import Database
-from jobkit.digests import verified_chunks
 from jobkit.errors import ObjectDamagedError
 from jobkit.jobs import Jobs, NewJob
 from jobkit.meshes import MESH_DAMAGED, Meshes
 from jobkit.schema import JobSpec, JobState, MeshState, ResolvedModel
 from jobkit.scrub import Scrub, ScrubLimits
 from jobkit.settings import Settings
-from jobkit.store import CHUNK_BYTES, ObjectStore, StoredObject
+from jobkit.storage.base import CHUNK_BYTES, ObjectStore, StoredObject
+from jobkit.storage.digests import verified_chunks
 from service.app import create_app
 from tests.integration.conftest import ply_bytes, punched_relief
 from tests.jobkit.holdings import DAY, age_rows, finish, new_job

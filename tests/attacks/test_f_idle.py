@@ -19,7 +19,7 @@ from jobkit.queue import TaskQueue
 from jobkit.reconcile import Reconciled, reconcile
 from jobkit.schema import JobSpec, ResolvedModel
 from jobkit.settings import Settings
-from jobkit.store import StoredObject
+from jobkit.storage.base import StoredObject
 
 LIMITS = TimeLimits(60.0, 60.0, 1024)
 # Raises as soon as the queue is asked for anything.

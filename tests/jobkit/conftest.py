@@ -11,7 +11,8 @@ from jobkit.database.session import Database
 from jobkit.jobs import Jobs, NewJob
 from jobkit.meshes import Meshes
 from jobkit.schema import Job, JobSpec, Mesh, ResolvedModel
-from jobkit.store import ObjectStore, open_store
+from jobkit.storage.base import ObjectStore
+from jobkit.storage.open import open_store
 from tests.servers import fresh_bucket, fresh_database
 
 

@@ -23,9 +23,9 @@ from jobkit.database.tables import (
 )
 from jobkit.jobs import Jobs, NewJob
 from jobkit.meshes import Meshes
-from jobkit.removals import assure
 from jobkit.schema import Job, JobError, JobResult, JobSpec, Mesh, ResolvedModel, ResultFile
-from jobkit.store import ListedObject, ObjectStore, ObjectWriter, StoredObject, result_key
+from jobkit.storage.base import ListedObject, ObjectStore, ObjectWriter, StoredObject, result_key
+from jobkit.storage.removals import assure
 from jobkit.sweep import CONTENT_PREFIXES, RESULT_PREFIX
 
 DAY = timedelta(days=1)

@@ -10,7 +10,7 @@ from jobkit.errors import IdempotencyError, JobFinishedError, JobNotFoundError, 
 from jobkit.jobs import Jobs, NewJob
 from jobkit.meshes import Meshes
 from jobkit.schema import Job, JobResult, JobSpec, JobState, ResolvedModel
-from jobkit.store import StoredObject
+from jobkit.storage.base import StoredObject
 
 KEY = Idempotency("station-1", "order-17", "a" * 64)
 

@@ -6,7 +6,7 @@ from jobkit.database.session import Database
 from jobkit.errors import MeshNotFoundError, StaleAttemptError
 from jobkit.meshes import Meshes
 from jobkit.schema import BoundingBox, Mesh, MeshFacts, MeshProblem, MeshState
-from jobkit.store import StoredObject
+from jobkit.storage.base import StoredObject
 
 FACTS = MeshFacts(
     format="stl",

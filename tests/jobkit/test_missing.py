@@ -10,7 +10,7 @@ from jobkit.missing import Missing, MissingObjects
 from jobkit.registry import MODEL_PREFIX, Registry
 from jobkit.retention import delete_job
 from jobkit.schema import Mesh, MeshState
-from jobkit.store import ObjectStore
+from jobkit.storage.base import ObjectStore
 from tests.jobkit.holdings import AgingStore, finish, put, upload
 
 

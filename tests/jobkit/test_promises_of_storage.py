@@ -16,10 +16,10 @@ from jobkit.errors import ConflictError, NotFoundError, StaleAttemptError, Store
 from jobkit.jobs import Jobs
 from jobkit.meshes import Meshes, is_missing
 from jobkit.missing import Missing, MissingObjects
-from jobkit.removals import assure, named_keys
 from jobkit.retention import delete_job, delete_mesh, expire_jobs, expire_meshes, pin_job, pin_mesh
 from jobkit.schema import JobState
-from jobkit.store import ObjectStore, StoredObject, result_key
+from jobkit.storage.base import ObjectStore, StoredObject, result_key
+from jobkit.storage.removals import assure, named_keys
 from jobkit.sweep import GRACE, sweep_objects
 from tests.jobkit.holdings import (
     AgingStore,

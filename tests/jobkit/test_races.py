@@ -23,7 +23,7 @@ from jobkit.meshes import Meshes
 from jobkit.overdue import TimeLimits, end_overdue
 from jobkit.registry import Registry
 from jobkit.schema import Job, JobError, JobResult, JobState, Mesh
-from jobkit.store import ObjectStore, StoredObject
+from jobkit.storage.base import ObjectStore, StoredObject
 from tests.waiting import GUARD_S, let_others_run
 
 LIMITS = TimeLimits(queue_s=1e6, total_s=1e6, memory_mb=1000)

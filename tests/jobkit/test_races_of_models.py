@@ -15,7 +15,7 @@ from jobkit.model_lifetime import delete_version, deprecate_version
 from jobkit.proofs import Proofs
 from jobkit.registry import Registry
 from jobkit.schema import JobSpec, Mesh, ModelState, ResolvedModel
-from jobkit.store import ObjectStore, StoredObject
+from jobkit.storage.base import ObjectStore, StoredObject
 from tests.waiting import GUARD_S
 
 ROUNDS = 8

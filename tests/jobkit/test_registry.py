@@ -7,9 +7,9 @@ import pytest
 from jobkit.database.clock import utc_now
 from jobkit.database.session import Database
 from jobkit.errors import ModelNotFoundError, NameTakenError, UnusableModelError
-from jobkit.local_store import LocalStore
 from jobkit.registry import Registry
-from jobkit.store import ObjectStore
+from jobkit.storage.base import ObjectStore
+from jobkit.storage.local import LocalStore
 from jobkit.sweep import GRACE, sweep_objects
 
 Make = Callable[[int], bytes]

@@ -20,7 +20,7 @@ from jobkit.jobs import Jobs, NewJob
 from jobkit.meshes import Meshes
 from jobkit.retention import BATCH, delete_job, delete_mesh, expire_jobs, expire_meshes, pin_job, pin_mesh
 from jobkit.schema import Job, Mesh
-from jobkit.store import ObjectStore
+from jobkit.storage.base import ObjectStore
 from tests.jobkit.holdings import DAY, AgingStore, KilledError, age_rows, fail, finish, keys_in, upload
 
 KEY = Idempotency("station", "order-17", "a" * 64)

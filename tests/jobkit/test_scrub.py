@@ -15,8 +15,8 @@ from jobkit.missing import Missing, MissingObjects
 from jobkit.registry import MODEL_PREFIX, Registry
 from jobkit.schema import Mesh, MeshState
 from jobkit.scrub import Scrub, Scrubbed, ScrubLimits
-from jobkit.scrub_due import oldest_look
-from jobkit.store import CHUNK_BYTES, ObjectStore, result_key
+from jobkit.storage.base import CHUNK_BYTES, ObjectStore, result_key
+from jobkit.storage.scrub_due import oldest_look
 from tests.jobkit.holdings import DAY, AgingStore, age_rows, damage, finish, new_job, put, upload
 from tests.waiting import GUARD_S
 

@@ -8,7 +8,7 @@ from jobkit.errors import ModelKindError, ModelNotFoundError, NoNetworkError
 from jobkit.registry import Registry
 from jobkit.schema import CnnMethod, DictionaryMethod, Fitting, SmoothMethod
 from jobkit.selection import resolve_method
-from jobkit.store import ObjectStore
+from jobkit.storage.base import ObjectStore
 from tests.jobkit.test_registry import NETWORK
 
 

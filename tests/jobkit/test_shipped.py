@@ -10,7 +10,7 @@ from jobkit.model_lifetime import delete_version, deprecate_version
 from jobkit.registry import MODEL_PREFIX, Registry
 from jobkit.schema import ModelState
 from jobkit.shipped import seed_shipped
-from jobkit.store import ObjectStore
+from jobkit.storage.base import ObjectStore
 from tests.jobkit.test_registry import NETWORK
 
 Make = Callable[[int], bytes]

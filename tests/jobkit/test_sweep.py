@@ -11,10 +11,11 @@ from jobkit.errors import StoreUnavailableError
 from jobkit.jobs import Jobs, NewJob
 from jobkit.meshes import Meshes
 from jobkit.registry import MODEL_PREFIX, Registry
-from jobkit.removals import START_S, assure, claim, let_go
 from jobkit.retention import delete_mesh
 from jobkit.schema import Job, Mesh
-from jobkit.store import ObjectStore, open_store, result_key
+from jobkit.storage.base import ObjectStore, result_key
+from jobkit.storage.open import open_store
+from jobkit.storage.removals import START_S, assure, claim, let_go
 from jobkit.sweep import GRACE, Swept, sweep_objects
 from tests.jobkit.holdings import AgingStore, KilledError, age_rows, fail, finish, keys_in, put, upload
 

@@ -9,7 +9,7 @@ from starlette.testclient import TestClient
 
 from jobkit.schema import BoundingBox, Hole, HoleCounts, Job, JobResult, MeshFacts, ModelVersion, ResultFile
 from jobkit.settings import Settings
-from jobkit.store import result_key
+from jobkit.storage.base import result_key
 from service.app import create_app
 from service.services import Services
 

@@ -12,7 +12,7 @@ from jobkit.estimates import Estimates
 from jobkit.jobs import Glance, Jobs, NewJob
 from jobkit.meshes import Meshes
 from jobkit.schema import Job, JobSpec, JobState, ResolvedModel
-from jobkit.store import ObjectStore
+from jobkit.storage.base import ObjectStore
 from service.board import Board
 from tests.service.rounds import most_in_a_round
 from tests.waiting import GUARD_S

@@ -12,7 +12,7 @@ from jobkit.endings import Attempt
 from jobkit.jobs import Jobs, NewJob
 from jobkit.meshes import Meshes
 from jobkit.schema import JobResult, JobSpec, ResolvedModel
-from jobkit.store import ObjectStore
+from jobkit.storage.base import ObjectStore
 from service import streams
 from service.problems import ProblemError
 from service.streams import EventStreams

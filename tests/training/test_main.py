@@ -10,7 +10,7 @@ from typer.testing import CliRunner
 
 from jobkit.database.session import Database
 from jobkit.registry import Registry
-from jobkit.store import open_store
+from jobkit.storage.open import open_store
 from quadpatch.errors import OptionError
 from quadpatch.inpainters.model_file import load_model, model_card
 from quadpatch.options import HoleOptions, PatchOptions, RepairOptions

@@ -15,7 +15,7 @@ from typer.testing import CliRunner
 
 from jobkit.database.session import Database
 from jobkit.registry import Registry
-from jobkit.store import open_store
+from jobkit.storage.open import open_store
 from quadpatch.inpainters.onnx_network import AutoencoderInpainter
 from quadpatch.options import HoleOptions, PatchOptions, RepairOptions
 from quadpatch.repair import repair_file

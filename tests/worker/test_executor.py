@@ -17,7 +17,7 @@ from jobkit.queue import TaskQueue
 from jobkit.reconcile import submit_job
 from jobkit.schema import JobSpec, JobState, ResolvedModel
 from jobkit.settings import Settings
-from jobkit.store import ObjectStore
+from jobkit.storage.base import ObjectStore
 from onebox.valkey import prepare_valkey, running_valkey
 from tests.integration.conftest import ply_bytes, punched_relief
 from tests.waiting import GUARD_S, end, wait_until

@@ -18,7 +18,7 @@ from jobkit.meshes import Meshes
 from jobkit.queue import TaskQueue
 from jobkit.schema import Job, JobSpec, JobState, ResolvedModel
 from jobkit.settings import Settings
-from jobkit.store import ObjectStore
+from jobkit.storage.base import ObjectStore
 from jobkit.telemetry import Telemetry
 from tests.integration.conftest import ply_bytes, punched_relief
 from worker.context import Context, use_context

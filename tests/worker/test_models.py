@@ -6,7 +6,7 @@ import pytest
 from jobkit.database.session import Database
 from jobkit.registry import Registry
 from jobkit.schema import ModelVersion, ResolvedModel
-from jobkit.store import ObjectStore
+from jobkit.storage.base import ObjectStore
 from quadpatch.inpainters.model_file import save_dictionary
 from quadpatch.sparse.dictionary import Dictionary
 from worker.failures import EngineFailedError

@@ -19,7 +19,7 @@ from jobkit.registry import MODEL_PREFIX, Registry
 from jobkit.schema import JobSpec, ModelProblem, ModelState, ModelVersion
 from jobkit.selection import resolve_method
 from jobkit.settings import Settings
-from jobkit.store import ObjectStore
+from jobkit.storage.base import ObjectStore
 from tests.integration.conftest import ply_bytes, punched_relief
 from tests.quadpatch.inpainters.test_onnx_network import PAPER, N, write_network
 from tests.worker.test_repairs import working

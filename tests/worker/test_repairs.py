@@ -20,7 +20,8 @@ from jobkit.meshes import MAX_ANALYSES, Meshes
 from jobkit.queue import TaskQueue
 from jobkit.schema import Job, JobSpec, JobState, MeshState, ResolvedModel
 from jobkit.settings import Settings
-from jobkit.store import ObjectStore, open_store, result_key
+from jobkit.storage.base import ObjectStore, result_key
+from jobkit.storage.open import open_store
 from tests.integration.conftest import ply_bytes, punched_relief
 from worker.context import Context, use_context
 from worker.jobs import inspect_mesh, run_job

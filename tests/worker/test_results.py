@@ -7,7 +7,7 @@ import pytest
 
 from jobkit.attempts import Attempt
 from jobkit.errors import ObjectNotFoundError, StoreUnavailableError
-from jobkit.store import ObjectStore, StoredObject, result_key
+from jobkit.storage.base import ObjectStore, StoredObject, result_key
 from worker.failures import Failure
 from worker.limits import EngineLimits
 from worker.request import EngineRequest

@@ -7,7 +7,7 @@ from starlette.testclient import TestClient
 
 from jobkit.schema import MeshProblem
 from jobkit.settings import Settings
-from jobkit.store import ObjectStore
+from jobkit.storage.base import ObjectStore
 from service.app import create_app
 from service.services import Services
 

@@ -8,9 +8,9 @@ from typing import Any
 from sqlalchemy import ColumnElement, Select, and_, or_, select
 from sqlalchemy.orm import InstrumentedAttribute, Session
 
-from jobkit.damage import NamedObject
 from jobkit.database.tables import DamagedRow, JobRow, MeshRow, ModelRow
-from jobkit.store import result_key
+from jobkit.storage.base import result_key
+from jobkit.storage.damage import NamedObject
 
 DAMAGED_AGAIN = timedelta(hours=1)
 # A tenth of the period is left for the reading itself.

@@ -11,8 +11,8 @@ import pytest
 from obstore.store import S3Store as Bucket
 
 from jobkit.errors import ObjectNotFoundError, StoreUnavailableError
-from jobkit.s3_store import S3Store
-from jobkit.store import ObjectStore
+from jobkit.storage.base import ObjectStore
+from jobkit.storage.s3 import S3Store
 from tests.servers import S3Server, fresh_bucket
 from tests.waiting import GUARD_S
 
@@ -121,7 +121,7 @@ def test_a_prefix_goes_whole_though_a_listing_has_many_pages(s3_store: S3Store, 
 KILLED = """
 import os, signal, sys, threading, time
 from pathlib import Path
-from jobkit.s3_store import S3Store
+from jobkit.storage.s3 import S3Store
 store = S3Store(sys.argv[1], sys.argv[2], Path(sys.argv[3]))
 writer = store.writer("meshes")
 writer.write(b"0" * (64 << 20))
@@ -167,7 +167,7 @@ def test_memory_stays_small_however_large_the_object_is(s3_store: S3Store, bucke
 LARGE = """
 import re, sys
 from pathlib import Path
-from jobkit.s3_store import S3Store
+from jobkit.storage.s3 import S3Store
 def peak_mb():  # getrusage would count that of the parent in
     return int(re.search(r"VmHWM:\\s+(\\d+)", Path("/proc/self/status").read_text())[1]) // 1024
 store = S3Store(sys.argv[1], "a", Path(sys.argv[2]))

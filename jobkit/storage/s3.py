@@ -16,9 +16,9 @@ from obstore.exceptions import BaseError, PermissionDeniedError, Unauthenticated
 from obstore.store import S3Store as Bucket
 
 from jobkit.errors import StoreUnavailableError
-from jobkit.scratch import ScratchFolder
-from jobkit.spool import SpoolingWriter, translated_os_errors
-from jobkit.store import CHUNK_BYTES, ListedObject, StoredObject, checked_key, missing
+from jobkit.storage.base import CHUNK_BYTES, ListedObject, StoredObject, checked_key, missing
+from jobkit.storage.scratch import ScratchFolder
+from jobkit.storage.spool import SpoolingWriter, translated_os_errors
 
 # Of a multipart upload: S3 takes 10,000 parts at most, so objects of up to 80 GiB; two at a time are held in memory.
 _PART_BYTES = 8 << 20

@@ -7,8 +7,8 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from jobkit.errors import ObjectDamagedError
-from jobkit.spool import translated_os_errors
-from jobkit.store import CHUNK_BYTES, ObjectStore
+from jobkit.storage.base import CHUNK_BYTES, ObjectStore
+from jobkit.storage.spool import translated_os_errors
 
 
 def sha256_of(path: Path) -> str:

@@ -11,8 +11,8 @@ from types import TracebackType
 from typing import Self
 
 from jobkit.errors import StoreUnavailableError, TooLargeError
-from jobkit.scratch import ScratchFolder
-from jobkit.store import StoredObject, checked_key, content_key
+from jobkit.storage.base import StoredObject, checked_key, content_key
+from jobkit.storage.scratch import ScratchFolder
 
 _FULL = (errno.ENOSPC, errno.EDQUOT)
 _READ_ONLY = (errno.EROFS, errno.EACCES, errno.EPERM)

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from jobkit.errors import StoreUnavailableError
-from jobkit.local_store import LocalStore
-from jobkit.store import open_store
+from jobkit.storage.local import LocalStore
+from jobkit.storage.open import open_store
 
 
 def files_below(folder: Path) -> list[Path]:
@@ -95,7 +95,7 @@ def test_a_store_may_lie_in_a_folder_with_a_blank_in_its_name(tmp_path: Path) ->
 KILLED = """
 import os, signal, sys
 from pathlib import Path
-from jobkit.local_store import LocalStore
+from jobkit.storage.local import LocalStore
 writer = LocalStore(Path(sys.argv[1])).writer("meshes")
 writer.write(b"0" * 100_000)
 os.kill(os.getpid(), signal.SIGKILL)

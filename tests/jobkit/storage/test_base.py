@@ -10,7 +10,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from jobkit.errors import ObjectNotFoundError, SettingsError, TooLargeError
-from jobkit.store import ObjectStore, open_store, result_key
+from jobkit.storage.base import ObjectStore, result_key
+from jobkit.storage.open import open_store
 
 
 def put(store: ObjectStore, data: bytes, key: str | None = None) -> str:

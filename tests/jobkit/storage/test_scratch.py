@@ -1,7 +1,7 @@
 import threading
 from pathlib import Path
 
-from jobkit.scratch import ScratchFolder
+from jobkit.storage.scratch import ScratchFolder
 
 
 def test_a_file_stays_while_it_is_open_and_goes_with_the_sweep_after_that(tmp_path: Path) -> None:

@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import BinaryIO
 
 from jobkit.errors import StoreUnavailableError
-from jobkit.scratch import ScratchFolder
-from jobkit.spool import SpoolingWriter, translated_os_errors
-from jobkit.store import CHUNK_BYTES, ListedObject, StoredObject, checked_key, missing
+from jobkit.storage.base import CHUNK_BYTES, ListedObject, StoredObject, checked_key, missing
+from jobkit.storage.scratch import ScratchFolder
+from jobkit.storage.spool import SpoolingWriter, translated_os_errors
 
 _INCOMING = "incoming"
 

@@ -5,7 +5,6 @@ Uploads are content-addressed: their key follows from their sha256, so the same 
 """
 
 import re
-import tempfile
 from collections.abc import Iterator
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
@@ -13,13 +12,11 @@ from datetime import datetime
 from pathlib import Path
 from types import TracebackType
 from typing import NamedTuple, Protocol, Self
-from urllib.parse import unquote, urlsplit
 
-from jobkit.errors import ObjectNotFoundError, SettingsError
+from jobkit.errors import ObjectNotFoundError
 
 CHUNK_BYTES = 1 << 20
 _KEY = re.compile(r"^[A-Za-z0-9_][A-Za-z0-9._-]*(/[A-Za-z0-9_][A-Za-z0-9._-]*)*\Z")
-_BUCKET = re.compile(r"^[a-z0-9][a-z0-9._-]{1,62}\Z")
 
 
 @dataclass(frozen=True)
@@ -99,34 +96,6 @@ class ObjectStore(Protocol):
     def delete_prefix(self, prefix: str) -> None:
         """Remove everything below `prefix/`."""
         ...
-
-
-def open_store(url: str, scratch: Path | None = None) -> ObjectStore:
-    """Open the store that the URL names: `file:///a/folder` or `s3://bucket/prefix`.
-
-    Parameters
-    ----------
-    url : str
-    scratch : Path, optional
-        Folder on a local disk for what comes from a remote store or goes there; None: one for temporary files.
-
-    Raises
-    ------
-    SettingsError
-        If the URL names another kind of store.
-    """
-    # The modules of the kinds know this one, and a box with local files needs no S3 client in memory.
-    parts = urlsplit(url)
-    if parts.scheme == "file" and parts.netloc in ("", "localhost"):
-        from jobkit.local_store import LocalStore  # noqa: PLC0415
-
-        return LocalStore(Path(unquote(parts.path)))
-    if parts.scheme == "s3" and _BUCKET.match(parts.netloc) and not parts.query:
-        from jobkit.s3_store import S3Store  # noqa: PLC0415
-
-        return S3Store(parts.netloc, parts.path.strip("/"), scratch or Path(tempfile.gettempdir(), "quadpatch-scratch"))
-    # Without the URL: somebody may have put a password into it.
-    raise SettingsError("that object store is not supported; use file:///a/folder or s3://bucket/prefix")
 
 
 def result_key(job_id: str, attempt: int, name: str) -> str:

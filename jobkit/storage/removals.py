@@ -18,12 +18,12 @@ from sqlalchemy import delete, select
 from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
-from jobkit.damage import forget_damaged, is_known_damaged
 from jobkit.database.clock import shared_now
 from jobkit.database.session import Database
 from jobkit.database.tables import MeshRow, ModelRow, RemovalRow
 from jobkit.errors import ObjectNotFoundError, StoreUnavailableError
-from jobkit.store import ObjectStore
+from jobkit.storage.base import ObjectStore
+from jobkit.storage.damage import forget_damaged, is_known_damaged
 
 # A sweep starts no deletion later than this after it claimed the key.
 START_S = 60.0
