@@ -12,10 +12,10 @@ from pathlib import Path
 
 import psutil
 
-from jobkit.attempts import Attempts
 from jobkit.database.session import Database
-from jobkit.endings import Attempt
-from jobkit.jobs import Jobs, NewJob
+from jobkit.jobs.attempts import Attempts
+from jobkit.jobs.endings import Attempt
+from jobkit.jobs.jobs import Jobs, NewJob
 from jobkit.meshes import Meshes
 from jobkit.schema import HoleCounts, JobResult, JobSpec, ResolvedModel
 from jobkit.settings import Settings

@@ -7,7 +7,7 @@ from dispatcher.scrubbing import Scrubbing
 from dispatcher.webhooks import deliver_webhooks, forget_old_deliveries
 from jobkit.database.leadership import Leadership
 from jobkit.database.session import Database
-from jobkit.overdue import TimeLimits
+from jobkit.jobs.timeouts import TimeLimits
 from jobkit.queue import TaskQueue
 from jobkit.reconcile import reconcile
 from jobkit.scrub import ROUND_S

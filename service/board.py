@@ -16,8 +16,8 @@ import anyio.to_thread
 from sqlalchemy.exc import SQLAlchemyError
 
 from jobkit.errors import DatabaseUnavailableError, JobNotFoundError
-from jobkit.estimates import Estimates
-from jobkit.jobs import Glance, Jobs
+from jobkit.jobs.estimates import Estimates
+from jobkit.jobs.jobs import Glance, Jobs
 from jobkit.schema import Job
 from service.turns import Turns
 

@@ -7,7 +7,6 @@ from prometheus_client.core import CounterMetricFamily, GaugeMetricFamily, Metri
 from sqlalchemy import ColumnElement, func, or_, select
 from sqlalchemy.orm import InstrumentedAttribute, Session
 
-from jobkit.attempts import AT_WORK
 from jobkit.database.clock import shared_now
 from jobkit.database.session import Database
 from jobkit.database.tables import (
@@ -21,6 +20,7 @@ from jobkit.database.tables import (
     ScrubRow,
     StageRow,
 )
+from jobkit.jobs.attempts import AT_WORK
 from jobkit.schema import DeliveryState, JobState, MeshState, ModelState
 from jobkit.storage.damage import OBJECT_KINDS
 from jobkit.storage.scrub_due import oldest_look

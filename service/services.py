@@ -8,11 +8,11 @@ from typing import Annotated, cast
 from fastapi import Depends, Request
 
 from jobkit.addresses import check_url
-from jobkit.attempts import Attempts
 from jobkit.database.session import Database
 from jobkit.deliveries import Deliveries
-from jobkit.estimates import Estimates
-from jobkit.jobs import Jobs
+from jobkit.jobs.attempts import Attempts
+from jobkit.jobs.estimates import Estimates
+from jobkit.jobs.jobs import Jobs
 from jobkit.meshes import Meshes
 from jobkit.proofs import Proofs
 from jobkit.queue import TaskQueue

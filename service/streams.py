@@ -20,7 +20,7 @@ from starlette.types import Receive, Scope, Send
 
 from jobkit.database.session import Database
 from jobkit.errors import DatabaseUnavailableError
-from jobkit.events import News, read_news
+from jobkit.jobs.events import News, read_news
 from jobkit.schema import Event
 from service.problems import RETRY_AFTER_S, ProblemError
 

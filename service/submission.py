@@ -11,7 +11,7 @@ from jobkit.errors import (
     OverLimitError,
     QueueUnavailableError,
 )
-from jobkit.jobs import NewJob
+from jobkit.jobs.jobs import NewJob
 from jobkit.logs import current_request_id
 from jobkit.reconcile import submit_analysis, submit_job, submit_proof
 from jobkit.schema import Job, JobSpec, Limits, Mesh, MeshFacts, MeshState, Plan, ResolvedModel, conflict_of

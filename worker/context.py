@@ -13,9 +13,9 @@ from contextvars import ContextVar
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from jobkit.attempts import Attempts
 from jobkit.database.session import Database
-from jobkit.jobs import Jobs
+from jobkit.jobs.attempts import Attempts
+from jobkit.jobs.jobs import Jobs
 from jobkit.meshes import Meshes
 from jobkit.proofs import Proofs
 from jobkit.queue import TaskQueue

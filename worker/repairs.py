@@ -10,8 +10,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TypeVar
 
-from jobkit.attempts import AT_WORK, StartedAttempt
-from jobkit.endings import Attempt, stale
 from jobkit.errors import (
     DatabaseUnavailableError,
     JobNotFoundError,
@@ -19,9 +17,11 @@ from jobkit.errors import (
     StaleAttemptError,
     StoreUnavailableError,
 )
+from jobkit.jobs.attempts import AT_WORK, StartedAttempt
+from jobkit.jobs.endings import Attempt, stale
+from jobkit.jobs.stage_seconds import StageSeconds
 from jobkit.reconcile import submit_job
 from jobkit.schema import Job, JobError, JobResult, JobState
-from jobkit.stages import StageSeconds
 from jobkit.telemetry import StageSpans
 from quadpatch.stages import failure_of
 from worker.context import Context

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from jobkit.endings import Attempt
+from jobkit.jobs.endings import Attempt
+from jobkit.jobs.stage_seconds import StageSeconds
 from jobkit.schema import FileRole, HoleCounts, JobResult, ResultFile
-from jobkit.stages import StageSeconds
 from jobkit.storage.base import ObjectStore, result_key
 from quadpatch.formats.output_files import write_whole
 from quadpatch.stages import failure_of

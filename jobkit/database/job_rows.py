@@ -21,7 +21,7 @@ def existing_job(session: Session, job_id: str, *, locked: bool = False) -> JobR
 def to_job(row: JobRow, retention_days: float = 0) -> Job:
     """Return the row as clients see it; finished jobs are kept for `retention_days`, 0: for ever.
 
-    What depends on other jobs, `queue_position` and `eta_s`, is left to `jobkit.estimates`.
+    What depends on other jobs, `queue_position` and `eta_s`, is left to `jobkit.jobs.estimates`.
     """
     names = Job.model_fields.keys() - {"links", "expires_at", "queue_position", "eta_s"}
     values = {name: getattr(row, name) for name in names}

@@ -11,7 +11,7 @@ from starlette.testclient import TestClient
 
 from jobkit.database.session import Database
 from jobkit.errors import ObjectDamagedError
-from jobkit.jobs import Jobs, NewJob
+from jobkit.jobs.jobs import Jobs, NewJob
 from jobkit.meshes import MESH_DAMAGED, Meshes
 from jobkit.schema import JobSpec, JobState, MeshState, ResolvedModel
 from jobkit.scrub import Scrub, ScrubLimits

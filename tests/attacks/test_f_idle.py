@@ -12,9 +12,9 @@ from sqlalchemy.engine import Engine
 
 from dispatcher.webhooks import deliver_webhooks
 from jobkit.database.session import Database
-from jobkit.jobs import Jobs, NewJob
+from jobkit.jobs.jobs import Jobs, NewJob
+from jobkit.jobs.timeouts import TimeLimits
 from jobkit.meshes import Meshes
-from jobkit.overdue import TimeLimits
 from jobkit.queue import TaskQueue
 from jobkit.reconcile import Reconciled, reconcile
 from jobkit.schema import JobSpec, ResolvedModel

@@ -13,10 +13,10 @@ from starlette.testclient import TestClient
 
 from jobkit.database.session import Database
 from jobkit.errors import ModelKindError, UnusableModelError
-from jobkit.jobs import Jobs, NewJob
+from jobkit.jobs.jobs import Jobs, NewJob
+from jobkit.jobs.timeouts import TimeLimits
 from jobkit.meshes import Meshes
 from jobkit.model_header import MAX_CARD_BYTES
-from jobkit.overdue import TimeLimits
 from jobkit.queue import TaskQueue, model_entry
 from jobkit.reconcile import reconcile
 from jobkit.registry import MODEL_PREFIX, Registry

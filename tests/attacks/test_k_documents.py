@@ -15,7 +15,7 @@ import yaml
 
 import client.sdk
 from benchmarks.samples import BLOCK, DOCUMENTS, MORE, RECORD, line, wrapped
-from jobkit.overdue import CANCEL_PATIENCE_S
+from jobkit.jobs.timeouts import CANCEL_PATIENCE_S
 from jobkit.schema import HoleCounts, Job, JobResult, Mesh, MeshFacts
 from tests.waiting import GUARD_S, wait_until
 

@@ -7,8 +7,8 @@ from typing import Any
 import httpx
 import pytest
 
-from jobkit.attempts import Attempts
 from jobkit.database.session import Database
+from jobkit.jobs.attempts import Attempts
 from jobkit.proofs import Proofs
 from jobkit.schema import JobResult, ResultFile
 from jobkit.settings import Settings

@@ -6,10 +6,10 @@ from functools import partial
 import pytest
 
 from jobkit.addresses import check_url, parse_networks
-from jobkit.attempts import Attempts
 from jobkit.database.session import Database
 from jobkit.deliveries import Deliveries
-from jobkit.jobs import Jobs, NewJob
+from jobkit.jobs.attempts import Attempts
+from jobkit.jobs.jobs import Jobs, NewJob
 from jobkit.meshes import Meshes
 from jobkit.schema import JobError, JobSpec, NewWebhook, ResolvedModel, WebhookWithSecret
 from jobkit.settings import Settings

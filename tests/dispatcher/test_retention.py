@@ -6,7 +6,7 @@ from dispatcher.duties import duties_of
 from dispatcher.retention import Sweeper, remove_expired
 from jobkit.database.leadership import Leadership
 from jobkit.database.session import Database
-from jobkit.jobs import Jobs
+from jobkit.jobs.jobs import Jobs
 from jobkit.meshes import Meshes
 from jobkit.queue import TaskQueue
 from jobkit.retention import pin_mesh

@@ -20,7 +20,7 @@ from jobkit.database.clock import utc_now
 from jobkit.database.session import Database
 from jobkit.database.tables import DeliveryRow
 from jobkit.deliveries import Deliveries
-from jobkit.jobs import Jobs
+from jobkit.jobs.jobs import Jobs
 from jobkit.outbox import UNTOLD
 from jobkit.schema import DeliveryState
 from jobkit.settings import Settings

@@ -10,9 +10,9 @@ from typing import Any
 import httpx
 import pytest
 
-from jobkit.attempts import Attempts
 from jobkit.database.session import Database
-from jobkit.jobs import Jobs
+from jobkit.jobs.attempts import Attempts
+from jobkit.jobs.jobs import Jobs
 from jobkit.schema import JobResult
 from tests.service.sse import SentEvent, sent_events
 from tests.waiting import GUARD_S, wait_until

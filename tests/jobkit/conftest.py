@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from jobkit.database.session import Database
-from jobkit.jobs import Jobs, NewJob
+from jobkit.jobs.jobs import Jobs, NewJob
 from jobkit.meshes import Meshes
 from jobkit.schema import Job, JobSpec, Mesh, ResolvedModel
 from jobkit.storage.base import ObjectStore

@@ -9,7 +9,6 @@ from pathlib import Path
 
 from sqlalchemy import delete, select, update
 
-from jobkit.attempts import Attempts
 from jobkit.database.session import Database
 from jobkit.database.tables import (
     AttemptRow,
@@ -21,7 +20,8 @@ from jobkit.database.tables import (
     ModelRow,
     RemovalRow,
 )
-from jobkit.jobs import Jobs, NewJob
+from jobkit.jobs.attempts import Attempts
+from jobkit.jobs.jobs import Jobs, NewJob
 from jobkit.meshes import Meshes
 from jobkit.schema import Job, JobError, JobResult, JobSpec, Mesh, ResolvedModel, ResultFile
 from jobkit.storage.base import ListedObject, ObjectStore, ObjectWriter, StoredObject, result_key

@@ -4,7 +4,7 @@ import pytest
 
 from jobkit.database.session import Database
 from jobkit.errors import StoreUnavailableError
-from jobkit.jobs import Jobs, NewJob
+from jobkit.jobs.jobs import Jobs, NewJob
 from jobkit.meshes import MESH_MISSING, Meshes
 from jobkit.missing import Missing, MissingObjects
 from jobkit.registry import MODEL_PREFIX, Registry

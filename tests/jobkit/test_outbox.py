@@ -5,12 +5,12 @@ from concurrent.futures import ThreadPoolExecutor
 import pytest
 from sqlalchemy import event, select
 
-from jobkit.attempts import Attempts
 from jobkit.database.clock import utc_now
 from jobkit.database.session import Database
 from jobkit.database.tables import DeliveryRow
-from jobkit.endings import end_attempt, failure
-from jobkit.jobs import Jobs, NewJob
+from jobkit.jobs.attempts import Attempts
+from jobkit.jobs.endings import end_attempt, failure
+from jobkit.jobs.jobs import Jobs, NewJob
 from jobkit.outbox import UNTOLD
 from jobkit.schema import Job, JobError, JobResult, JobState, NewWebhook
 from jobkit.webhooks import Webhooks

@@ -13,7 +13,7 @@ from jobkit.database.clock import utc_now
 from jobkit.database.session import Database
 from jobkit.database.tables import JobRow, MeshRow
 from jobkit.errors import ConflictError, NotFoundError, StaleAttemptError, StoreUnavailableError
-from jobkit.jobs import Jobs
+from jobkit.jobs.jobs import Jobs
 from jobkit.meshes import Meshes, is_missing
 from jobkit.missing import Missing, MissingObjects
 from jobkit.retention import delete_job, delete_mesh, expire_jobs, expire_meshes, pin_job, pin_mesh

@@ -10,17 +10,17 @@ from typing import Any
 import pytest
 from sqlalchemy import select, update
 
-from jobkit.attempts import Attempts
 from jobkit.database.clock import utc_now
 from jobkit.database.idempotency import Idempotency
 from jobkit.database.leadership import Leadership
 from jobkit.database.session import Database
 from jobkit.database.tables import AttemptRow, JobRow, LeaderRow
-from jobkit.endings import Attempt, another_try, end_attempt
 from jobkit.errors import JobFinishedError, StaleAttemptError
-from jobkit.jobs import Jobs, NewJob
+from jobkit.jobs.attempts import Attempts
+from jobkit.jobs.endings import Attempt, another_try, end_attempt
+from jobkit.jobs.jobs import Jobs, NewJob
+from jobkit.jobs.timeouts import TimeLimits, end_overdue
 from jobkit.meshes import Meshes
-from jobkit.overdue import TimeLimits, end_overdue
 from jobkit.registry import Registry
 from jobkit.schema import Job, JobError, JobResult, JobState, Mesh
 from jobkit.storage.base import ObjectStore, StoredObject

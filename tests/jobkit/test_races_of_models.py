@@ -9,7 +9,7 @@ import pytest
 
 from jobkit.database.session import Database
 from jobkit.errors import JobkitError, ModelNotFoundError, StaleAttemptError
-from jobkit.jobs import Jobs, NewJob
+from jobkit.jobs.jobs import Jobs, NewJob
 from jobkit.model_errors import ModelDeprecatedError, ModelInUseError
 from jobkit.model_lifetime import delete_version, deprecate_version
 from jobkit.proofs import Proofs

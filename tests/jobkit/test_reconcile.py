@@ -6,13 +6,13 @@ from redis import Redis
 from rq import Queue
 from rq.serializers import JSONSerializer
 
-from jobkit.attempts import Attempts
 from jobkit.database.clock import utc_now
 from jobkit.database.session import Database
 from jobkit.errors import QueueUnavailableError
-from jobkit.jobs import Jobs
+from jobkit.jobs.attempts import Attempts
+from jobkit.jobs.jobs import Jobs
+from jobkit.jobs.timeouts import TimeLimits
 from jobkit.meshes import MAX_ANALYSES, Meshes
-from jobkit.overdue import TimeLimits
 from jobkit.queue import INSPECT_MESH, RUN_JOB, TaskQueue, job_entry, mesh_entry
 from jobkit.reconcile import GRACE_S, reconcile, submit_analysis, submit_job
 from jobkit.schema import Job, JobState, Mesh, MeshState

@@ -4,7 +4,6 @@ from datetime import timedelta
 import pytest
 from sqlalchemy import func, select
 
-from jobkit.attempts import Attempts
 from jobkit.database.clock import utc_now
 from jobkit.database.idempotency import Idempotency
 from jobkit.database.session import Database
@@ -16,7 +15,8 @@ from jobkit.errors import (
     MeshNotFoundError,
     StoreUnavailableError,
 )
-from jobkit.jobs import Jobs, NewJob
+from jobkit.jobs.attempts import Attempts
+from jobkit.jobs.jobs import Jobs, NewJob
 from jobkit.meshes import Meshes
 from jobkit.retention import BATCH, delete_job, delete_mesh, expire_jobs, expire_meshes, pin_job, pin_mesh
 from jobkit.schema import Job, Mesh

@@ -9,7 +9,7 @@ import pytest
 from jobkit.database.clock import utc_now
 from jobkit.database.session import Database
 from jobkit.errors import StoreUnavailableError
-from jobkit.jobs import Jobs
+from jobkit.jobs.jobs import Jobs
 from jobkit.meshes import MESH_DAMAGED, Meshes
 from jobkit.missing import Missing, MissingObjects
 from jobkit.registry import MODEL_PREFIX, Registry

@@ -4,11 +4,11 @@ from pathlib import Path
 
 import pytest
 
-from jobkit.attempts import Attempts
 from jobkit.database.clock import utc_now
 from jobkit.database.session import Database
 from jobkit.errors import StoreUnavailableError
-from jobkit.jobs import Jobs, NewJob
+from jobkit.jobs.attempts import Attempts
+from jobkit.jobs.jobs import Jobs, NewJob
 from jobkit.meshes import Meshes
 from jobkit.registry import MODEL_PREFIX, Registry
 from jobkit.retention import delete_mesh

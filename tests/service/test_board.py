@@ -5,11 +5,11 @@ from typing import Any
 import anyio
 import pytest
 
-from jobkit.attempts import Attempts
 from jobkit.database.session import Database
 from jobkit.errors import JobNotFoundError
-from jobkit.estimates import Estimates
-from jobkit.jobs import Glance, Jobs, NewJob
+from jobkit.jobs.attempts import Attempts
+from jobkit.jobs.estimates import Estimates
+from jobkit.jobs.jobs import Glance, Jobs, NewJob
 from jobkit.meshes import Meshes
 from jobkit.schema import Job, JobSpec, JobState, ResolvedModel
 from jobkit.storage.base import ObjectStore

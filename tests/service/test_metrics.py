@@ -12,10 +12,10 @@ from starlette.testclient import TestClient
 from jobkit.database.clock import utc_now
 from jobkit.database.leadership import DISPATCHER, Leadership
 from jobkit.database.tables import JobRow
+from jobkit.jobs.stage_seconds import StageSeconds
 from jobkit.schema import HoleCounts, Job, JobError, JobResult, ModelVersion
 from jobkit.scrub import Scrub, ScrubLimits
 from jobkit.settings import Settings
-from jobkit.stages import StageSeconds
 from service.app import create_app
 from service.metrics import CACHE_S, StateCollector
 from service.services import Services

@@ -12,8 +12,8 @@ from prometheus_client.parser import text_string_to_metric_families
 from starlette.testclient import TestClient
 
 from jobkit.database.leadership import DISPATCHER, Leadership
+from jobkit.jobs.stage_seconds import StageSeconds
 from jobkit.schema import HoleCounts, JobResult, ModelVersion
-from jobkit.stages import StageSeconds
 from service.services import Services
 
 ROOT = Path(__file__).parents[2]

@@ -6,10 +6,10 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from jobkit.attempts import Attempts
 from jobkit.database.session import Database
-from jobkit.endings import Attempt
-from jobkit.jobs import Jobs, NewJob
+from jobkit.jobs.attempts import Attempts
+from jobkit.jobs.endings import Attempt
+from jobkit.jobs.jobs import Jobs, NewJob
 from jobkit.meshes import Meshes
 from jobkit.schema import JobResult, JobSpec, ResolvedModel
 from jobkit.storage.base import ObjectStore

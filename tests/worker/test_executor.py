@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from jobkit.database.session import Database
-from jobkit.jobs import Jobs, NewJob
+from jobkit.jobs.jobs import Jobs, NewJob
 from jobkit.meshes import Meshes
 from jobkit.queue import TaskQueue
 from jobkit.reconcile import submit_job

@@ -12,7 +12,7 @@ from sqlalchemy import select
 
 from jobkit.database.session import Database
 from jobkit.database.tables import StageRow
-from jobkit.jobs import Jobs, NewJob
+from jobkit.jobs.jobs import Jobs, NewJob
 from jobkit.logs import _add_subject
 from jobkit.meshes import Meshes
 from jobkit.queue import TaskQueue

@@ -11,7 +11,7 @@ from onnx import TensorProto, helper, numpy_helper
 
 from jobkit.database.session import Database
 from jobkit.errors import ModelNotFoundError, StaleAttemptError
-from jobkit.jobs import NewJob
+from jobkit.jobs.jobs import NewJob
 from jobkit.model_lifetime import delete_version, deprecate_version
 from jobkit.proofs import MAX_PROOFS
 from jobkit.reconcile import submit_proof

@@ -11,11 +11,11 @@ import pytest
 from sqlalchemy import select, update
 from sqlalchemy.orm import Session
 
-from jobkit.attempts import Attempts
 from jobkit.database.session import Database
 from jobkit.database.tables import JobRow, MeshRow
 from jobkit.errors import DatabaseUnavailableError, StaleAttemptError
-from jobkit.jobs import Jobs, NewJob
+from jobkit.jobs.attempts import Attempts
+from jobkit.jobs.jobs import Jobs, NewJob
 from jobkit.meshes import MAX_ANALYSES, Meshes
 from jobkit.queue import TaskQueue
 from jobkit.schema import Job, JobSpec, JobState, MeshState, ResolvedModel

@@ -5,8 +5,8 @@ from typing import Any
 
 import pytest
 
-from jobkit.attempts import Attempt
 from jobkit.errors import ObjectNotFoundError, StoreUnavailableError
+from jobkit.jobs.attempts import Attempt
 from jobkit.storage.base import ObjectStore, StoredObject, result_key
 from worker.failures import Failure
 from worker.limits import EngineLimits

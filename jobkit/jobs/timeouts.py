@@ -11,14 +11,14 @@ from typing import Any
 from sqlalchemy import ColumnElement, select
 from sqlalchemy.orm import Session
 
-from jobkit.attempts import AT_WORK
 from jobkit.database.job_rows import existing_job
 from jobkit.database.session import Database
 from jobkit.database.tables import AttemptRow, JobRow
-from jobkit.endings import Attempt, Ending, another_try, cancel_attempt, counts_out, end_attempt, failure
 from jobkit.errors import JobNotFoundError, StaleAttemptError
+from jobkit.jobs.attempts import AT_WORK
+from jobkit.jobs.endings import Attempt, Ending, another_try, cancel_attempt, counts_out, end_attempt, failure
+from jobkit.jobs.transitions import Move, make_move
 from jobkit.schema import JobError, JobState
-from jobkit.transitions import Move, make_move
 
 # A worker that lives acknowledges a cancel within a second; after this long nobody waits for a dead one.
 CANCEL_PATIENCE_S = 1.5

@@ -6,12 +6,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 from sqlalchemy import update
 
-from jobkit.attempts import Attempts
 from jobkit.database.clock import utc_now
 from jobkit.database.session import Database
 from jobkit.database.tables import JobRow, MeshRow
-from jobkit.estimates import MIN_PAST, Estimates, PastJob, Speeds, left_at_work, left_in_queue
-from jobkit.jobs import Jobs, NewJob
+from jobkit.jobs.attempts import Attempts
+from jobkit.jobs.estimates import MIN_PAST, Estimates, PastJob, Speeds, left_at_work, left_in_queue
+from jobkit.jobs.jobs import Jobs, NewJob
 from jobkit.schema import Job, JobError, JobResult, JobState
 
 MIB = 1 << 20

@@ -10,8 +10,8 @@ from sqlalchemy.orm import Session
 from jobkit.database.counters import count_attempt
 from jobkit.database.tables import AttemptRow, JobRow
 from jobkit.errors import StaleAttemptError
+from jobkit.jobs.transitions import Move, make_move
 from jobkit.schema import EventType, JobError, JobResult, JobState
-from jobkit.transitions import Move, make_move
 
 
 @dataclass(frozen=True)

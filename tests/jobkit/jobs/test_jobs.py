@@ -3,11 +3,11 @@ from dataclasses import replace
 
 import pytest
 
-from jobkit.attempts import Attempts
 from jobkit.database.idempotency import Idempotency
 from jobkit.database.session import Database
 from jobkit.errors import IdempotencyError, JobFinishedError, JobNotFoundError, MeshNotFoundError
-from jobkit.jobs import Jobs, NewJob
+from jobkit.jobs.attempts import Attempts
+from jobkit.jobs.jobs import Jobs, NewJob
 from jobkit.meshes import Meshes
 from jobkit.schema import Job, JobResult, JobSpec, JobState, ResolvedModel
 from jobkit.storage.base import StoredObject

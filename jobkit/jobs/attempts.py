@@ -14,7 +14,8 @@ from jobkit.database.clock import shared_now, utc_now
 from jobkit.database.job_rows import existing_job, to_job
 from jobkit.database.session import Database
 from jobkit.database.tables import AttemptRow, JobRow
-from jobkit.endings import (
+from jobkit.errors import StaleAttemptError
+from jobkit.jobs.endings import (
     Attempt,
     Ending,
     another_try,
@@ -26,11 +27,10 @@ from jobkit.endings import (
     stale,
     success,
 )
-from jobkit.errors import StaleAttemptError
-from jobkit.events import append_event
+from jobkit.jobs.events import append_event
+from jobkit.jobs.stage_seconds import StageSeconds, add_stages
+from jobkit.jobs.transitions import Move, make_move, update_job
 from jobkit.schema import Job, JobError, JobResult, JobState
-from jobkit.stages import StageSeconds, add_stages
-from jobkit.transitions import Move, make_move, update_job
 
 AT_WORK = (JobState.RUNNING.value, JobState.CANCELING.value)
 

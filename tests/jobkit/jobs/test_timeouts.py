@@ -2,12 +2,12 @@ from datetime import timedelta
 
 import pytest
 
-from jobkit.attempts import Attempts
 from jobkit.database.clock import utc_now
 from jobkit.database.session import Database
 from jobkit.errors import StaleAttemptError
-from jobkit.jobs import Jobs, NewJob
-from jobkit.overdue import CANCEL_PATIENCE_S, TimeLimits, end_overdue
+from jobkit.jobs.attempts import Attempts
+from jobkit.jobs.jobs import Jobs, NewJob
+from jobkit.jobs.timeouts import CANCEL_PATIENCE_S, TimeLimits, end_overdue
 from jobkit.schema import Job, JobResult, JobState, Limits
 
 LIMITS = TimeLimits(queue_s=1e6, total_s=1e6, memory_mb=1000)

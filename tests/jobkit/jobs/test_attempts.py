@@ -10,14 +10,14 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from sqlalchemy import update
 
-from jobkit.attempts import Attempts
 from jobkit.database.clock import utc_now
 from jobkit.database.session import Database
 from jobkit.database.tables import JobRow
-from jobkit.endings import Attempt
 from jobkit.errors import JobFinishedError, JobNotFoundError, StaleAttemptError
-from jobkit.jobs import Jobs, NewJob
-from jobkit.overdue import TimeLimits, end_overdue
+from jobkit.jobs.attempts import Attempts
+from jobkit.jobs.endings import Attempt
+from jobkit.jobs.jobs import Jobs, NewJob
+from jobkit.jobs.timeouts import TimeLimits, end_overdue
 from jobkit.schema import TRANSITIONS, Job, JobError, JobResult, JobState
 
 LOST = JobError(code="engine_crashed", message="the engine died", stage="fill", retryable=True)

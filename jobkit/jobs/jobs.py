@@ -14,10 +14,10 @@ from jobkit.database.readable_rows import readable
 from jobkit.database.session import Database
 from jobkit.database.tables import JobRow, MeshRow, ModelRow
 from jobkit.errors import JobFinishedError, JobNotFoundError, MeshNotFoundError, ModelNotFoundError
-from jobkit.events import append_event, read_events
 from jobkit.ids import new_job_id
+from jobkit.jobs.events import append_event, read_events
+from jobkit.jobs.transitions import Move, make_move
 from jobkit.schema import EventPage, Job, JobPage, JobSpec, JobState, ResolvedModel
-from jobkit.transitions import Move, make_move
 
 
 @dataclass(frozen=True)

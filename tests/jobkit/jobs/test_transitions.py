@@ -1,7 +1,7 @@
 import pytest
 
+from jobkit.jobs.transitions import Move
 from jobkit.schema import TRANSITIONS, JobState
-from jobkit.transitions import Move
 
 
 @pytest.mark.parametrize("source", JobState)

@@ -5,13 +5,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 from sqlalchemy import delete, select
 
-from jobkit.attempts import Attempts
 from jobkit.database.session import Database
 from jobkit.database.tables import AttemptCountRow, AttemptRow, StageRow
 from jobkit.errors import StaleAttemptError
-from jobkit.jobs import Jobs
+from jobkit.jobs.attempts import Attempts
+from jobkit.jobs.jobs import Jobs
+from jobkit.jobs.stage_seconds import StageSeconds, add_stages
 from jobkit.schema import Job, JobError, JobResult
-from jobkit.stages import StageSeconds, add_stages
 
 RESULT = JobResult(format="ply", files=[])
 LOST = JobError(code="worker_lost", message="gone", retryable=True)

@@ -9,7 +9,7 @@ from sqlalchemy import ColumnElement, CursorResult, update
 from sqlalchemy.orm import Session
 
 from jobkit.database.tables import JobRow
-from jobkit.events import append_event
+from jobkit.jobs.events import append_event
 from jobkit.outbox import write_messages
 from jobkit.schema import TRANSITIONS, EventType, JobState
 

@@ -1,0 +1,1 @@
+"""Jobs from acceptance to their end: attempts, transitions, events, estimates, limits of time."""
