@@ -14,7 +14,7 @@ from jobkit.database.session import Database
 from jobkit.database.tables import JobRow, MeshRow, ModelRow
 from jobkit.jobs.timeouts import TimeLimits, end_overdue
 from jobkit.meshes import MAX_ANALYSES
-from jobkit.proofs import give_up_proofs, parts_of, reference_of
+from jobkit.models.proofs import give_up_proofs, parts_of, reference_of
 from jobkit.queue import TaskQueue, job_entry, mesh_entry, model_entry
 from jobkit.schema import JobState, MeshProblem, MeshState, ModelState
 

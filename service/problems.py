@@ -10,7 +10,8 @@ from typing import Any
 from starlette.requests import Request
 from starlette.responses import JSONResponse
 
-from jobkit import errors, model_errors
+from jobkit import errors
+from jobkit.models import errors as model_errors
 from jobkit.schema import PROBLEM_MEDIA_TYPE, FieldError, Problem
 from jobkit.text import printable
 

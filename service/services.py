@@ -14,11 +14,11 @@ from jobkit.jobs.attempts import Attempts
 from jobkit.jobs.estimates import Estimates
 from jobkit.jobs.jobs import Jobs
 from jobkit.meshes import Meshes
-from jobkit.proofs import Proofs
+from jobkit.models.proofs import Proofs
+from jobkit.models.registry import Registry
+from jobkit.models.shipped import seed_shipped
 from jobkit.queue import TaskQueue
-from jobkit.registry import Registry
 from jobkit.settings import Settings
-from jobkit.shipped import seed_shipped
 from jobkit.storage.base import ObjectStore
 from jobkit.storage.open import open_store
 from jobkit.webhooks import Webhooks

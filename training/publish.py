@@ -5,7 +5,7 @@ from pathlib import Path
 
 from jobkit.database.session import Database
 from jobkit.ids import MODEL_NAME
-from jobkit.registry import Registry
+from jobkit.models.registry import Registry
 from jobkit.schema import ModelVersion
 from jobkit.settings import load_settings
 from jobkit.storage.open import open_store

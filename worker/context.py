@@ -17,9 +17,9 @@ from jobkit.database.session import Database
 from jobkit.jobs.attempts import Attempts
 from jobkit.jobs.jobs import Jobs
 from jobkit.meshes import Meshes
-from jobkit.proofs import Proofs
+from jobkit.models.proofs import Proofs
+from jobkit.models.registry import Registry
 from jobkit.queue import TaskQueue
-from jobkit.registry import Registry
 from jobkit.settings import Settings
 from jobkit.storage.base import ObjectStore
 from jobkit.telemetry import Telemetry

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from jobkit.errors import NotFoundError
-from jobkit.registry import Registry
+from jobkit.models.registry import Registry
 from jobkit.schema import Deprecation, ResolvedModel
 from jobkit.storage.base import CHUNK_BYTES, ObjectStore
 from jobkit.storage.digests import sha256_of

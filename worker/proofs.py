@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from jobkit.proofs import Proof
+from jobkit.models.proofs import Proof
 from jobkit.reconcile import submit_proof
 from jobkit.schema import ModelProblem, ResolvedModel
 from worker.checks import Check, run_check

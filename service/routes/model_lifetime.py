@@ -5,7 +5,7 @@ from http import HTTPStatus
 from fastapi import APIRouter
 from starlette.responses import Response
 
-from jobkit import model_lifetime
+from jobkit.models import lifetime
 from jobkit.schema import DeprecationReason, ModelVersion
 from service.routes.common import AliasPath, ModelNamePath, VersionPath, problems
 from service.services import ServicesDep
@@ -19,7 +19,7 @@ router = APIRouter(tags=["models"], route_class=StrictRoute)
 )
 def delete_model_version(services: ServicesDep, name: ModelNamePath, version: VersionPath) -> Response:
     """Delete a version that no alias points to and no unfinished job needs. Its number never comes back."""
-    model_lifetime.delete_version(services.database, name, version)
+    lifetime.delete_version(services.database, name, version)
     return _done()
 
 
@@ -33,7 +33,7 @@ def deprecate_model_version(
 ) -> ModelVersion:
     """Mark a version as one that should be used no more. Jobs that name it still run, and end with a warning."""
     reason = "" if given is None else given.reason
-    return model_lifetime.deprecate_version(services.database, name, version, reason)
+    return lifetime.deprecate_version(services.database, name, version, reason)
 
 
 @router.delete(
@@ -44,14 +44,14 @@ def deprecate_model_version(
 )
 def restore_model_version(services: ServicesDep, name: ModelNamePath, version: VersionPath) -> Response:
     """Take the mark away; a version without one stays as it is."""
-    model_lifetime.restore_version(services.database, name, version)
+    lifetime.restore_version(services.database, name, version)
     return _done()
 
 
 @router.delete("/v1/aliases/{alias}", status_code=204, response_class=Response, responses=problems(404, 409))
 def delete_alias(services: ServicesDep, alias: AliasPath) -> Response:
     """Delete an alias. Jobs that are accepted keep the version that it meant; `default` can only be moved."""
-    model_lifetime.delete_alias(services.database, alias)
+    lifetime.delete_alias(services.database, alias)
     return _done()
 
 

@@ -8,9 +8,9 @@ from starlette.concurrency import run_in_threadpool
 from starlette.responses import Response
 
 from jobkit.database.idempotency import note_request, refuse_conflict
-from jobkit.model_header import Card
-from jobkit.proofs import reference_of
-from jobkit.registry import MODEL_PREFIX, MOST_VERSIONS
+from jobkit.models.header import Card
+from jobkit.models.proofs import reference_of
+from jobkit.models.registry import MODEL_PREFIX, MOST_VERSIONS
 from jobkit.schema import Alias, AliasTarget, Model, ModelList, ModelState, ModelVersion
 from jobkit.schema.base import NAME_PATTERN
 from jobkit.strict_json import StrictJsonError, read_json

@@ -18,7 +18,7 @@ from jobkit.database.session import Database, read_json_column, write_json
 from jobkit.deliveries import Deliveries
 from jobkit.errors import JobkitError
 from jobkit.logs import JsonFormatter, TextFormatter
-from jobkit.network_header import read_network_card
+from jobkit.models.network_header import read_network_card
 from jobkit.schema import DeliveryState, ModelVersion, NewWebhook
 from jobkit.settings import Settings
 from jobkit.strict_json import MOST_LEVELS, StrictJsonError, read_json

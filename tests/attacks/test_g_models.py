@@ -16,10 +16,10 @@ from jobkit.errors import ModelKindError, UnusableModelError
 from jobkit.jobs.jobs import Jobs, NewJob
 from jobkit.jobs.timeouts import TimeLimits
 from jobkit.meshes import Meshes
-from jobkit.model_header import MAX_CARD_BYTES
+from jobkit.models.header import MAX_CARD_BYTES
+from jobkit.models.registry import MODEL_PREFIX, Registry
 from jobkit.queue import TaskQueue, model_entry
 from jobkit.reconcile import reconcile
-from jobkit.registry import MODEL_PREFIX, Registry
 from jobkit.schema import JobSpec, ModelState, ResolvedModel
 from jobkit.settings import Settings
 from jobkit.storage.base import ObjectStore

@@ -9,7 +9,7 @@ import pytest
 
 from jobkit.database.session import Database
 from jobkit.jobs.attempts import Attempts
-from jobkit.proofs import Proofs
+from jobkit.models.proofs import Proofs
 from jobkit.schema import JobResult, ResultFile
 from jobkit.settings import Settings
 from jobkit.storage.base import result_key

@@ -7,7 +7,7 @@ from jobkit.errors import StoreUnavailableError
 from jobkit.jobs.jobs import Jobs, NewJob
 from jobkit.meshes import MESH_MISSING, Meshes
 from jobkit.missing import Missing, MissingObjects
-from jobkit.registry import MODEL_PREFIX, Registry
+from jobkit.models.registry import MODEL_PREFIX, Registry
 from jobkit.retention import delete_job
 from jobkit.schema import Mesh, MeshState
 from jobkit.storage.base import ObjectStore

@@ -21,7 +21,7 @@ from jobkit.jobs.endings import Attempt, another_try, end_attempt
 from jobkit.jobs.jobs import Jobs, NewJob
 from jobkit.jobs.timeouts import TimeLimits, end_overdue
 from jobkit.meshes import Meshes
-from jobkit.registry import Registry
+from jobkit.models.registry import Registry
 from jobkit.schema import Job, JobError, JobResult, JobState, Mesh
 from jobkit.storage.base import ObjectStore, StoredObject
 from tests.waiting import GUARD_S, let_others_run

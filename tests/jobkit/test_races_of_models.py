@@ -10,10 +10,10 @@ import pytest
 from jobkit.database.session import Database
 from jobkit.errors import JobkitError, ModelNotFoundError, StaleAttemptError
 from jobkit.jobs.jobs import Jobs, NewJob
-from jobkit.model_errors import ModelDeprecatedError, ModelInUseError
-from jobkit.model_lifetime import delete_version, deprecate_version
-from jobkit.proofs import Proofs
-from jobkit.registry import Registry
+from jobkit.models.errors import ModelDeprecatedError, ModelInUseError
+from jobkit.models.lifetime import delete_version, deprecate_version
+from jobkit.models.proofs import Proofs
+from jobkit.models.registry import Registry
 from jobkit.schema import JobSpec, Mesh, ModelState, ResolvedModel
 from jobkit.storage.base import ObjectStore, StoredObject
 from tests.waiting import GUARD_S

@@ -12,7 +12,7 @@ from jobkit.errors import StoreUnavailableError
 from jobkit.jobs.jobs import Jobs
 from jobkit.meshes import MESH_DAMAGED, Meshes
 from jobkit.missing import Missing, MissingObjects
-from jobkit.registry import MODEL_PREFIX, Registry
+from jobkit.models.registry import MODEL_PREFIX, Registry
 from jobkit.schema import Mesh, MeshState
 from jobkit.scrub import Scrub, Scrubbed, ScrubLimits
 from jobkit.storage.base import CHUNK_BYTES, ObjectStore, result_key

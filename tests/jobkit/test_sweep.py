@@ -10,7 +10,7 @@ from jobkit.errors import StoreUnavailableError
 from jobkit.jobs.attempts import Attempts
 from jobkit.jobs.jobs import Jobs, NewJob
 from jobkit.meshes import Meshes
-from jobkit.registry import MODEL_PREFIX, Registry
+from jobkit.models.registry import MODEL_PREFIX, Registry
 from jobkit.retention import delete_mesh
 from jobkit.schema import Job, Mesh
 from jobkit.storage.base import ObjectStore, result_key

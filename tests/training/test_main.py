@@ -9,7 +9,7 @@ import pytest
 from typer.testing import CliRunner
 
 from jobkit.database.session import Database
-from jobkit.registry import Registry
+from jobkit.models.registry import Registry
 from jobkit.storage.open import open_store
 from quadpatch.errors import OptionError
 from quadpatch.inpainters.model_file import load_model, model_card

@@ -14,7 +14,7 @@ import pytest
 from typer.testing import CliRunner
 
 from jobkit.database.session import Database
-from jobkit.registry import Registry
+from jobkit.models.registry import Registry
 from jobkit.storage.open import open_store
 from quadpatch.inpainters.onnx_network import AutoencoderInpainter
 from quadpatch.options import HoleOptions, PatchOptions, RepairOptions

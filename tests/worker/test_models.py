@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from jobkit.database.session import Database
-from jobkit.registry import Registry
+from jobkit.models.registry import Registry
 from jobkit.schema import ModelVersion, ResolvedModel
 from jobkit.storage.base import ObjectStore
 from quadpatch.inpainters.model_file import save_dictionary

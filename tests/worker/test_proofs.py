@@ -12,12 +12,12 @@ from onnx import TensorProto, helper, numpy_helper
 from jobkit.database.session import Database
 from jobkit.errors import ModelNotFoundError, StaleAttemptError
 from jobkit.jobs.jobs import NewJob
-from jobkit.model_lifetime import delete_version, deprecate_version
-from jobkit.proofs import MAX_PROOFS
+from jobkit.models.lifetime import delete_version, deprecate_version
+from jobkit.models.proofs import MAX_PROOFS
+from jobkit.models.registry import MODEL_PREFIX, Registry
+from jobkit.models.resolution import resolve_method
 from jobkit.reconcile import submit_proof
-from jobkit.registry import MODEL_PREFIX, Registry
 from jobkit.schema import JobSpec, ModelProblem, ModelState, ModelVersion
-from jobkit.selection import resolve_method
 from jobkit.settings import Settings
 from jobkit.storage.base import ObjectStore
 from tests.integration.conftest import ply_bytes, punched_relief

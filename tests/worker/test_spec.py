@@ -5,8 +5,8 @@ import pytest
 import jobkit.schema
 import quadpatch.options
 from jobkit.meshes import MeshSource
+from jobkit.models.resolution import PAPER_NORMALISATION
 from jobkit.schema import Fitting, JobSpec
-from jobkit.selection import PAPER_NORMALISATION
 from quadpatch.inpainters.model_file import RECIPES
 from quadpatch.options import HoleOptions, HoleRule, NetworkOptions, PatchOptions, RepairOptions
 from worker.limits import EngineLimits

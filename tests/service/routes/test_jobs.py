@@ -8,7 +8,7 @@ from starlette.testclient import TestClient
 
 from jobkit.schema import Job, JobError, JobState, ModelVersion
 from service.services import Services
-from tests.jobkit.test_registry import NETWORK
+from tests.jobkit.models.test_registry import NETWORK
 from tests.waiting import wait_until
 
 SMOOTH = {"method": "smooth"}

@@ -12,9 +12,9 @@ from jobkit.database.clock import utc_now
 from jobkit.database.session import Database
 from jobkit.database.tables import AliasRow, DeletedModelRow, JobRow, ModelRow
 from jobkit.errors import ModelNotFoundError
-from jobkit.model_errors import AliasInUseError, ModelInUseError
-from jobkit.model_rows import to_version, version_row
-from jobkit.registry import DEFAULT_KINDS
+from jobkit.models.errors import AliasInUseError, ModelInUseError
+from jobkit.models.registry import DEFAULT_KINDS
+from jobkit.models.rows import to_version, version_row
 from jobkit.schema import JobState, ModelVersion
 
 _OPEN_STATES = tuple(state.value for state in JobState if not state.is_terminal)

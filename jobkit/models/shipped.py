@@ -7,7 +7,7 @@ from pathlib import Path
 
 from jobkit.errors import ModelNotFoundError, NameTakenError
 from jobkit.ids import MODEL_NAME
-from jobkit.registry import Registry
+from jobkit.models.registry import Registry
 from jobkit.schema import DEFAULT_MODEL, DEFAULT_NETWORK, ModelVersion
 
 _FILE = re.compile(rf"^(?P<name>{MODEL_NAME})@(?P<version>[1-9][0-9]*)\.(?:safetensors|onnx)$")

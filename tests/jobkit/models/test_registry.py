@@ -7,7 +7,7 @@ import pytest
 from jobkit.database.clock import utc_now
 from jobkit.database.session import Database
 from jobkit.errors import ModelNotFoundError, NameTakenError, UnusableModelError
-from jobkit.registry import Registry
+from jobkit.models.registry import Registry
 from jobkit.storage.base import ObjectStore
 from jobkit.storage.local import LocalStore
 from jobkit.sweep import GRACE, sweep_objects

@@ -2,7 +2,7 @@
 
 Versions of a name count up from 1. The same bytes under the same name are the same version. Names and aliases share
 one namespace, so a reference means one thing only. What clients publish is looked at here without opening it, and used
-once a worker has proven it (`jobkit.proofs`).
+once a worker has proven it (`jobkit.models.proofs`).
 """
 
 from dataclasses import dataclass
@@ -19,10 +19,10 @@ from jobkit.database.readable_rows import readable
 from jobkit.database.session import Database
 from jobkit.database.tables import AliasRow, DeletedModelRow, ModelRow
 from jobkit.errors import ModelKindError, NameTakenError
-from jobkit.model_errors import ModelDeprecatedError
-from jobkit.model_header import Card, artifact_format, read_dictionary_card, to_wire_card
-from jobkit.model_rows import check_proven, meant_row, to_alias, to_model, to_version, version_row
-from jobkit.network_header import check_network, read_network_card
+from jobkit.models.errors import ModelDeprecatedError
+from jobkit.models.header import Card, artifact_format, read_dictionary_card, to_wire_card
+from jobkit.models.network_header import check_network, read_network_card
+from jobkit.models.rows import check_proven, meant_row, to_alias, to_model, to_version, version_row
 from jobkit.schema import SELF, Alias, Model, ModelKind, ModelList, ModelState, ModelVersion
 from jobkit.storage.base import CHUNK_BYTES, ObjectStore, StoredObject
 from jobkit.storage.removals import assure

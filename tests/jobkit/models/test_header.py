@@ -8,7 +8,7 @@ from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
 from jobkit.errors import UnusableModelError
-from jobkit.model_header import artifact_format, read_dictionary_card, to_wire_card
+from jobkit.models.header import artifact_format, read_dictionary_card, to_wire_card
 
 CARD = {"kind": "dictionary", "patch_resolution": 2}
 ATOMS = {"dtype": "F32", "shape": [4, 3], "data_offsets": [0, 48]}

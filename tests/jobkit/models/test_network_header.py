@@ -7,8 +7,8 @@ from hypothesis import strategies as st
 from onnx import TensorProto, helper
 
 from jobkit.database.session import Database
-from jobkit.network_header import read_network_card
-from jobkit.registry import Registry
+from jobkit.models.network_header import read_network_card
+from jobkit.models.registry import Registry
 from jobkit.storage.local import LocalStore
 
 CARD = {"kind": "autoencoder", "patch_resolution": 24, "description": "a network of ours", "metrics": {"error": 0.5}}

@@ -5,11 +5,11 @@ import pytest
 
 from jobkit.database.session import Database
 from jobkit.errors import ModelKindError, ModelNotFoundError, NoNetworkError
-from jobkit.registry import Registry
+from jobkit.models.registry import Registry
+from jobkit.models.resolution import resolve_method
 from jobkit.schema import CnnMethod, DictionaryMethod, Fitting, SmoothMethod
-from jobkit.selection import resolve_method
 from jobkit.storage.base import ObjectStore
-from tests.jobkit.test_registry import NETWORK
+from tests.jobkit.models.test_registry import NETWORK
 
 
 @pytest.fixture

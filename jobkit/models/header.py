@@ -1,7 +1,7 @@
 """What a model file says about itself, read without a numeric library.
 
 A safetensors file is 8 bytes of length (little endian), a JSON header of that length, and the tensors' bytes. Only the
-header is read. A network is only recognised here; `jobkit.network_header` looks at its parts.
+header is read. A network is only recognised here; `jobkit.models.network_header` looks at its parts.
 """
 
 import json

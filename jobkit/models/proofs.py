@@ -14,7 +14,7 @@ from jobkit.database.clock import shared_now
 from jobkit.database.session import Database
 from jobkit.database.tables import ModelRow
 from jobkit.errors import StaleAttemptError
-from jobkit.model_rows import to_version, version_row
+from jobkit.models.rows import to_version, version_row
 from jobkit.schema import ModelProblem, ModelState, ModelVersion
 
 # Proofs before a version is refused.

@@ -1,7 +1,7 @@
 """Which model a job's method means, checked before the job is accepted."""
 
 from jobkit.errors import ModelKindError, NoNetworkError
-from jobkit.registry import Registry
+from jobkit.models.registry import Registry
 from jobkit.schema import (
     SELF,
     CnnMethod,

@@ -6,7 +6,7 @@ from sqlalchemy.orm import Session
 from jobkit.database.readable_rows import readable
 from jobkit.database.tables import AliasRow, ModelRow
 from jobkit.errors import ModelNotFoundError
-from jobkit.model_errors import ModelNotProvenError, ModelRefusedError
+from jobkit.models.errors import ModelNotProvenError, ModelRefusedError
 from jobkit.schema import Alias, Deprecation, Model, ModelLinks, ModelState, ModelVersion
 
 # What clients get of a row as it stands there.

@@ -6,12 +6,12 @@ import pytest
 
 from jobkit.database.session import Database
 from jobkit.errors import ModelNotFoundError
-from jobkit.model_lifetime import delete_version, deprecate_version
-from jobkit.registry import MODEL_PREFIX, Registry
+from jobkit.models.lifetime import delete_version, deprecate_version
+from jobkit.models.registry import MODEL_PREFIX, Registry
+from jobkit.models.shipped import seed_shipped
 from jobkit.schema import ModelState
-from jobkit.shipped import seed_shipped
 from jobkit.storage.base import ObjectStore
-from tests.jobkit.test_registry import NETWORK
+from tests.jobkit.models.test_registry import NETWORK
 
 Make = Callable[[int], bytes]
 

@@ -1,0 +1,1 @@
+"""Learned models: registry, headers, proofs, deprecation and deletion."""
