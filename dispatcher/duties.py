@@ -9,7 +9,7 @@ from jobkit.database.leadership import Leadership
 from jobkit.database.session import Database
 from jobkit.jobs.timeouts import TimeLimits
 from jobkit.queue import TaskQueue
-from jobkit.reconcile import reconcile
+from jobkit.requeue import reconcile
 from jobkit.scrub import ROUND_S
 from jobkit.settings import Settings
 from jobkit.storage.base import ObjectStore

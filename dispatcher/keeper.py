@@ -8,7 +8,7 @@ live.
 import time
 from collections.abc import Callable
 
-from jobkit.reconcile import Reconciled
+from jobkit.requeue import Reconciled
 
 
 class Keeper:

@@ -20,9 +20,9 @@ from dispatcher.sending import Answer, Outgoing
 from jobkit.database.clock import shared_now
 from jobkit.database.session import Database
 from jobkit.database.tables import DeliveryRow, DeliveryTryRow, WebhookRow
-from jobkit.deliveries import message_id
 from jobkit.schema import DeliveryState
-from jobkit.webhooks import give_up_pending
+from jobkit.webhooks.deliveries import message_id
+from jobkit.webhooks.subscriptions import give_up_pending
 
 MAX_PER_WEBHOOK = 4
 # A subscriber who takes nothing for this long when a message is given up is sent no more of them.

@@ -18,8 +18,8 @@ import httpx
 from standardwebhooks import Webhook
 
 from dispatcher.backoff import read_retry_after
-from jobkit.addresses import Address, Destination, Networks, check_addresses, destination_of, resolve
 from jobkit.database.clock import utc_now
+from jobkit.egress import Address, Destination, Networks, check_addresses, destination_of, resolve
 from jobkit.errors import JobkitError
 
 CONNECT_S = 5.0

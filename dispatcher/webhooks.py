@@ -17,8 +17,8 @@ from dispatcher.outbox import Claim, claim_due, is_anything_due, note_answer
 from dispatcher.sending import Answer, Sender
 from jobkit.database.clock import utc_now
 from jobkit.database.session import Database
-from jobkit.deliveries import Deliveries
 from jobkit.settings import Settings
+from jobkit.webhooks.deliveries import Deliveries
 
 MAX_PARALLEL = 64
 # Between two looks for what has become due while other deliveries are under way.

@@ -12,7 +12,7 @@ from pathlib import Path
 from pydantic import Field, SecretStr, ValidationError, field_validator
 from pydantic_settings import BaseSettings, SettingsConfigDict
 
-from jobkit.addresses import Networks, parse_networks
+from jobkit.egress import Networks, parse_networks
 from jobkit.errors import SettingsError
 
 PREFIX = "QUADPATCH_"

@@ -7,9 +7,8 @@ from typing import Annotated, cast
 
 from fastapi import Depends, Request
 
-from jobkit.addresses import check_url
 from jobkit.database.session import Database
-from jobkit.deliveries import Deliveries
+from jobkit.egress import check_url
 from jobkit.jobs.attempts import Attempts
 from jobkit.jobs.estimates import Estimates
 from jobkit.jobs.jobs import Jobs
@@ -21,7 +20,8 @@ from jobkit.queue import TaskQueue
 from jobkit.settings import Settings
 from jobkit.storage.base import ObjectStore
 from jobkit.storage.open import open_store
-from jobkit.webhooks import Webhooks
+from jobkit.webhooks.deliveries import Deliveries
+from jobkit.webhooks.subscriptions import Webhooks
 from service.board import Board
 from service.streams import EventStreams
 from service.waiting import Waiters

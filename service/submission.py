@@ -14,7 +14,7 @@ from jobkit.errors import (
 from jobkit.jobs.jobs import NewJob
 from jobkit.logs import current_request_id
 from jobkit.models.resolution import resolve_method
-from jobkit.reconcile import submit_analysis, submit_job, submit_proof
+from jobkit.requeue import submit_analysis, submit_job, submit_proof
 from jobkit.schema import Job, JobSpec, Limits, Mesh, MeshFacts, MeshState, Plan, ResolvedModel, conflict_of
 from jobkit.settings import Settings
 from jobkit.telemetry import current_traceparent

@@ -3,7 +3,7 @@
 import json
 
 from jobkit.meshes import Analysis
-from jobkit.reconcile import submit_analysis
+from jobkit.requeue import submit_analysis
 from jobkit.schema import MeshFacts, MeshProblem
 from worker.checks import Check, run_check
 from worker.context import Context

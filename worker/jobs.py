@@ -10,7 +10,7 @@ from typing import TypeVar
 
 from jobkit.errors import DatabaseUnavailableError, NotFoundError, StaleAttemptError
 from jobkit.logs import log_about
-from jobkit.reconcile import GRACE_S
+from jobkit.requeue import GRACE_S
 from jobkit.schema import JobState
 from worker.analyses import analyse
 from worker.context import Context, current_context

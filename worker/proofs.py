@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from jobkit.models.proofs import Proof
-from jobkit.reconcile import submit_proof
+from jobkit.requeue import submit_proof
 from jobkit.schema import ModelProblem, ResolvedModel
 from worker.checks import Check, run_check
 from worker.context import Context

@@ -20,7 +20,7 @@ from jobkit.errors import (
 from jobkit.jobs.attempts import AT_WORK, StartedAttempt
 from jobkit.jobs.endings import Attempt, stale
 from jobkit.jobs.stage_seconds import StageSeconds
-from jobkit.reconcile import submit_job
+from jobkit.requeue import submit_job
 from jobkit.schema import Job, JobError, JobResult, JobState
 from jobkit.telemetry import StageSpans
 from quadpatch.stages import failure_of

@@ -15,7 +15,6 @@ from starlette.testclient import TestClient
 
 from dispatcher.webhooks import deliver_webhooks
 from jobkit.database.session import Database, read_json_column, write_json
-from jobkit.deliveries import Deliveries
 from jobkit.errors import JobkitError
 from jobkit.logs import JsonFormatter, TextFormatter
 from jobkit.models.network_header import read_network_card
@@ -23,7 +22,8 @@ from jobkit.schema import DeliveryState, ModelVersion, NewWebhook
 from jobkit.settings import Settings
 from jobkit.strict_json import MOST_LEVELS, StrictJsonError, read_json
 from jobkit.text import LONGEST_MESSAGE, has_surrogate, printable
-from jobkit.webhooks import Webhooks
+from jobkit.webhooks.deliveries import Deliveries
+from jobkit.webhooks.subscriptions import Webhooks
 from service.content import content_disposition
 from service.formats import clean_filename
 from service.problems import MOST_FIELD_ERRORS

@@ -16,7 +16,7 @@ from jobkit.jobs.jobs import Jobs, NewJob
 from jobkit.jobs.timeouts import TimeLimits
 from jobkit.meshes import Meshes
 from jobkit.queue import TaskQueue
-from jobkit.reconcile import Reconciled, reconcile
+from jobkit.requeue import Reconciled, reconcile
 from jobkit.schema import JobSpec, ResolvedModel
 from jobkit.settings import Settings
 from jobkit.storage.base import StoredObject

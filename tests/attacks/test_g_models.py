@@ -19,7 +19,7 @@ from jobkit.meshes import Meshes
 from jobkit.models.header import MAX_CARD_BYTES
 from jobkit.models.registry import MODEL_PREFIX, Registry
 from jobkit.queue import TaskQueue, model_entry
-from jobkit.reconcile import reconcile
+from jobkit.requeue import reconcile
 from jobkit.schema import JobSpec, ModelState, ResolvedModel
 from jobkit.settings import Settings
 from jobkit.storage.base import ObjectStore

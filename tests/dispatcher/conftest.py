@@ -5,16 +5,16 @@ from functools import partial
 
 import pytest
 
-from jobkit.addresses import check_url, parse_networks
 from jobkit.database.session import Database
-from jobkit.deliveries import Deliveries
+from jobkit.egress import check_url, parse_networks
 from jobkit.jobs.attempts import Attempts
 from jobkit.jobs.jobs import Jobs, NewJob
 from jobkit.meshes import Meshes
 from jobkit.schema import JobError, JobSpec, NewWebhook, ResolvedModel, WebhookWithSecret
 from jobkit.settings import Settings
 from jobkit.storage.base import ObjectStore
-from jobkit.webhooks import Webhooks
+from jobkit.webhooks.deliveries import Deliveries
+from jobkit.webhooks.subscriptions import Webhooks
 from tests.dispatcher.receivers import LOOPBACK
 
 Subscribe = Callable[..., WebhookWithSecret]

@@ -1,7 +1,7 @@
 import time
 
 from dispatcher.keeper import Keeper
-from jobkit.reconcile import Reconciled
+from jobkit.requeue import Reconciled
 
 HEARTBEAT_S = 3600.0
 

@@ -15,8 +15,8 @@ from cryptography.hazmat.primitives.asymmetric import ec
 from standardwebhooks import Webhook, WebhookVerificationError
 
 from dispatcher.sending import Answer, LookUp, Outgoing, Sender
-from jobkit.addresses import parse_networks
-from jobkit.webhooks import new_secret
+from jobkit.egress import parse_networks
+from jobkit.webhooks.subscriptions import new_secret
 from tests.dispatcher.receivers import LOOPBACK, Receiver, receiving, talking
 from tests.waiting import GUARD_S
 

@@ -19,12 +19,12 @@ from dispatcher.webhooks import deliver_webhooks, forget_old_deliveries
 from jobkit.database.clock import utc_now
 from jobkit.database.session import Database
 from jobkit.database.tables import DeliveryRow
-from jobkit.deliveries import Deliveries
 from jobkit.jobs.jobs import Jobs
-from jobkit.outbox import UNTOLD
 from jobkit.schema import DeliveryState
 from jobkit.settings import Settings
-from jobkit.webhooks import Webhooks
+from jobkit.webhooks.deliveries import Deliveries
+from jobkit.webhooks.outbox import UNTOLD
+from jobkit.webhooks.subscriptions import Webhooks
 from tests.dispatcher.conftest import FailJob, Subscribe
 from tests.dispatcher.receivers import receiving
 from tests.waiting import GUARD_S

@@ -16,7 +16,7 @@ from jobkit.database.clock import utc_now
 from jobkit.database.session import Database
 from jobkit.database.tables import JobRow
 from jobkit.queue import TaskQueue, job_entry
-from jobkit.reconcile import GRACE_S
+from jobkit.requeue import GRACE_S
 from jobkit.settings import Settings
 from tests.dispatcher.process import dispatching
 from tests.waiting import GUARD_S, wait_until

@@ -14,7 +14,7 @@ from jobkit.database.session import Database
 from jobkit.jobs.jobs import Jobs, NewJob
 from jobkit.meshes import Meshes
 from jobkit.queue import TaskQueue
-from jobkit.reconcile import submit_job
+from jobkit.requeue import submit_job
 from jobkit.schema import JobSpec, JobState, ResolvedModel
 from jobkit.settings import Settings
 from jobkit.storage.base import ObjectStore

@@ -16,7 +16,7 @@ from jobkit.models.lifetime import delete_version, deprecate_version
 from jobkit.models.proofs import MAX_PROOFS
 from jobkit.models.registry import MODEL_PREFIX, Registry
 from jobkit.models.resolution import resolve_method
-from jobkit.reconcile import submit_proof
+from jobkit.requeue import submit_proof
 from jobkit.schema import JobSpec, ModelProblem, ModelState, ModelVersion
 from jobkit.settings import Settings
 from jobkit.storage.base import ObjectStore

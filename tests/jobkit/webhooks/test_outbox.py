@@ -11,9 +11,9 @@ from jobkit.database.tables import DeliveryRow
 from jobkit.jobs.attempts import Attempts
 from jobkit.jobs.endings import end_attempt, failure
 from jobkit.jobs.jobs import Jobs, NewJob
-from jobkit.outbox import UNTOLD
 from jobkit.schema import Job, JobError, JobResult, JobState, NewWebhook
-from jobkit.webhooks import Webhooks
+from jobkit.webhooks.outbox import UNTOLD
+from jobkit.webhooks.subscriptions import Webhooks
 
 ERROR = JobError(code="no_quads", message="the outline is too small")
 

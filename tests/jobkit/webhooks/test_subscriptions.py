@@ -9,11 +9,11 @@ from pydantic import ValidationError
 from jobkit.database.clock import utc_now
 from jobkit.database.session import Database
 from jobkit.database.tables import WebhookRow
-from jobkit.deliveries import Deliveries
 from jobkit.errors import AddressRefusedError, TooManyWebhooksError, WebhookDisabledError, WebhookNotFoundError
 from jobkit.schema import NewWebhook, WebhookChange
 from jobkit.schema.webhooks import ENDINGS
-from jobkit.webhooks import MAX_WEBHOOKS, Webhooks
+from jobkit.webhooks.deliveries import Deliveries
+from jobkit.webhooks.subscriptions import MAX_WEBHOOKS, Webhooks
 
 NEW = NewWebhook(url="https://mes.example.com/hook")
 

@@ -5,10 +5,10 @@ import pytest
 from jobkit.database.clock import utc_now
 from jobkit.database.session import Database
 from jobkit.database.tables import DeliveryRow, DeliveryTryRow
-from jobkit.deliveries import Deliveries
 from jobkit.errors import DeliveryNotFoundError, DeliveryPendingError
 from jobkit.schema import DeliveryState, NewWebhook
-from jobkit.webhooks import Webhooks
+from jobkit.webhooks.deliveries import Deliveries
+from jobkit.webhooks.subscriptions import Webhooks
 
 
 @pytest.fixture

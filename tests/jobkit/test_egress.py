@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from jobkit.addresses import (
+from jobkit.egress import (
     Address,
     Destination,
     check_addresses,

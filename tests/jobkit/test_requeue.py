@@ -14,7 +14,7 @@ from jobkit.jobs.jobs import Jobs
 from jobkit.jobs.timeouts import TimeLimits
 from jobkit.meshes import MAX_ANALYSES, Meshes
 from jobkit.queue import INSPECT_MESH, RUN_JOB, TaskQueue, job_entry, mesh_entry
-from jobkit.reconcile import GRACE_S, reconcile, submit_analysis, submit_job
+from jobkit.requeue import GRACE_S, reconcile, submit_analysis, submit_job
 from jobkit.schema import Job, JobState, Mesh, MeshState
 from jobkit.settings import Settings
 

@@ -13,7 +13,6 @@ from jobkit.database.readable_rows import readable
 from jobkit.database.session import Database
 from jobkit.database.tables import DeliveryRow, DeliveryTryRow, WebhookRow
 from jobkit.errors import DeliveryNotFoundError, DeliveryPendingError, WebhookDisabledError
-from jobkit.outbox import new_delivery
 from jobkit.schema import (
     Delivery,
     DeliveryDetail,
@@ -23,7 +22,8 @@ from jobkit.schema import (
     DeliveryTry,
     Message,
 )
-from jobkit.webhooks import existing_webhook
+from jobkit.webhooks.outbox import new_delivery
+from jobkit.webhooks.subscriptions import existing_webhook
 
 
 class Deliveries:

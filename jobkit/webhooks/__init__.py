@@ -1,0 +1,1 @@
+"""Webhooks: subscriptions, the outbox that changes of jobs fill, deliveries."""
