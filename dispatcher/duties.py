@@ -3,6 +3,7 @@
 from dispatcher.keeper import Keeper
 from dispatcher.loop import Duty
 from dispatcher.retention import Sweeper, remove_expired
+from dispatcher.scrub import ROUND_S
 from dispatcher.scrubbing import Scrubbing
 from dispatcher.webhooks import deliver_webhooks, forget_old_deliveries
 from jobkit.database.leadership import Leadership
@@ -10,7 +11,6 @@ from jobkit.database.session import Database
 from jobkit.jobs.timeouts import TimeLimits
 from jobkit.queue import TaskQueue
 from jobkit.requeue import reconcile
-from jobkit.scrub import ROUND_S
 from jobkit.settings import Settings
 from jobkit.storage.base import ObjectStore
 

@@ -2,14 +2,14 @@
 
 from collections.abc import Callable
 
+from dispatcher.missing_objects import Missing, MissingObjects
+from dispatcher.unreferenced_objects import Swept, sweep_objects
 from jobkit.database.clock import shared_now
 from jobkit.database.idempotency import forget_keys
 from jobkit.database.session import Database
-from jobkit.missing import Missing, MissingObjects
 from jobkit.retention import expire_jobs, expire_meshes
 from jobkit.settings import Settings
 from jobkit.storage.base import ObjectStore
-from jobkit.sweep import Swept, sweep_objects
 
 
 def remove_expired(settings: Settings, database: Database, store: ObjectStore, is_over: Callable[[], bool]) -> str:

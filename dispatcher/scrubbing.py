@@ -2,8 +2,8 @@
 
 from collections.abc import Callable
 
+from dispatcher.scrub import Scrub, ScrubLimits
 from jobkit.database.session import Database
-from jobkit.scrub import Scrub, ScrubLimits
 from jobkit.settings import Settings
 from jobkit.storage.base import ObjectStore
 

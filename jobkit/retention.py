@@ -1,9 +1,9 @@
 """How long jobs and meshes are kept: pins, deletion on request, and expiry.
 
 Rows go first, objects after them. A crash in between leaves objects that no row names, which the sweep removes
-(`jobkit/sweep.py`), and never a row whose file is gone. Files of a job lie under its own id, which never comes back, so
-they can go at once. The key of a mesh follows from its bytes, and the same bytes may be on their way in again at that
-very moment: those objects are left to the sweep altogether.
+(`dispatcher/unreferenced_objects.py`), and never a row whose file is gone. Files of a job lie under its own id, which
+never comes back, so they can go at once. The key of a mesh follows from its bytes, and the same bytes may be on their
+way in again at that very moment: those objects are left to the sweep altogether.
 """
 
 import logging

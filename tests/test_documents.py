@@ -226,7 +226,7 @@ def test_the_picture_is_small_enough_for_a_page() -> None:
         assert min(picture.size) >= 500
 
 
-@pytest.mark.parametrize("package", ["quadpatch"])
+@pytest.mark.parametrize("package", ["quadpatch", "jobkit"])
 def test_the_order_inside_a_package_is_that_of_its_contract(package: str) -> None:
     contracts = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["tool"]["importlinter"]["contracts"]
     (layers,) = [contract["layers"] for contract in contracts if contract.get("containers") == [package]]

@@ -9,12 +9,12 @@ from pathlib import Path
 import pytest
 from starlette.testclient import TestClient
 
+from dispatcher.scrub import Scrub, ScrubLimits
 from jobkit.database.session import Database
 from jobkit.errors import ObjectDamagedError
 from jobkit.jobs.jobs import Jobs, NewJob
 from jobkit.meshes import MESH_DAMAGED, Meshes
 from jobkit.schema import JobSpec, JobState, MeshState, ResolvedModel
-from jobkit.scrub import Scrub, ScrubLimits
 from jobkit.settings import Settings
 from jobkit.storage.base import CHUNK_BYTES, ObjectStore, StoredObject
 from jobkit.storage.digests import verified_chunks

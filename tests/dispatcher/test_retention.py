@@ -4,6 +4,7 @@ from datetime import timedelta
 
 from dispatcher.duties import duties_of
 from dispatcher.retention import Sweeper, remove_expired
+from dispatcher.unreferenced_objects import GRACE
 from jobkit.database.leadership import Leadership
 from jobkit.database.session import Database
 from jobkit.jobs.jobs import Jobs
@@ -12,7 +13,6 @@ from jobkit.queue import TaskQueue
 from jobkit.retention import pin_mesh
 from jobkit.settings import Settings
 from jobkit.storage.base import ObjectStore
-from jobkit.sweep import GRACE
 from tests.jobkit.holdings import DAY, AgingStore, age_rows, finish, keys_in, new_job, put, upload
 
 

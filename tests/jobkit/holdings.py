@@ -9,6 +9,7 @@ from pathlib import Path
 
 from sqlalchemy import delete, select, update
 
+from dispatcher.unreferenced_objects import CONTENT_PREFIXES, RESULT_PREFIX
 from jobkit.database.session import Database
 from jobkit.database.tables import (
     AttemptRow,
@@ -26,7 +27,6 @@ from jobkit.meshes import Meshes
 from jobkit.schema import Job, JobError, JobResult, JobSpec, Mesh, ResolvedModel, ResultFile
 from jobkit.storage.base import ListedObject, ObjectStore, ObjectWriter, StoredObject, result_key
 from jobkit.storage.removals import assure
-from jobkit.sweep import CONTENT_PREFIXES, RESULT_PREFIX
 
 DAY = timedelta(days=1)
 

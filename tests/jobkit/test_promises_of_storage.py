@@ -9,18 +9,18 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from sqlalchemy import select
 
+from dispatcher.missing_objects import Missing, MissingObjects
+from dispatcher.unreferenced_objects import GRACE, sweep_objects
 from jobkit.database.clock import utc_now
 from jobkit.database.session import Database
 from jobkit.database.tables import JobRow, MeshRow
 from jobkit.errors import ConflictError, NotFoundError, StaleAttemptError, StoreUnavailableError
 from jobkit.jobs.jobs import Jobs
 from jobkit.meshes import Meshes, is_missing
-from jobkit.missing import Missing, MissingObjects
 from jobkit.retention import delete_job, delete_mesh, expire_jobs, expire_meshes, pin_job, pin_mesh
 from jobkit.schema import JobState
 from jobkit.storage.base import ObjectStore, StoredObject, result_key
 from jobkit.storage.removals import assure, named_keys
-from jobkit.sweep import GRACE, sweep_objects
 from tests.jobkit.holdings import (
     AgingStore,
     KilledError,

@@ -9,12 +9,12 @@ from pydantic import SecretStr
 from sqlalchemy import update
 from starlette.testclient import TestClient
 
+from dispatcher.scrub import Scrub, ScrubLimits
 from jobkit.database.clock import utc_now
 from jobkit.database.leadership import DISPATCHER, Leadership
 from jobkit.database.tables import JobRow
 from jobkit.jobs.stage_seconds import StageSeconds
 from jobkit.schema import HoleCounts, Job, JobError, JobResult, ModelVersion
-from jobkit.scrub import Scrub, ScrubLimits
 from jobkit.settings import Settings
 from service.app import create_app
 from service.metrics import CACHE_S, StateCollector

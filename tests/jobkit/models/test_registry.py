@@ -4,13 +4,13 @@ from pathlib import Path
 
 import pytest
 
+from dispatcher.unreferenced_objects import GRACE, sweep_objects
 from jobkit.database.clock import utc_now
 from jobkit.database.session import Database
 from jobkit.errors import ModelNotFoundError, NameTakenError, UnusableModelError
 from jobkit.models.registry import Registry
 from jobkit.storage.base import ObjectStore
 from jobkit.storage.local import LocalStore
-from jobkit.sweep import GRACE, sweep_objects
 
 Make = Callable[[int], bytes]
 # A graph without nodes, and standard operators: as much as is looked at here.

@@ -4,7 +4,7 @@ Disks lose bits without an error, and in an object that is not read the damage s
 needed. An object that differs is read a second time, since a transfer may lose bits as well, and then remembered in
 the database. A damaged mesh is rejected with the code `mesh_damaged`; jobs that wait for it fail with the same, and it
 is analysed again once its bytes are right again, by an upload or from a backup. Other damaged objects are answered with
-`object_damaged`, or end a job with `model_damaged`. Objects that are gone are left to `jobkit.missing`.
+`object_damaged`, or end a job with `model_damaged`. Objects that are gone are left to `dispatcher.missing_objects`.
 """
 
 import hashlib

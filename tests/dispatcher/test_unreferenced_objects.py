@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 
+from dispatcher.unreferenced_objects import GRACE, Swept, sweep_objects
 from jobkit.database.clock import utc_now
 from jobkit.database.session import Database
 from jobkit.errors import StoreUnavailableError
@@ -16,7 +17,6 @@ from jobkit.schema import Job, Mesh
 from jobkit.storage.base import ObjectStore, result_key
 from jobkit.storage.open import open_store
 from jobkit.storage.removals import START_S, assure, claim, let_go
-from jobkit.sweep import GRACE, Swept, sweep_objects
 from tests.jobkit.holdings import AgingStore, KilledError, age_rows, fail, finish, keys_in, put, upload
 
 SOON = timedelta(minutes=1)

@@ -2,11 +2,11 @@ from collections.abc import Callable
 
 import pytest
 
+from dispatcher.missing_objects import Missing, MissingObjects
 from jobkit.database.session import Database
 from jobkit.errors import StoreUnavailableError
 from jobkit.jobs.jobs import Jobs, NewJob
 from jobkit.meshes import MESH_MISSING, Meshes
-from jobkit.missing import Missing, MissingObjects
 from jobkit.models.registry import MODEL_PREFIX, Registry
 from jobkit.retention import delete_job
 from jobkit.schema import Mesh, MeshState

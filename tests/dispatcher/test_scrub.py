@@ -6,15 +6,15 @@ from pathlib import Path
 
 import pytest
 
+from dispatcher.missing_objects import Missing, MissingObjects
+from dispatcher.scrub import Scrub, Scrubbed, ScrubLimits
 from jobkit.database.clock import utc_now
 from jobkit.database.session import Database
 from jobkit.errors import StoreUnavailableError
 from jobkit.jobs.jobs import Jobs
 from jobkit.meshes import MESH_DAMAGED, Meshes
-from jobkit.missing import Missing, MissingObjects
 from jobkit.models.registry import MODEL_PREFIX, Registry
 from jobkit.schema import Mesh, MeshState
-from jobkit.scrub import Scrub, Scrubbed, ScrubLimits
 from jobkit.storage.base import CHUNK_BYTES, ObjectStore, result_key
 from jobkit.storage.scrub_due import oldest_look
 from tests.jobkit.holdings import DAY, AgingStore, age_rows, damage, finish, new_job, put, upload
