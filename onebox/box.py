@@ -20,7 +20,7 @@ from onebox.errors import StartError
 from onebox.processes import Program
 from onebox.valkey import answers, prepare_valkey
 from service.auth import check_exposure
-from worker.limits import thread_environment
+from worker.engine.limits import thread_environment
 
 LOCK_NAME = "box.lock"
 # Below the data folder; holds the address while the whole box is up.

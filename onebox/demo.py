@@ -21,7 +21,7 @@ from onebox.box import ADDRESS_FILE, LOCK_NAME
 from onebox.errors import DemoError
 from onebox.logs import log_tail
 from onebox.processes import stop
-from worker.leash import leash
+from worker.engine.parent_death import leash
 
 MODEL = "general-dictionary@1"
 _HOST = "127.0.0.1"

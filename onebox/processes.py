@@ -1,7 +1,7 @@
 """A small supervisor: starts programs in order, restarts what dies, stops them in reverse.
 
-It has one thread on purpose. Children are tied to the thread that forks them (see `worker.leash`), and each writes
-straight into its own log file, so nothing is lost when the supervisor itself is killed.
+It has one thread on purpose. Children are tied to the thread that forks them (`worker.engine.parent_death`), and each
+writes straight into its own log file, so nothing is lost when the supervisor itself is killed.
 """
 
 import contextlib
@@ -15,7 +15,7 @@ from pathlib import Path
 
 from onebox.errors import StartError
 from onebox.logs import log_tail, start_anew
-from worker.leash import leash
+from worker.engine.parent_death import leash
 
 _TICK_S = 0.1
 _FIRST_DELAY_S = 0.5

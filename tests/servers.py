@@ -22,7 +22,7 @@ from psycopg.sql import SQL, Composable, Identifier
 
 from jobkit.database.session import Database
 from tests.waiting import GUARD_S, wait_until
-from worker.leash import leash
+from worker.engine.parent_death import leash
 
 # PostgreSQL refuses to run as root; this one may do nothing, and needs to do nothing.
 _UNPRIVILEGED = "nobody"

@@ -23,7 +23,7 @@ from jobkit.settings import PREFIX, Settings, refuse_unknown_names
 from onebox.box import usable_port
 from service.document import VERSION
 from tests.waiting import end, wait_until
-from worker.limits import _DATA_SLACK_MB
+from worker.engine.limits import _DATA_SLACK_MB
 
 ROOT = Path(__file__).resolve().parent.parent
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))

@@ -12,7 +12,7 @@ import yaml
 
 from jobkit.readiness import READY_FILE_VARIABLE
 from jobkit.settings import PREFIX, Settings, refuse_unknown_names
-from worker.limits import _DATA_SLACK_MB
+from worker.engine.limits import _DATA_SLACK_MB
 
 ROOT = Path(__file__).resolve().parent.parent
 FOLDER = ROOT / "deploy/kubernetes"

@@ -20,11 +20,11 @@ from jobkit.settings import Settings, load_settings
 from jobkit.storage.base import ObjectStore
 from jobkit.storage.open import open_store
 from jobkit.telemetry import open_telemetry
-from worker.confinement import weaknesses
 from worker.context import Context, use_context, worker_name
+from worker.engine.client import Nursery, NurseryLostError
+from worker.engine.confinement import weaknesses
 from worker.executor import execute
 from worker.folders import worker_folder
-from worker.nursing import Nursery, NurseryLostError
 
 THREADS_VARIABLE = "OMP_NUM_THREADS"
 _EXIT_BROKEN = 1

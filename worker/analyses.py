@@ -7,12 +7,12 @@ from jobkit.requeue import submit_analysis
 from jobkit.schema import MeshFacts, MeshProblem
 from worker.checks import Check, run_check
 from worker.context import Context
+from worker.engine.limits import EngineLimits
+from worker.engine.request import FACTS_NAME
+from worker.engine.supervision import Observer, run_engine
 from worker.facts import mesh_facts
-from worker.limits import EngineLimits
 from worker.outcomes import folder_with_mesh
-from worker.request import FACTS_NAME
 from worker.spec import inspect_request
-from worker.watch import Observer, run_engine
 
 # Finding holes takes seconds even in a mesh of millions of vertices.
 _TIME_LIMIT_S = 300.0

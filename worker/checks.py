@@ -7,10 +7,10 @@ from typing import TypeVar
 
 from jobkit.errors import QueueUnavailableError, StaleAttemptError
 from worker.context import Context
+from worker.engine.supervision import Observer
 from worker.failures import OUTAGE_DELAY_S, Failure, StopReason
+from worker.heartbeat import Pulse, Vitals
 from worker.outcomes import outcome_of
-from worker.pulse import Pulse, Vitals
-from worker.watch import Observer
 
 T = TypeVar("T")
 

@@ -23,7 +23,7 @@ from jobkit.queue import TaskQueue
 from jobkit.settings import Settings
 from jobkit.storage.base import ObjectStore
 from jobkit.telemetry import Telemetry
-from worker.nursing import Nursery
+from worker.engine.client import Nursery
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@ from jobkit.errors import NotFoundError, ObjectDamagedError, StoreUnavailableErr
 from jobkit.meshes import MESH_DAMAGED, MeshSource
 from jobkit.storage.digests import verified_file
 from worker.context import Context
+from worker.engine.request import MESH_FOLDER
 from worker.failures import (
     EngineFailedError,
     EngineStoppedError,
@@ -19,7 +20,6 @@ from worker.failures import (
     store_unavailable,
 )
 from worker.folders import request_folder
-from worker.request import MESH_FOLDER
 from worker.spec import source_name
 
 T = TypeVar("T")

@@ -7,12 +7,12 @@ from jobkit.requeue import submit_proof
 from jobkit.schema import ModelProblem, ResolvedModel
 from worker.checks import Check, run_check
 from worker.context import Context
+from worker.engine.limits import EngineLimits
+from worker.engine.request import EngineRequest
+from worker.engine.supervision import Observer, run_engine
 from worker.failures import EngineFailedError
 from worker.folders import request_folder
-from worker.limits import EngineLimits
 from worker.models import model_argument, network_card
-from worker.request import EngineRequest
-from worker.watch import Observer, run_engine
 
 # The widest networks known answer the probes within seconds.
 _TIME_LIMIT_S = 120.0

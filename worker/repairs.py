@@ -25,12 +25,13 @@ from jobkit.schema import Job, JobError, JobResult, JobState
 from jobkit.telemetry import StageSpans
 from quadpatch.stages import failure_of
 from worker.context import Context
+from worker.engine.limits import EngineLimits
+from worker.engine.request import LOG_NAME
+from worker.engine.supervision import Observer, log_last_words, run_engine
 from worker.failures import OUTAGE_DELAY_S, Failure, StopReason
-from worker.limits import EngineLimits
+from worker.heartbeat import PATIENCE_S, Pulse, Vitals
 from worker.models import deprecation, model_argument, network_card
 from worker.outcomes import folder_with_mesh, outcome_of
-from worker.pulse import PATIENCE_S, Pulse, Vitals
-from worker.request import LOG_NAME
 from worker.results import (
     drop_result,
     missing_pictures,
@@ -40,7 +41,6 @@ from worker.results import (
     store_result,
 )
 from worker.spec import repair_request
-from worker.watch import Observer, log_last_words, run_engine
 
 # A repair that is nearly done may finish when its worker is asked to stop; the others are handed back.
 _DRAIN_GRACE_S = 2.0

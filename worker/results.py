@@ -11,8 +11,8 @@ from jobkit.schema import FileRole, HoleCounts, JobResult, ResultFile
 from jobkit.storage.base import ObjectStore, result_key
 from quadpatch.formats.output_files import write_whole
 from quadpatch.stages import failure_of
+from worker.engine.request import CLOSE_UPS_NAME, PREVIEW_NAME, REPORT_NAME, EngineRequest
 from worker.failures import Failure
-from worker.request import CLOSE_UPS_NAME, PREVIEW_NAME, REPORT_NAME, EngineRequest
 
 _MEDIA_TYPES = {
     "stl": "model/stl",

@@ -5,8 +5,8 @@ from typing import Any, get_args
 
 from jobkit.meshes import MeshSource
 from jobkit.schema import SELF, CnnMethod, DictionaryMethod, Format, JobSpec, OutputFormat, SmoothMethod
-from worker.limits import EngineLimits
-from worker.request import MESH_FOLDER, EngineRequest
+from worker.engine.limits import EngineLimits
+from worker.engine.request import MESH_FOLDER, EngineRequest
 
 # Formats that are read, but handed back as another one: a glTF with its side files is no single file.
 _WRITTEN_AS: dict[str, OutputFormat] = {"gltf": "glb"}

@@ -21,7 +21,13 @@ def test_mutated_files_get_a_code_or_a_mesh_and_nothing_is_lost(tmp_path: Path) 
     with running_box(tmp_path / "box") as url:
         (box,) = [p for p in psutil.Process().children() if str(tmp_path / "box") in p.cmdline()]
         before = peaks(box)
-        assert {name for name, _ in before.mb} >= {"onebox", "service", "dispatcher", "worker", "worker.nursery"}
+        assert {name for name, _ in before.mb} >= {
+            "onebox",
+            "service",
+            "dispatcher",
+            "worker",
+            "worker.engine.fork_server",
+        }
         outcomes = send_all(url, mutants)
         wait_until(lambda: not left_behind(tmp_path / "box"))
         assert memory_faults(before, peaks(box)) == []

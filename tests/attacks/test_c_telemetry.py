@@ -11,12 +11,12 @@ from pathlib import Path
 
 import pytest
 
-from worker.seccomp import has_seccomp
+from worker.engine.seccomp import has_seccomp
 
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = ("quadpatch", "jobkit", "service", "worker", "dispatcher", "training", "client", "onebox", "benchmarks")
 IMPORTS_IT = re.compile(r"^\s*(?:import|from) (?:onnxruntime|quadpatch\.onnx_runtime)\b", re.MULTILINE)
-TRAP = "from worker.seccomp import die_of_sockets; die_of_sockets()\n"
+TRAP = "from worker.engine.seccomp import die_of_sockets; die_of_sockets()\n"
 REPAIR = """
 from pathlib import Path
 from quadpatch.options import RepairOptions

@@ -9,11 +9,11 @@ import pytest
 
 from tests.waiting import GUARD_S
 from tests.worker import reaching_out
-from worker.confinement import weaknesses
-from worker.limits import EngineLimits
-from worker.nursing import Nursery
-from worker.request import EngineRequest
-from worker.watch import Observer, run_engine
+from worker.engine.client import Nursery
+from worker.engine.confinement import weaknesses
+from worker.engine.limits import EngineLimits
+from worker.engine.request import EngineRequest
+from worker.engine.supervision import Observer, run_engine
 
 LIMITS = EngineLimits(time_s=GUARD_S, memory_mb=1024, n_threads=1)
 

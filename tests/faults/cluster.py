@@ -18,8 +18,8 @@ from jobkit.readiness import READY_FILE_VARIABLE
 from onebox.logs import log_tail
 from tests.faults.network import Network
 from tests.waiting import GUARD_S
-from worker.leash import leash
-from worker.limits import thread_environment
+from worker.engine.limits import thread_environment
+from worker.engine.parent_death import leash
 
 API_KEY = "key-of-the-fault-suite"
 APIS = ("api-1", "api-2")

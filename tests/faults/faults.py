@@ -252,7 +252,9 @@ def _find_victim(field: Field) -> Victim | None:
 def _is_nursery(process: psutil.Process) -> bool:
     try:
         # An engine is a fork of its nursery, and shows the same command line.
-        return "worker.nursery" in process.cmdline() and "worker.nursery" not in _cmdline(process.parent())
+        return "worker.engine.fork_server" in process.cmdline() and "worker.engine.fork_server" not in _cmdline(
+            process.parent()
+        )
     except psutil.Error:
         return False
 

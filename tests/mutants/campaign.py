@@ -130,7 +130,11 @@ def _is_lasting(process: psutil.Process, words: list[str]) -> bool:
         return False
     parent = process.parent()
     # An engine is a fork of its nursery, and so has its command line.
-    return parent is None or "worker.nursery" not in words or "worker.nursery" not in parent.cmdline()
+    return (
+        parent is None
+        or "worker.engine.fork_server" not in words
+        or "worker.engine.fork_server" not in parent.cmdline()
+    )
 
 
 def _peak_mb(pid: int) -> float:

@@ -3,7 +3,7 @@ from pathlib import Path
 
 import pytest
 
-from worker.nursing import Nursery
+from worker.engine.client import Nursery
 
 
 @pytest.fixture(scope="session")

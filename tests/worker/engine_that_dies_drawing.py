@@ -2,14 +2,14 @@
 
 import ctypes
 
-from worker import engine
+from worker.engine import main
 
 
 def _die(*_: object) -> None:
     ctypes.string_at(0)
 
 
-engine.add_picture = _die  # type: ignore[assignment]
-engine.prove_model = _die  # type: ignore[assignment]
-engine.add_close_up_archive = _die  # type: ignore[assignment]
-run_request = engine.run_request
+main.add_picture = _die  # type: ignore[assignment]
+main.prove_model = _die  # type: ignore[assignment]
+main.add_close_up_archive = _die  # type: ignore[assignment]
+run_request = main.run_request

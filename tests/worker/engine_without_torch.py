@@ -4,9 +4,9 @@ import sys
 from pathlib import Path
 
 from quadpatch.inpainters import model_file
-from worker import engine
+from worker.engine import main
 
 # What an import of it meets from now on is an ImportError.
 sys.modules["torch"] = None  # type: ignore[assignment]
 model_file.SHIPPED_MODELS = next(Path(place) for place in sys.path if Path(place, "general-residual@1.onnx").exists())
-run_request = engine.run_request
+run_request = main.run_request

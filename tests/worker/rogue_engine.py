@@ -11,9 +11,9 @@ from pathlib import Path
 from reaching_out import ATTEMPTS
 
 from quadpatch.errors import ReadError
-from worker.engine_frame import run_framed
-from worker.engine_reports import Reporter
-from worker.request import EngineRequest
+from worker.engine.entry import run_framed
+from worker.engine.reports import Reporter
+from worker.engine.request import EngineRequest
 
 
 def run_request(folder: Path, descriptor: int) -> None:

@@ -22,8 +22,8 @@ from jobkit.storage.base import ObjectStore
 from jobkit.telemetry import Telemetry
 from tests.integration.conftest import ply_bytes, punched_relief
 from worker.context import Context, use_context
+from worker.engine.client import Nursery
 from worker.jobs import run_job
-from worker.nursing import Nursery
 
 TRACE = "0af7651916cd43dd8448eb211c80319c"
 SENT = f"00-{TRACE}-b7ad6b7169203331-01"

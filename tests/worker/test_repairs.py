@@ -24,8 +24,8 @@ from jobkit.storage.base import ObjectStore, result_key
 from jobkit.storage.open import open_store
 from tests.integration.conftest import ply_bytes, punched_relief
 from worker.context import Context, use_context
+from worker.engine.client import Nursery
 from worker.jobs import inspect_mesh, run_job
-from worker.nursing import Nursery
 from worker.repairs import _vitals
 
 
@@ -66,7 +66,7 @@ class Refusing(Database):
 
 @contextmanager
 def working(
-    settings: Settings, database: Database, store: ObjectStore, engine: str = "worker.engine"
+    settings: Settings, database: Database, store: ObjectStore, engine: str = "worker.engine.main"
 ) -> Iterator[Context]:
     queue = TaskQueue(settings.redis_url.get_secret_value(), settings.queue_name, settings.job_time_limit_s)
     with closing(queue), closing(database), Nursery(1, engine) as nursery:

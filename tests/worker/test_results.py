@@ -8,9 +8,9 @@ import pytest
 from jobkit.errors import ObjectNotFoundError, StoreUnavailableError
 from jobkit.jobs.attempts import Attempt
 from jobkit.storage.base import ObjectStore, StoredObject, result_key
+from worker.engine.limits import EngineLimits
+from worker.engine.request import EngineRequest
 from worker.failures import Failure
-from worker.limits import EngineLimits
-from worker.request import EngineRequest
 from worker.results import drop_result, missing_pictures, note_lost_pictures, store_result
 
 ATTEMPT = Attempt("job_01jd7z3v5qk8m2x4c6b8n0a9de", 2)

@@ -9,7 +9,7 @@ from jobkit.models.resolution import PAPER_NORMALISATION
 from jobkit.schema import Fitting, JobSpec
 from quadpatch.inpainters.model_file import RECIPES
 from quadpatch.options import HoleOptions, HoleRule, NetworkOptions, PatchOptions, RepairOptions
-from worker.limits import EngineLimits
+from worker.engine.limits import EngineLimits
 from worker.spec import inspect_request, method_options, output_format, repair_request, source_name
 
 MESH_ID = "0" * 64

@@ -17,7 +17,7 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any, Literal, Self
 
-from worker.limits import EngineLimits
+from worker.engine.limits import EngineLimits
 
 REQUEST_NAME = "request.json"
 MESH_FOLDER = "mesh"

@@ -12,7 +12,7 @@ import struct
 import sys
 from dataclasses import dataclass
 
-from worker.landlock import forbid_new_privileges
+from worker.engine.landlock import forbid_new_privileges
 
 _PR_GET_SECCOMP, _PR_SET_SECCOMP, _FILTER_MODE = 21, 22, 2
 ALLOW, REFUSE, KILL = 0x7FFF0000, 0x00050000, 0x80000000

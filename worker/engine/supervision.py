@@ -15,10 +15,10 @@ from typing import Any
 import psutil
 
 from jobkit.text import printable
+from worker.engine.client import EngineChild, Nursery, NurseryLostError
+from worker.engine.limits import EngineLimits
+from worker.engine.request import LOG_NAME, EngineRequest
 from worker.failures import EngineFailedError, EngineStoppedError, Failure, StopReason, crashed, over_memory, over_time
-from worker.limits import EngineLimits
-from worker.nursing import EngineChild, Nursery, NurseryLostError
-from worker.request import LOG_NAME, EngineRequest
 
 _TICK_S = 0.1
 _CHUNK_BYTES = 65536

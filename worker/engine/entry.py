@@ -7,10 +7,10 @@ from collections.abc import Callable
 from pathlib import Path
 
 from quadpatch.errors import QuadpatchError
-from worker.confinement import confine
-from worker.engine_reports import Reporter
+from worker.engine.confinement import confine
+from worker.engine.reports import Reporter
+from worker.engine.request import MESH_FOLDER, EngineRequest
 from worker.failures import Failure, from_os_error, over_memory
-from worker.request import MESH_FOLDER, EngineRequest
 
 
 def run_framed(folder: Path, descriptor: int, task: Callable[[EngineRequest, Reporter], None]) -> None:
@@ -34,7 +34,7 @@ def run_framed(folder: Path, descriptor: int, task: Callable[[EngineRequest, Rep
     except MemoryError:
         reporter.failed(over_memory(request.limits.memory_mb, reporter.stage))
     except PermissionError:
-        # Not the disk's refusal but that of `worker.confinement`: another attempt would meet it as well.
+        # Not the disk's refusal but that of `worker.engine.confinement`: another attempt would meet it as well.
         _print_traceback()
         reporter.failed(Failure("engine_error", "the engine reached for what is closed to it", reporter.stage))
     except OSError as error:

@@ -20,7 +20,7 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
-from worker.leash import leash
+from worker.engine.parent_death import leash
 
 MESSAGE_BYTES = 65536
 # Called with the folder of the request and the write end of the pipe for reports.

@@ -6,7 +6,7 @@ from sqlalchemy.exc import OperationalError
 from jobkit.errors import DatabaseUnavailableError, StaleAttemptError
 from tests.waiting import GUARD_S, wait_until
 from worker.failures import StopReason
-from worker.pulse import Pulse, Vitals
+from worker.heartbeat import Pulse, Vitals
 
 
 class Patient:

@@ -11,9 +11,9 @@ import sysconfig
 from pathlib import Path
 
 import quadpatch
-from worker.landlock import landlock_version, restrict_files
-from worker.request import EngineRequest
-from worker.seccomp import has_seccomp, restrict_calls
+from worker.engine.landlock import landlock_version, restrict_files
+from worker.engine.request import EngineRequest
+from worker.engine.seccomp import has_seccomp, restrict_calls
 
 _SYSTEM = (
     "/usr",
@@ -70,7 +70,7 @@ def _library_folders() -> list[Path]:
         *os.environ.get("PYTHONPATH", "").split(":"),
     ]
     packages = [path for path in sys.path if Path(path).name in ("site-packages", "dist-packages")]
-    own = [Path(quadpatch.__file__).parent, Path(__file__).parent]
+    own = [Path(quadpatch.__file__).parent, Path(__file__).parents[1]]
     return [
         *own,
         *(Path(place) for place in (*places, *packages) if Path(place).is_absolute() and Path(place) != Path("/")),

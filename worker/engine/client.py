@@ -10,8 +10,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Self
 
-from worker.limits import thread_environment
-from worker.nursery import MESSAGE_BYTES
+from worker.engine.fork_server import MESSAGE_BYTES
+from worker.engine.limits import thread_environment
 
 # Loading the method takes about a second on an idle machine, more where all cores are busy.
 _START_TIMEOUT_S = 120.0
@@ -59,7 +59,7 @@ class Nursery:
         Module whose `run_request` does the work; loaded once, before the first fork.
     """
 
-    def __init__(self, n_threads: int, engine: str = "worker.engine") -> None:
+    def __init__(self, n_threads: int, engine: str = "worker.engine.main") -> None:
         self._n_threads = n_threads
         self._engine = engine
         self._process: subprocess.Popen[bytes] | None = None
@@ -142,7 +142,14 @@ class Nursery:
         here, there = socket.socketpair(socket.AF_UNIX, socket.SOCK_STREAM)
         with there:
             self._process = subprocess.Popen(
-                [sys.executable, "-m", "worker.nursery", str(there.fileno()), str(os.getpid()), self._engine],
+                [
+                    sys.executable,
+                    "-m",
+                    "worker.engine.fork_server",
+                    str(there.fileno()),
+                    str(os.getpid()),
+                    self._engine,
+                ],
                 pass_fds=(there.fileno(),),
                 stdin=subprocess.DEVNULL,
                 env={**_what_libraries_obey(os.environ), **thread_environment(self._n_threads)},

@@ -5,11 +5,11 @@ from pathlib import Path
 import pytest
 
 from tests.quadpatch.shapes import bumpy_plate, punched, write_ply
+from worker.engine.client import Nursery
+from worker.engine.limits import EngineLimits
+from worker.engine.request import MESH_FOLDER, REPORT_NAME, EngineRequest
+from worker.engine.supervision import Observer, run_engine
 from worker.failures import EngineFailedError
-from worker.limits import EngineLimits
-from worker.nursing import Nursery
-from worker.request import MESH_FOLDER, REPORT_NAME, EngineRequest
-from worker.watch import Observer, run_engine
 
 LIMITS = EngineLimits(time_s=300.0, memory_mb=4096, n_threads=1)
 

@@ -8,11 +8,11 @@ import psutil
 import pytest
 
 from tests.waiting import GUARD_S, wait_until
+from worker.engine.client import Nursery
+from worker.engine.limits import EngineLimits
+from worker.engine.request import EngineRequest
+from worker.engine.supervision import Observer, run_engine
 from worker.failures import EngineFailedError, EngineStoppedError, Failure, StopReason
-from worker.limits import EngineLimits
-from worker.nursing import Nursery
-from worker.request import EngineRequest
-from worker.watch import Observer, run_engine
 
 LIMITS = EngineLimits(time_s=GUARD_S, memory_mb=1024, n_threads=1)
 
@@ -36,7 +36,7 @@ def engines() -> list[psutil.Process]:
     return [
         engine
         for nursery in psutil.Process().children()
-        if "worker.nursery" in nursery.cmdline()
+        if "worker.engine.fork_server" in nursery.cmdline()
         for engine in nursery.children(recursive=True)
         if engine.status() != psutil.STATUS_ZOMBIE
     ]

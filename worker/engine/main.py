@@ -1,7 +1,7 @@
 """The engine child: repairs or inspects a mesh, or proves a model, and tells how it went.
 
 Meshes and models come from strangers and are parsed here and nowhere else, under limits, in a process that may be
-killed at any moment. It talks to the worker through one pipe, see `worker.engine_reports`. Results lie in the
+killed at any moment. It talks to the worker through one pipe, see `worker.engine.reports`. Results lie in the
 request's folder.
 """
 
@@ -15,9 +15,9 @@ from quadpatch.inpainters.proof import prove_model
 from quadpatch.options import RepairOptions
 from quadpatch.preview.drawing import add_close_up_archive, add_picture
 from quadpatch.repair import inspect_file, repair_and_keep
-from worker.engine_frame import run_framed
-from worker.engine_reports import Reporter
-from worker.request import CLOSE_UPS_NAME, FACTS_NAME, PREVIEW_NAME, REPORT_NAME, EngineRequest
+from worker.engine.entry import run_framed
+from worker.engine.reports import Reporter
+from worker.engine.request import CLOSE_UPS_NAME, FACTS_NAME, PREVIEW_NAME, REPORT_NAME, EngineRequest
 
 
 def run_request(folder: Path, descriptor: int) -> None:
