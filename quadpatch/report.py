@@ -115,7 +115,7 @@ def build_report(
             "resolution": completion.scale.resolution,
             "overlap": completion.scale.overlap,
             "count": completion.n_patches,
-            "believed_share": completion.believed,
+            "believed_share": completion.blend_factor,
         },
         "holes": [_hole(result) for result in repair.results],
         "stages": [{"name": name, "seconds": round(seconds, 4)} for name, seconds in stages.seconds.items()],

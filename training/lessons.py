@@ -10,8 +10,8 @@ from itertools import islice
 
 import numpy as np
 
-from quadpatch.calibration.calibration_set import practise
-from quadpatch.calibration.training_pairs import Ground, Lessons, give_lessons
+from quadpatch.calibration.calibration_set import cut_calibration_set
+from quadpatch.calibration.training_pairs import TrainingPairs, TrainingSurface, make_training_pairs
 from quadpatch.errors import NoQuadsError
 from quadpatch.mesh.measures import mean_edge_length
 from quadpatch.mesh.smoothing import laplacian_smooth
@@ -46,7 +46,7 @@ def cut_lessons(mesh: TriangleMesh, most: int, rng: np.random.Generator) -> Arra
         See the head of this module; no row where the mesh is too small.
     """
     parts = [_of_diameter(mesh, edges * mean_edge_length(mesh), most, rng) for edges in HOLE_EDGES]
-    lessons = Lessons.joined(parts, RESOLUTION)
+    lessons = TrainingPairs.joined(parts, RESOLUTION)
     return {
         "channels": lessons.channels.astype(np.float16),
         "correction": lessons.correction.astype(np.float16),
@@ -54,20 +54,20 @@ def cut_lessons(mesh: TriangleMesh, most: int, rng: np.random.Generator) -> Arra
     }
 
 
-def _of_diameter(mesh: TriangleMesh, diameter: float, most: int, rng: np.random.Generator) -> Lessons:
+def _of_diameter(mesh: TriangleMesh, diameter: float, most: int, rng: np.random.Generator) -> TrainingPairs:
     edge_length = mean_edge_length(mesh)
     scale = choose_scale([diameter], edge_length, PatchOptions(), RESOLUTION)
-    rule, _ = suitable_rule(practise(mesh, diameter, edge_length, rng))
+    rule, _ = suitable_rule(cut_calibration_set(mesh, diameter, edge_length, rng))
     try:
         seeds = lay_out(laplacian_smooth(mesh, outline_iterations(scale.length, edge_length)), scale)
     except NoQuadsError:
-        return Lessons.joined([], RESOLUTION)
-    ground = Ground(mesh, seeds, scale, rule, np.array([diameter]), edge_length)
-    parts: list[Lessons] = []
-    for part in islice(give_lessons(ground, rng), ROUNDS):
+        return TrainingPairs.joined([], RESOLUTION)
+    ground = TrainingSurface(mesh, seeds, scale, rule, np.array([diameter]), edge_length)
+    parts: list[TrainingPairs] = []
+    for part in islice(make_training_pairs(ground, rng), ROUNDS):
         parts.append(part)
         if sum(len(part) for part in parts) >= most:
             break
-    lessons = Lessons.joined(parts, RESOLUTION)
+    lessons = TrainingPairs.joined(parts, RESOLUTION)
     chosen = np.sort(rng.permutation(len(lessons))[:most])
-    return Lessons(lessons.channels[chosen], lessons.correction[chosen], lessons.asked[chosen])
+    return TrainingPairs(lessons.channels[chosen], lessons.correction[chosen], lessons.asked[chosen])

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
-from quadpatch.calibration.error_model import Expectation, learn_expectation
-from quadpatch.calibration.synthetic_holes import Punched, Spacing, punch
+from quadpatch.calibration.error_model import ErrorModel, fit_error_model
+from quadpatch.calibration.synthetic_holes import Punched, Spacing, cut_holes
 from quadpatch.filling.fairing import Energy, triangles_around
 from quadpatch.filling.fill import ClosedMesh, close_holes
 from quadpatch.filling.filled_mesh import FilledMesh
@@ -40,7 +40,7 @@ _LEAST_GAIN = 0.02
 
 
 @dataclass(frozen=True)
-class Practice:
+class CalibrationSet:
     """A mesh with practice holes, closed again. Real holes are open in it.
 
     Attributes
@@ -69,7 +69,9 @@ class Practice:
     diameters: FloatArray
 
 
-def practise(mesh: TriangleMesh, diameter: float, edge_length: float, rng: np.random.Generator) -> Practice | None:
+def cut_calibration_set(
+    mesh: TriangleMesh, diameter: float, edge_length: float, rng: np.random.Generator
+) -> CalibrationSet | None:
     """Cut holes into undamaged surface and close them.
 
     Parameters
@@ -90,7 +92,7 @@ def practise(mesh: TriangleMesh, diameter: float, edge_length: float, rng: np.ra
     best: tuple[Punched, float] | None = None
     spacing = Spacing(edge_length, _MARGIN_EDGES * edge_length, MAX_HOLES)
     for size in _SIZES:
-        punched = punch(mesh, size * diameter, spacing, rng)
+        punched = cut_holes(mesh, size * diameter, spacing, rng)
         if len(punched.loops) >= MIN_HOLES and (best is None or len(punched.loops) > len(best[0].loops)):
             best = punched, size * diameter
         if len(punched.loops) >= _ENOUGH:
@@ -102,7 +104,7 @@ def practise(mesh: TriangleMesh, diameter: float, edge_length: float, rng: np.ra
     truth = TriangleMesh(mesh.vertices, mesh.triangles[around])
     diameters = np.array([loop_diameter(mesh.vertices[loop]) for loop in punched.loops])
     closed = close_holes(punched.mesh, punched.loops)
-    return Practice(truth, mesh.vertices[punched.gone], punched.cut_away, punched.loops, closed, used, diameters)
+    return CalibrationSet(truth, mesh.vertices[punched.gone], punched.cut_away, punched.loops, closed, used, diameters)
 
 
 def choose_energy(errors: FloatArray, diameter: float, energies: Sequence[Energy], usual: Energy) -> Energy:
@@ -119,17 +121,17 @@ def choose_energy(errors: FloatArray, diameter: float, energies: Sequence[Energy
     return usual if is_tie else energies[best]
 
 
-def believed_share(practice: Practice, filled: FilledMesh, displacement: FloatArray) -> float:
+def blend_factor(calibration: CalibrationSet, filled: FilledMesh, displacement: FloatArray) -> float:
     """Choose the share of predicted displacements (k, 3) that leaves the smallest mean error; 0 where none helps."""
     new = filled.mesh.vertices[filled.n_measured_vertices :]
     errors = [
-        float(error_per_hole(practice, filled.with_vertices(new + share * displacement)).mean()) for share in SHARES
+        float(error_per_hole(calibration, filled.with_vertices(new + share * displacement)).mean()) for share in SHARES
     ]
     best = int(np.argmin(errors))
     return SHARES[best] if errors[best] < (1 - _LEAST_GAIN) * errors[0] else 0.0
 
 
-def error_per_hole(practice: Practice, filled: FilledMesh) -> FloatArray:
+def error_per_hole(calibration: CalibrationSet, filled: FilledMesh) -> FloatArray:
     """Measure how far each practice hole's fill is from the true surface, both ways.
 
     Half from the new vertices and the centroids of the new triangles to the truth, half from the vertices that were cut
@@ -140,25 +142,25 @@ def error_per_hole(practice: Practice, filled: FilledMesh) -> FloatArray:
     (n_holes,) float64
         Mean distance, in mesh units.
     """
-    n_holes = len(filled.gap)
+    n_holes = len(filled.disagreement)
     vertices = filled.mesh.vertices
     new = filled.mesh.triangles[filled.n_measured_triangles :]
     points = np.concatenate([vertices[filled.n_measured_vertices :], vertices[new].mean(axis=1)])
     hole = np.concatenate([filled.vertex_hole, filled.triangle_hole])
-    there = mean_by(hole, distance_to_mesh(points, practice.truth), n_holes)
+    there = mean_by(hole, distance_to_mesh(points, calibration.truth), n_holes)
     # Every removed vertex belongs to the hole whose new surface is nearest.
     centroids = vertices[new].mean(axis=1)
-    nearest = filled.triangle_hole[cKDTree(centroids).query(practice.removed)[1]]
-    back = mean_by(nearest, distance_to_mesh(practice.removed, TriangleMesh(vertices, new)), n_holes)
+    nearest = filled.triangle_hole[cKDTree(centroids).query(calibration.removed)[1]]
+    back = mean_by(nearest, distance_to_mesh(calibration.removed, TriangleMesh(vertices, new)), n_holes)
     return 0.5 * (there + back)
 
 
-def distance_per_hole(practice: Practice, filled: FilledMesh) -> FloatArray:
+def distance_per_hole(calibration: CalibrationSet, filled: FilledMesh) -> FloatArray:
     """Mean distance (n_holes,) of each practice hole's new vertices to the true surface; 0 without any."""
     new = filled.mesh.vertices[filled.n_measured_vertices :]
-    return mean_by(filled.vertex_hole, distance_to_mesh(new, practice.truth), len(filled.gap))
+    return mean_by(filled.vertex_hole, distance_to_mesh(new, calibration.truth), len(filled.disagreement))
 
 
-def expect(practice: Practice, filled: FilledMesh) -> Expectation:
+def expect(calibration: CalibrationSet, filled: FilledMesh) -> ErrorModel:
     """Learn from the practice holes, filled like the real ones, how large an error to expect."""
-    return learn_expectation(filled, practice.diameters, distance_per_hole(practice, filled))
+    return fit_error_model(filled, calibration.diameters, distance_per_hole(calibration, filled))

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
-from quadpatch.calibration.calibration_set import ROUNDING, Practice, choose_energy, error_per_hole
+from quadpatch.calibration.calibration_set import ROUNDING, CalibrationSet, choose_energy, error_per_hole
 from quadpatch.filling.fairing import Energy, triangles_around
 from quadpatch.filling.fill import close_holes, fair_holes
 from quadpatch.filling.filled_mesh import FilledMesh
@@ -28,7 +28,7 @@ _LEAST_MISS = 1e-6
 
 
 @dataclass(frozen=True)
-class FillRule:
+class EnergyBlend:
     """How to fill holes of one mesh.
 
     Attributes
@@ -46,7 +46,7 @@ class FillRule:
     log_miss: FloatArray
 
     @classmethod
-    def of_one(cls, energy: Energy) -> "FillRule":
+    def of_one(cls, energy: Energy) -> "EnergyBlend":
         """Fill every hole by the same energy."""
         return cls((energy,), np.zeros(1), np.zeros(1))
 
@@ -56,7 +56,7 @@ class FillRule:
         fills = [fair_holes(closed, energy) for energy in self.energies]
         if len(fills) == 1 or not loops:
             return fills[0]
-        return _blended(fills, self.weights(rim_misses(mesh, loops, self.energies)))
+        return _blended(fills, self.weights(leave_one_ring_out(mesh, loops, self.energies)))
 
     def weights(self, misses: FloatArray) -> FloatArray:
         """Turn misses (n_holes, n_energies), NaN where unknown, into weights of the fills: rows sum to 1."""
@@ -69,7 +69,9 @@ class FillRule:
         return np.asarray(weights / weights.sum(axis=1, keepdims=True))
 
 
-def learn_fill_rule(practice: Practice, energies: Sequence[Energy], usual: Energy) -> tuple[FillRule, FilledMesh]:
+def learn_energy_blend(
+    calibration: CalibrationSet, energies: Sequence[Energy], usual: Energy
+) -> tuple[EnergyBlend, FilledMesh]:
     """Learn from practice holes how to fill: by one energy, as `choose_energy` picks it, unless weighing beats it.
 
     Returns
@@ -78,21 +80,21 @@ def learn_fill_rule(practice: Practice, energies: Sequence[Energy], usual: Energ
     FilledMesh
         The practice holes, filled by it.
     """
-    fills = [fair_holes(practice.closed, energy) for energy in energies]
-    errors = np.array([error_per_hole(practice, fill) for fill in fills])
-    misses = rim_misses(practice.closed.mesh, practice.loops, energies)
-    best = energies.index(choose_energy(errors, practice.diameter, energies, usual))
+    fills = [fair_holes(calibration.closed, energy) for energy in energies]
+    errors = np.array([error_per_hole(calibration, fill) for fill in fills])
+    misses = leave_one_ring_out(calibration.closed.mesh, calibration.loops, energies)
+    best = energies.index(choose_energy(errors, calibration.diameter, energies, usual))
     typical = np.nanmean(misses, axis=0) if np.isfinite(misses).any() else np.ones(len(energies))
     tiny = np.finfo(np.float64).tiny
-    rule = FillRule(energies, np.log(errors.mean(axis=1) + tiny), np.log(typical + tiny))
+    rule = EnergyBlend(energies, np.log(errors.mean(axis=1) + tiny), np.log(typical + tiny))
     blended = _blended(fills, rule.weights(misses))
-    gain = errors[best].mean() - error_per_hole(practice, blended).mean()
-    if gain > ROUNDING * practice.diameter:
+    gain = errors[best].mean() - error_per_hole(calibration, blended).mean()
+    if gain > ROUNDING * calibration.diameter:
         return rule, blended
-    return FillRule.of_one(energies[best]), fills[best]
+    return EnergyBlend.of_one(energies[best]), fills[best]
 
 
-def rim_misses(mesh: TriangleMesh, loops: list[IntArray], energies: Sequence[Energy]) -> FloatArray:
+def leave_one_ring_out(mesh: TriangleMesh, loops: list[IntArray], energies: Sequence[Energy]) -> FloatArray:
     """Open holes one ring wider, close them by each energy, and measure how far it misses the vertices that were there.
 
     Parameters

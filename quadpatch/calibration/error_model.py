@@ -19,12 +19,12 @@ _LEAST = 1e-9
 
 # The slope on 22 scans and reliefs outside the benchmark, and what it weighs against practice holes whose ln u scatter
 # by as large a sum of squares: the variance of errors around their power law over that of the slope between meshes.
-USUAL_SLOPE = 0.9
+PRIOR_SLOPE = 0.9
 WEIGHT = 1.6
 
 
 @dataclass(frozen=True)
-class Expectation:
+class ErrorModel:
     """Mean error of a fill, as a share of the hole's width, by its uncertainty u: ``factor * u ** slope``."""
 
     factor: float
@@ -45,10 +45,10 @@ class Expectation:
 
 
 # What holds on these (the factor within a third), for surfaces that have no room for practice.
-UNTRIED = Expectation(0.3, USUAL_SLOPE)
+PRIOR = ErrorModel(0.3, PRIOR_SLOPE)
 
 
-def learn_expectation(filled: FilledMesh, diameters: FloatArray, errors: FloatArray) -> Expectation:
+def fit_error_model(filled: FilledMesh, diameters: FloatArray, errors: FloatArray) -> ErrorModel:
     """Fit the power law to holes whose error is known: the slope to the logarithms, the factor to the mean error.
 
     Parameters
@@ -58,15 +58,15 @@ def learn_expectation(filled: FilledMesh, diameters: FloatArray, errors: FloatAr
         In mesh units.
     """
     # Holes so small that they got no vertex have no gap: they say nothing, and as outliers would say it loudest.
-    telling = filled.gap > 0
+    telling = filled.disagreement > 0
     log_u = np.log(_uncertainty(filled, diameters))[telling]
     log_error = np.log(np.maximum(errors / diameters, _LEAST))[telling]
     scatter = log_u - log_u.sum() / max(len(log_u), 1)
-    slope = (scatter @ log_error + WEIGHT * USUAL_SLOPE) / (scatter @ scatter + WEIGHT)
-    shape = Expectation(1.0, float(np.clip(slope, 0.0, 1.0)))
-    return Expectation(float(errors.sum() / shape.errors(filled, diameters).sum()), shape.slope)
+    slope = (scatter @ log_error + WEIGHT * PRIOR_SLOPE) / (scatter @ scatter + WEIGHT)
+    shape = ErrorModel(1.0, float(np.clip(slope, 0.0, 1.0)))
+    return ErrorModel(float(errors.sum() / shape.errors(filled, diameters).sum()), shape.slope)
 
 
 def _uncertainty(filled: FilledMesh, diameters: FloatArray) -> FloatArray:
-    share = filled.gap / np.maximum(diameters, np.finfo(np.float64).tiny)
-    return np.asarray(np.maximum(np.sqrt(share * filled.rim_turn), _LEAST))
+    share = filled.disagreement / np.maximum(diameters, np.finfo(np.float64).tiny)
+    return np.asarray(np.maximum(np.sqrt(share * filled.rim_variation), _LEAST))

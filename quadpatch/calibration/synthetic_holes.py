@@ -53,7 +53,7 @@ class Spacing:
     most: int | None = None
 
 
-def punch(mesh: TriangleMesh, diameter: float, spacing: Spacing, rng: np.random.Generator) -> Punched:
+def cut_holes(mesh: TriangleMesh, diameter: float, spacing: Spacing, rng: np.random.Generator) -> Punched:
     """Cut disks of surface out of a mesh wherever they keep clear of every boundary and of each other.
 
     Parameters

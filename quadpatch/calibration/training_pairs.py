@@ -9,8 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from quadpatch.calibration.energy_selection import FillRule
-from quadpatch.calibration.synthetic_holes import Spacing, punch
+from quadpatch.calibration.energy_selection import EnergyBlend
+from quadpatch.calibration.synthetic_holes import Spacing, cut_holes
 from quadpatch.mesh.raycast import RayScene
 from quadpatch.mesh.smoothing import laplacian_smooth
 from quadpatch.patches.folding import is_unfolded
@@ -28,7 +28,7 @@ WIDTHS = (0.8, 1.15)
 
 
 @dataclass(frozen=True)
-class Ground:
+class TrainingSurface:
     """Surface that lessons are cut from.
 
     Attributes
@@ -49,13 +49,13 @@ class Ground:
     mesh: TriangleMesh
     seeds: Seeds
     scale: PatchScale
-    rule: FillRule
+    rule: EnergyBlend
     diameters: FloatArray
     edge_length: float
 
 
 @dataclass(frozen=True)
-class Lessons:
+class TrainingPairs:
     """Pairs of question and answer, float32 each.
 
     Attributes
@@ -77,17 +77,17 @@ class Lessons:
         return len(self.channels)
 
     @staticmethod
-    def joined(parts: "list[Lessons]", resolution: int) -> "Lessons":
+    def joined(parts: "list[TrainingPairs]", resolution: int) -> "TrainingPairs":
         """Join the lessons of several rounds."""
         none = np.zeros((0, resolution, resolution), np.float32)
-        return Lessons(
+        return TrainingPairs(
             np.concatenate([np.zeros((0, 2, resolution, resolution), np.float32), *(p.channels for p in parts)]),
             np.concatenate([none, *(part.correction for part in parts)]),
             np.concatenate([none, *(part.asked for part in parts)]),
         )
 
 
-def give_lessons(ground: Ground, rng: np.random.Generator) -> Iterator[Lessons]:
+def make_training_pairs(ground: TrainingSurface, rng: np.random.Generator) -> Iterator[TrainingPairs]:
     """Cut, fill and compare, round after round, at other places each time.
 
     Parameters
@@ -105,10 +105,10 @@ def give_lessons(ground: Ground, rng: np.random.Generator) -> Iterator[Lessons]:
         yield _round(ground, width, rng)
 
 
-def _round(ground: Ground, diameter: float, rng: np.random.Generator) -> Lessons:
+def _round(ground: TrainingSurface, diameter: float, rng: np.random.Generator) -> TrainingPairs:
     scale = ground.scale
     spacing = Spacing(ground.edge_length, _MARGIN_EDGES * ground.edge_length)
-    punched = punch(ground.mesh, diameter, spacing, rng)
+    punched = cut_holes(ground.mesh, diameter, spacing, rng)
     filled = ground.rule.fill(punched.mesh, punched.loops)
     outline = laplacian_smooth(filled.mesh, outline_iterations(scale.length, ground.edge_length))
     invented = filled.mesh.vertices[filled.n_measured_vertices :]
@@ -122,4 +122,4 @@ def _round(ground: Ground, diameter: float, rng: np.random.Generator) -> Lessons
     asked = truth.seen & patches.seen & ~patches.known
     seen = network_input(patches, sampled.outline)
     correction = in_spreads(np.where(asked, truth.heights - patches.heights, 0.0), seen.spread)
-    return Lessons(seen.channels, correction.astype(np.float32), asked.astype(np.float32))
+    return TrainingPairs(seen.channels, correction.astype(np.float32), asked.astype(np.float32))

@@ -133,9 +133,9 @@ def _first_fill(mesh: TriangleMesh, loops: list[IntArray], fill: Fill, flat: Boo
         return fill(mesh, loops)
     faired = fill(mesh, [loops[i] for i in curved])
     # A plane patch has no error to be guessed: it is where it was asked for.
-    gap, rim_turn = np.zeros(len(loops)), np.zeros(len(loops))
-    gap[curved], rim_turn[curved] = faired.gap, faired.rim_turn
-    whole = replace(faired.as_part_of(curved, faired), gap=gap, rim_turn=rim_turn)
+    disagreement, rim_variation = np.zeros(len(loops)), np.zeros(len(loops))
+    disagreement[curved], rim_variation[curved] = faired.disagreement, faired.rim_variation
+    whole = replace(faired.as_part_of(curved, faired), disagreement=disagreement, rim_variation=rim_variation)
     caps = flat_caps(mesh, [[loops[i]] for i in plane])
     return whole.with_fills(caps.as_part_of(plane, whole), plane)
 
@@ -153,9 +153,9 @@ def _departure(filled: FilledMesh, first: FilledMesh, loops: IntArray) -> FloatA
     hole = np.concatenate([filled.vertex_hole[of_vertex], filled.triangle_hole[of_triangle]])
     surface = first.mesh.triangles[first.n_measured_triangles :][np.isin(first.triangle_hole, loops)]
     if not len(points) or not len(surface):
-        return np.zeros(len(filled.gap))
+        return np.zeros(len(filled.disagreement))
     distance = distance_to_mesh(points, TriangleMesh(first.mesh.vertices, surface))
-    return mean_by(hole, distance, len(filled.gap))
+    return mean_by(hole, distance, len(filled.disagreement))
 
 
 def _without_wrong(filled: FilledMesh, faults: Faults) -> tuple[FilledMesh, dict[int, tuple[str, str]]]:

@@ -28,7 +28,7 @@ def doubles_surface(filled: FilledMesh, loops: IntArray) -> BoolArray:
     (n_loops,) bool
         False for all others.
     """
-    n_loops, mesh = len(filled.gap), filled.mesh
+    n_loops, mesh = len(filled.disagreement), filled.mesh
     hole = filled.triangle_hole[np.isin(filled.triangle_hole, loops)]
     if not len(hole):
         return np.zeros(n_loops, bool)

@@ -121,7 +121,7 @@ def find_faults(filled: FilledMesh, loops: IntArray | None = None, obstacles: Tr
     obstacles : (k, 3) int64, optional
         Triangles of the file that the mesh leaves out, to be run into as well.
     """
-    n_loops = len(filled.gap)
+    n_loops = len(filled.disagreement)
     looked_at = np.ones(n_loops, bool) if loops is None else np.isin(np.arange(n_loops), loops)
     return Faults(find_folds(filled, looked_at), *_crossings(filled, looked_at, obstacles))
 
@@ -175,7 +175,7 @@ def _crossings(
     filled: FilledMesh, looked_at: BoolArray, obstacles: Triangles | None
 ) -> tuple[IntArray, IntArray, IntArray, BoolArray]:
     """Find crossings, their triangles, rivals and lost loops, as `Faults` has them."""
-    n_loops = len(filled.gap)
+    n_loops = len(filled.disagreement)
     triangles, mine = filled.mesh.triangles, np.zeros(len(filled.mesh.triangles), bool)
     mine[filled.n_measured_triangles :] = looked_at[filled.triangle_hole]
     if not mine.any():
@@ -201,7 +201,7 @@ def _crossings(
 def _boxes(filled: FilledMesh, looked_at: BoolArray) -> tuple[FloatArray, FloatArray]:
     """Bounding boxes of some fills: lowest and highest corners (n, 3)."""
     new = filled.mesh.triangles[filled.n_measured_triangles :]
-    n_loops = len(filled.gap)
+    n_loops = len(filled.disagreement)
     low, high = np.full((n_loops, 3), np.inf), np.full((n_loops, 3), -np.inf)
     corners = filled.mesh.vertices[new]
     np.minimum.at(low, filled.triangle_hole, corners.min(axis=1))

@@ -15,10 +15,10 @@ from quadpatch.mesh.averages import mean_by
 from quadpatch.types import FloatArray, IntArray, TriangleMesh, Triangles
 
 # What the thin plate is compared with to see how far two sensible answers lie apart.
-SECOND_OPINION = Energy(plate=1.0, variation=0.4)
+ALTERNATIVE_ENERGY = Energy(plate=1.0, variation=0.4)
 
 # Fill and thin plate of one hole further apart than this share of its width: something ran away.
-RUNAWAY_SHARE = 0.2
+OVERSHOOT_LIMIT = 0.2
 
 
 @dataclass(frozen=True)
@@ -41,8 +41,8 @@ class ClosedMesh:
 
     near: Surroundings
     plate: Refined
-    gap: FloatArray
-    rim_turn: FloatArray
+    disagreement: FloatArray
+    rim_variation: FloatArray
     unfilled: list[int]
 
     @property
@@ -53,7 +53,7 @@ class ClosedMesh:
     @property
     def n_holes(self) -> int:
         """Number of loops."""
-        return len(self.gap)
+        return len(self.disagreement)
 
 
 def close_holes(mesh: TriangleMesh, loops: list[IntArray]) -> ClosedMesh:
@@ -71,9 +71,9 @@ def close_holes(mesh: TriangleMesh, loops: list[IntArray]) -> ClosedMesh:
     patch = fair_refined(refine(patch, near.edges), near.around, THIN_PLATE, uniform=True)
     patch = relax(refine(patch, near.edges), near.around, near.edges)
     plate = fair_refined(patch, near.around, THIN_PLATE)
-    apart = _apart(fair_refined(plate, near.around, SECOND_OPINION), plate)
-    gap = _mean_by_hole(plate, apart, len(loops))
-    return ClosedMesh(near, plate, gap, near.rim_turn(), unfilled)
+    apart = _apart(fair_refined(plate, near.around, ALTERNATIVE_ENERGY), plate)
+    disagreement = _mean_by_hole(plate, apart, len(loops))
+    return ClosedMesh(near, plate, disagreement, near.rim_variation(), unfilled)
 
 
 def close_flat(mesh: TriangleMesh, loops: list[IntArray]) -> FilledMesh:
@@ -105,7 +105,7 @@ def fair_holes(closed: ClosedMesh, energy: Energy) -> FilledMesh:
     FilledMesh
         The input's vertices and triangles are its bit-exact prefix.
     """
-    return closed.near.filled(_fair_patch(closed, energy), closed.unfilled, closed.gap, closed.rim_turn)
+    return closed.near.filled(_fair_patch(closed, energy), closed.unfilled, closed.disagreement, closed.rim_variation)
 
 
 def _fair_patch(closed: ClosedMesh, energy: Energy) -> Refined:
@@ -117,7 +117,7 @@ def _fair_patch(closed: ClosedMesh, energy: Energy) -> Refined:
     furthest = np.zeros(n_holes)
     np.maximum.at(furthest, hole[new], _apart(faired, plate)[new])
     # Curvature carried on from a ragged rim can run away; such a hole takes the thin plate.
-    runaway = furthest > RUNAWAY_SHARE * rim_diagonals(
+    runaway = furthest > OVERSHOOT_LIMIT * rim_diagonals(
         plate.vertices, plate.triangles, plate.hole, plate.n_measured, n_holes
     )
     vertices = np.where((new & runaway[hole])[:, None], plate.vertices, faired.vertices)

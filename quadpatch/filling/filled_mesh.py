@@ -29,8 +29,8 @@ class FilledMesh:
     n_measured_triangles: int
     triangle_hole: IntArray
     vertex_hole: IntArray
-    gap: FloatArray
-    rim_turn: FloatArray
+    disagreement: FloatArray
+    rim_variation: FloatArray
     unfilled: list[int]
 
     @property
@@ -73,7 +73,7 @@ class FilledMesh:
     def with_fills(self, other: "FilledMesh", loops: IntArray) -> "FilledMesh":
         """Take the fills of some loops (k,) from another fill of the same loops of the same mesh."""
         base = self.without(loops)
-        taken = other.without(np.setdiff1d(np.arange(len(self.gap)), loops))
+        taken = other.without(np.setdiff1d(np.arange(len(self.disagreement)), loops))
         shift = len(base.mesh.vertices) - other.n_measured_vertices
         new = taken.mesh.triangles[other.n_measured_triangles :]
         new = np.where(new >= other.n_measured_vertices, new + shift, new)
@@ -95,8 +95,8 @@ class FilledMesh:
             self,
             triangle_hole=loops[self.triangle_hole],
             vertex_hole=loops[self.vertex_hole],
-            gap=whole.gap,
-            rim_turn=whole.rim_turn,
+            disagreement=whole.disagreement,
+            rim_variation=whole.rim_variation,
             unfilled=loops[self.unfilled].tolist(),
         )
 

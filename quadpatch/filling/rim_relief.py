@@ -31,7 +31,7 @@ def relieve_rims(filled: FilledMesh) -> FilledMesh:
     FilledMesh
         With one vertex and two triangles more for every edge that was relieved.
     """
-    everywhere = np.ones(len(filled.gap), bool)
+    everywhere = np.ones(len(filled.disagreement), bool)
     for _ in range(_MAX_ROUNDS):
         folds = find_folds(filled, everywhere)
         wanted = np.flatnonzero(folds.is_flat_rim & ~folds.is_sliver)

@@ -88,14 +88,18 @@ class Surroundings:
         total = np.bincount(edges.ravel(), np.repeat(lengths, 2), minlength=len(self.vertices))
         return np.asarray(total / np.maximum(count, 1))
 
-    def rim_turn(self) -> FloatArray:
+    def rim_variation(self) -> FloatArray:
         """Mean length (n_loops,) of the difference between the unit normals of neighbouring rim vertices."""
         normals = vertex_normals(self.vertices, self.around)
         turns = [np.linalg.norm(normals[loop] - normals[np.roll(loop, -1)], axis=1).mean() for loop in self.loops]
         return np.array(turns, np.float64)
 
     def filled(
-        self, patch: Refined, unfilled: list[int], gap: FloatArray | None = None, rim_turn: FloatArray | None = None
+        self,
+        patch: Refined,
+        unfilled: list[int],
+        disagreement: FloatArray | None = None,
+        rim_variation: FloatArray | None = None,
     ) -> FilledMesh:
         """Put a fill in local vertices behind the mesh's own; without gap and rim turn, they are NaN."""
         mesh, n_local = self.mesh, len(self.used)
@@ -112,8 +116,8 @@ class Surroundings:
             len(mesh.triangles),
             patch.hole,
             vertex_hole[n_local:],
-            unknown if gap is None else gap,
-            unknown if rim_turn is None else rim_turn,
+            unknown if disagreement is None else disagreement,
+            unknown if rim_variation is None else rim_variation,
             unfilled,
         )
 

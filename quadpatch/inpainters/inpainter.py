@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Protocol
 
-from quadpatch.calibration.training_pairs import Ground
+from quadpatch.calibration.training_pairs import TrainingSurface
 from quadpatch.types import FloatArray, Patches
 
 
@@ -22,7 +22,7 @@ class Surroundings:
 
     patches: Patches
     outline: FloatArray
-    ground: Ground
+    ground: TrainingSurface
 
 
 class Inpainter(Protocol):

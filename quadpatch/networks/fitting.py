@@ -9,7 +9,7 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from quadpatch.calibration.training_pairs import Lessons, give_lessons
+from quadpatch.calibration.training_pairs import TrainingPairs, make_training_pairs
 from quadpatch.inpainters.inpainter import Surroundings
 from quadpatch.networks.precision import has_fast_bfloat16
 from quadpatch.networks.residual import Residual, errors, turned
@@ -88,21 +88,21 @@ class FittingInpainter:
 
 def gather_lessons(
     surroundings: Surroundings, seed: int, seconds: float = np.inf, progress: Progress = no_progress
-) -> Lessons:
+) -> TrainingPairs:
     """Cut lessons until there are enough, or another round would come too often to the same places, or too late."""
-    started, parts = time.monotonic(), list[Lessons]()
-    for part in islice(give_lessons(surroundings.ground, np.random.default_rng([seed, 3])), MAX_ROUNDS):
+    started, parts = time.monotonic(), list[TrainingPairs]()
+    for part in islice(make_training_pairs(surroundings.ground, np.random.default_rng([seed, 3])), MAX_ROUNDS):
         parts.append(part)
         done = max(sum(len(part) for part in parts) / ENOUGH_LESSONS, (time.monotonic() - started) / seconds)
         progress("learn", min(done, 1.0))
         if done >= 1.0:
             break
-    return Lessons.joined(parts, RESOLUTION)
+    return TrainingPairs.joined(parts, RESOLUTION)
 
 
 def fit(
     network: Residual,
-    lessons: Lessons,
+    lessons: TrainingPairs,
     options: NetworkOptions,
     seed: int,
     progress: Progress = no_progress,

@@ -9,12 +9,12 @@ from dataclasses import fields
 
 import numpy as np
 
-from quadpatch.calibration.error_model import Expectation
+from quadpatch.calibration.error_model import ErrorModel
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.mesh.averages import mean_by
 from quadpatch.mesh.holes import Hole, Selection
 from quadpatch.mesh.measures import diagonal
-from quadpatch.recipes.result import Completion, Evidence, HoleResult
+from quadpatch.recipes.result import Completion, HoleResult, PatchAgreement
 from quadpatch.reconstruction.displacement import Displacement
 from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh
 
@@ -28,13 +28,13 @@ MOST_DISAGREEMENT = 1.5
 DOUBTFUL_SHARE = 0.003
 
 
-def gather(
+def measure_agreement(
     filled: FilledMesh, inside: Displacement, joined: FloatArray, rim_hole: IntArray, at_rim: Displacement
-) -> Evidence:
+) -> PatchAgreement:
     """Collect the evidence of all holes from the displacements inside them and at their rims."""
-    hole, n_holes = filled.vertex_hole, len(filled.gap)
+    hole, n_holes = filled.vertex_hole, len(filled.disagreement)
     covered = (inside.overlap > 0).astype(np.float64)
-    return Evidence(
+    return PatchAgreement(
         mean_by(hole, covered, n_holes),
         mean_by(hole, inside.spread, n_holes),
         mean_by(hole, np.linalg.norm(joined, axis=1), n_holes),
@@ -42,22 +42,22 @@ def gather(
     )
 
 
-def trusted(evidence: Evidence) -> BoolArray:
+def trusted_holes(evidence: PatchAgreement) -> BoolArray:
     """Which holes (n_holes,) the model may complete."""
     disagreement = evidence.spread / np.maximum(evidence.departure + evidence.rim_misfit, 1e-300)
     trust: BoolArray = (evidence.coverage >= LEAST_COVERAGE) & (disagreement <= MOST_DISAGREEMENT)
     return trust
 
 
-def judge(
+def assess(
     holes: list[Hole],
     selection: Selection,
     filled: FilledMesh,
     completion: Completion | None,
-    expectation: Expectation,
+    error_model: ErrorModel,
 ) -> list[HoleResult]:
     """Say of every hole what became of it, in the order of their ids."""
-    expected_errors = expectation.errors(filled, [hole.diameter for hole in selection.chosen]).tolist()
+    expected_errors = error_model.errors(filled, [hole.diameter for hole in selection.chosen]).tolist()
     measured = TriangleMesh(filled.mesh.vertices, filled.mesh.triangles[: filled.n_measured_triangles])
     size = diagonal(measured)
     closed = []
@@ -73,7 +73,11 @@ def judge(
                 expected_errors[i],
                 n_vertices,
                 n_triangles,
-                {"gap": float(filled.gap[i]), "rim_turn": float(filled.rim_turn[i]), **evidence_of(i, completion)},
+                {
+                    "gap": float(filled.disagreement[i]),
+                    "rim_turn": float(filled.rim_variation[i]),
+                    **evidence_of(i, completion),
+                },
             )
         )
     return with_open_holes(closed, holes, selection, filled)
@@ -105,7 +109,7 @@ def with_open_holes(
 
 def count_new(filled: FilledMesh) -> tuple[list[int], list[int]]:
     """Count the new vertices and the new triangles of every chosen hole."""
-    n_holes = len(filled.gap)
+    n_holes = len(filled.disagreement)
     n_vertices, n_triangles = (
         np.bincount(hole, minlength=n_holes).tolist() for hole in (filled.vertex_hole, filled.triangle_hole)
     )
@@ -116,7 +120,7 @@ def evidence_of(i: int, completion: Completion | None) -> dict[str, float]:
     """Name what the patches said about one hole; nothing where none were asked."""
     if completion is None or completion.evidence is None:
         return {}
-    return {sign.name: float(getattr(completion.evidence, sign.name)[i]) for sign in fields(Evidence)}
+    return {sign.name: float(getattr(completion.evidence, sign.name)[i]) for sign in fields(PatchAgreement)}
 
 
 def _verdict(i: int, n_new_vertices: int, completion: Completion | None) -> tuple[str, str, str]:
@@ -131,8 +135,8 @@ def _verdict(i: int, n_new_vertices: int, completion: Completion | None) -> tupl
         (left_out, "geometry", "a rule asks for geometry alone"),
         (undone, "model_faulty", "displaced by the model, the fill folds or runs through other surface: it was undone"),
         (not n_new_vertices, "no_new_vertex", "so small that its rim alone spans it: there is nothing to displace"),
-        (completion.expectation is None, "no_practice", "too little undamaged surface to try the model on"),
-        (completion.believed == 0, "no_gain", "practice on this mesh showed no gain over the geometric fill"),
+        (completion.error_model is None, "no_practice", "too little undamaged surface to try the model on"),
+        (completion.blend_factor == 0, "no_gain", "practice on this mesh showed no gain over the geometric fill"),
         (
             coverage < LEAST_COVERAGE,
             "no_height_map",

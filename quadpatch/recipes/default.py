@@ -6,9 +6,9 @@ geometric fill, outline, quads, patches, learning, completion, reconstruction, v
 
 import numpy as np
 
-from quadpatch.calibration.calibration_set import Practice, expect, practise
-from quadpatch.calibration.energy_selection import FillRule, learn_fill_rule
-from quadpatch.calibration.error_model import UNTRIED, Expectation
+from quadpatch.calibration.calibration_set import CalibrationSet, cut_calibration_set, expect
+from quadpatch.calibration.energy_selection import EnergyBlend, learn_energy_blend
+from quadpatch.calibration.error_model import PRIOR, ErrorModel
 from quadpatch.errors import NoQuadsError
 from quadpatch.filling.checked_fill import CheckedFill, LoopsToFill, fill_checked
 from quadpatch.filling.fairing import THIN_PLATE, Energy
@@ -18,25 +18,25 @@ from quadpatch.inpainters.inpainter import Inpainter
 from quadpatch.mesh.holes import Selection, find_holes, select_holes
 from quadpatch.mesh.measures import diagonal, mean_edge_length
 from quadpatch.options import HoleAction, RepairOptions
-from quadpatch.recipes.assessment import judge
-from quadpatch.recipes.learned_detail import Problem, complete
+from quadpatch.recipes.assessment import assess
+from quadpatch.recipes.learned_detail import CompletionInput, complete
 from quadpatch.recipes.result import Repair
 from quadpatch.recipes.verification import limited_to, verified_results, without_faults
 from quadpatch.stages import Stages
 from quadpatch.types import BoolArray, TriangleMesh, Triangles
 
 # From rough to smooth: a noisy or sharp-edged surface is continued best by the first, a smooth one by the last.
-ENERGIES = (
+FAIRING_ENERGIES = (
     Energy(membrane=0.3, plate=1.0),
     THIN_PLATE,
     *(Energy(plate=1.0, variation=weight) for weight in (0.4, 2.0, 40.0)),
 )
 
 # For surfaces on which practice can't tell the energies apart.
-USUAL_ENERGY = ENERGIES[2]
+DEFAULT_ENERGY = FAIRING_ENERGIES[2]
 # For surfaces without room for practice: they are coarse for their holes, and a rim of few edges shows no curvature to
 # carry on.
-UNTRIED_ENERGY = THIN_PLATE
+PRIOR_ENERGY = THIN_PLATE
 
 
 def inpaint(
@@ -79,7 +79,7 @@ def inpaint(
         selection = select_holes(holes, options.holes, diagonal(mesh))
         rims = join_islands(mesh, holes, selection.chosen)
     with stages.stage("fill"):
-        problem, expectation, checked = _fill(mesh, rims, _loops_to_fill(rims, selection), obstacles, rng)
+        problem, error_model, checked = _fill(mesh, rims, _loops_to_fill(rims, selection), obstacles, rng)
     completion, warnings = None, []
     by_model = _with_action(rims, selection, "model")
     if (inpainter is not None or learn) and by_model[problem.filled.vertex_hole].any():
@@ -94,9 +94,9 @@ def inpaint(
             completion = limited_to(completion, checked.filled, by_model)
         verified = without_faults(completion, checked, obstacles)
         completion = verified.completion
-        if completion and completion.expectation is not None:
-            expectation = completion.expectation
-        results = judge(holes, _filled_ones(selection, rims), problem.filled, completion, expectation)
+        if completion and completion.error_model is not None:
+            error_model = completion.error_model
+        results = assess(holes, _filled_ones(selection, rims), problem.filled, completion, error_model)
         results = verified_results(results, rims, checked, verified.faults, diagonal(mesh))
     filled = completion.filled if completion else problem.filled
     return Repair(filled, rims.chosen, results, problem.rule, completion, warnings)
@@ -120,22 +120,22 @@ def _filled_ones(selection: Selection, rims: JoinedRims) -> Selection:
 
 def _fill(
     mesh: TriangleMesh, rims: JoinedRims, wanted: LoopsToFill, obstacles: Triangles | None, rng: np.random.Generator
-) -> tuple[Problem, Expectation, CheckedFill]:
+) -> tuple[CompletionInput, ErrorModel, CheckedFill]:
     """Fill the holes as suits this surface, and check it; also the error to expect of that."""
     edge = mean_edge_length(mesh)
     diameters = [hole.diameter for hole in rims.chosen]
     curved = [diameters[i] for i in np.flatnonzero(~wanted.flat)]
-    practice = practise(mesh, float(np.median(curved)), edge, rng) if curved else None
-    rule, filled_again = suitable_rule(practice)
-    expectation = UNTRIED
-    if practice is not None and filled_again is not None:
-        expectation = expect(practice, filled_again)
+    calibration = cut_calibration_set(mesh, float(np.median(curved)), edge, rng) if curved else None
+    rule, filled_again = suitable_rule(calibration)
+    error_model = PRIOR
+    if calibration is not None and filled_again is not None:
+        error_model = expect(calibration, filled_again)
     checked = fill_checked(mesh, wanted, rule.fill, obstacles)
-    return Problem(checked.filled, rule, diameters, edge, practice, filled_again), expectation, checked
+    return CompletionInput(checked.filled, rule, diameters, edge, calibration, filled_again), error_model, checked
 
 
-def suitable_rule(practice: Practice | None) -> tuple[FillRule, FilledMesh | None]:
+def suitable_rule(calibration: CalibrationSet | None) -> tuple[EnergyBlend, FilledMesh | None]:
     """Learn how this surface is continued best, as far as practice on it can tell; also the practice holes, filled."""
-    if practice is None:
-        return FillRule.of_one(UNTRIED_ENERGY), None
-    return learn_fill_rule(practice, ENERGIES, USUAL_ENERGY)
+    if calibration is None:
+        return EnergyBlend.of_one(PRIOR_ENERGY), None
+    return learn_energy_blend(calibration, FAIRING_ENERGIES, DEFAULT_ENERGY)

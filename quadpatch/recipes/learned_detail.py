@@ -4,10 +4,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from quadpatch.calibration.calibration_set import Practice, believed_share, expect
-from quadpatch.calibration.energy_selection import FillRule
-from quadpatch.calibration.error_model import Expectation
-from quadpatch.calibration.training_pairs import Ground
+from quadpatch.calibration.calibration_set import CalibrationSet, blend_factor, expect
+from quadpatch.calibration.energy_selection import EnergyBlend
+from quadpatch.calibration.error_model import ErrorModel
+from quadpatch.calibration.training_pairs import TrainingSurface
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.inpainters.dictionary import learn_from_patches
 from quadpatch.inpainters.inpainter import Inpainter, Surroundings
@@ -17,21 +17,21 @@ from quadpatch.patches.folding import is_unfolded
 from quadpatch.patches.layout import lay_out, patchify, pick, seeds_near, take
 from quadpatch.patches.scale import PatchScale, choose_scale, outline_iterations
 from quadpatch.patches.seeds import Seeds
-from quadpatch.recipes.assessment import gather, trusted
-from quadpatch.recipes.result import Completion, Evidence
+from quadpatch.recipes.assessment import measure_agreement, trusted_holes
+from quadpatch.recipes.result import Completion, PatchAgreement
 from quadpatch.reconstruction.displacement import displace, join_at_rim, rim_vertices
 from quadpatch.stages import Stages
 from quadpatch.types import BoolArray, FloatArray, Patches, TriangleMesh
 
 # Believed of a model's displacement where the mesh has no room for practice.
-UNTRIED_SHARE = 0.0
+PRIOR_BLEND_FACTOR = 0.0
 
 # Patches that a self-similar dictionary is learned from.
 _MAX_SEEDS_TO_LEARN_FROM = 2000
 
 
 @dataclass(frozen=True)
-class Problem:
+class CompletionInput:
     """What is to be completed.
 
     Attributes
@@ -49,11 +49,11 @@ class Problem:
     """
 
     filled: FilledMesh
-    rule: FillRule
+    rule: EnergyBlend
     diameters: list[float]
     edge_length: float
-    practice: Practice | None
-    practice_filled: FilledMesh | None
+    calibration: CalibrationSet | None
+    calibration_filled: FilledMesh | None
 
 
 @dataclass(frozen=True)
@@ -66,7 +66,11 @@ class _Model:
 
 
 def complete(
-    problem: Problem, inpainter: Inpainter | None, options: RepairOptions, rng: np.random.Generator, stages: Stages
+    problem: CompletionInput,
+    inpainter: Inpainter | None,
+    options: RepairOptions,
+    rng: np.random.Generator,
+    stages: Stages,
 ) -> Completion | None:
     """Displace the fill of every hole by what a model makes of the patches around it.
 
@@ -106,21 +110,21 @@ def complete(
         if inpainter is None:
             inpainter = learn_from_patches(lesson, everywhere.outline)
         else:
-            ground = _ground(problem, seeds, scale)
+            ground = _training_surface(problem, seeds, scale)
             inpainter = inpainter.fitted_to(Surroundings(lesson, everywhere.outline, ground))
         if inpainter is None:
             return None
-        believed, expectation = _rehearse(problem, _Model(inpainter, seeds, scale))
+        blend_factor, error_model = _calibrate(problem, _Model(inpainter, seeds, scale))
     with stages.stage("inpaint"):
         # What practice does not believe need not be said.
-        predicted = inpainter.predict(sampled.patches, sampled.outline) if believed else None
+        predicted = inpainter.predict(sampled.patches, sampled.outline) if blend_factor else None
     with stages.stage("reconstruct"):
-        evidence, trust = None, np.zeros(len(filled.gap), bool)
+        evidence, trust = None, np.zeros(len(filled.disagreement), bool)
         if predicted is not None:
             joined, evidence = _displacements(filled, sampled.patches, predicted)
-            trust = trusted(evidence)
-            filled = _moved(filled, believed * np.where(trust[filled.vertex_hole][:, None], joined, 0.0))
-    return Completion(filled, evidence, trust, believed, expectation, scale, len(sampled.patches))
+            trust = trusted_holes(evidence)
+            filled = _moved(filled, blend_factor * np.where(trust[filled.vertex_hole][:, None], joined, 0.0))
+    return Completion(filled, evidence, trust, blend_factor, error_model, scale, len(sampled.patches))
 
 
 def _moved(filled: FilledMesh, displacement: FloatArray) -> FilledMesh:
@@ -131,23 +135,23 @@ def _outline(filled: FilledMesh, scale: PatchScale, edge_length: float) -> Trian
     return laplacian_smooth(filled.mesh, outline_iterations(scale.length, edge_length))
 
 
-def _without_practice(patches: Patches, problem: Problem) -> Patches:
+def _without_practice(patches: Patches, problem: CompletionInput) -> Patches:
     """Hide what practice holes took, or a model would be tried on what it has learned by heart."""
-    if problem.practice is None:
+    if problem.calibration is None:
         return patches
     cut_away = np.zeros(len(problem.filled.mesh.triangles), bool)
-    cut_away[: len(problem.practice.cut_away)] = problem.practice.cut_away
+    cut_away[: len(problem.calibration.cut_away)] = problem.calibration.cut_away
     hidden = (patches.triangle >= 0) & cut_away[patches.triangle]
     return replace(patches, known=patches.known & ~hidden)
 
 
-def _ground(problem: Problem, seeds: Seeds, scale: PatchScale) -> Ground:
+def _training_surface(problem: CompletionInput, seeds: Seeds, scale: PatchScale) -> TrainingSurface:
     """Measured surface, without what practice holes took."""
-    filled, practice = problem.filled, problem.practice
+    filled, calibration = problem.filled, problem.calibration
     measured = filled.mesh.triangles[: filled.n_measured_triangles]
-    triangles = measured if practice is None else measured[~practice.cut_away]
+    triangles = measured if calibration is None else measured[~calibration.cut_away]
     mesh = TriangleMesh(filled.mesh.vertices[: filled.n_measured_vertices], triangles)
-    return Ground(mesh, seeds, scale, problem.rule, np.array(problem.diameters), problem.edge_length)
+    return TrainingSurface(mesh, seeds, scale, problem.rule, np.array(problem.diameters), problem.edge_length)
 
 
 def _some(count: int, rng: np.random.Generator) -> BoolArray:
@@ -157,11 +161,11 @@ def _some(count: int, rng: np.random.Generator) -> BoolArray:
     return chosen
 
 
-def _rehearse(problem: Problem, model: _Model) -> tuple[float, Expectation | None]:
+def _calibrate(problem: CompletionInput, model: _Model) -> tuple[float, ErrorModel | None]:
     """Complete the practice holes: the share of the displacement to believe, and the error to expect."""
-    filled = problem.practice_filled
-    if problem.practice is None or filled is None:
-        return UNTRIED_SHARE, None
+    filled = problem.calibration_filled
+    if problem.calibration is None or filled is None:
+        return PRIOR_BLEND_FACTOR, None
     outline = _outline(filled, model.scale, problem.edge_length)
     new = filled.mesh.vertices[filled.n_measured_vertices :]
     near = take(model.seeds, seeds_near(model.seeds, new, model.scale.length))
@@ -169,15 +173,15 @@ def _rehearse(problem: Problem, model: _Model) -> tuple[float, Expectation | Non
     sampled = pick(sampled, is_unfolded(sampled.patches))
     predicted = model.inpainter.predict(sampled.patches, sampled.outline)
     joined, evidence = _displacements(filled, sampled.patches, predicted)
-    joined = np.where(trusted(evidence)[filled.vertex_hole][:, None], joined, 0.0)
-    share = believed_share(problem.practice, filled, joined)
-    return share, expect(problem.practice, filled.with_vertices(new + share * joined))
+    joined = np.where(trusted_holes(evidence)[filled.vertex_hole][:, None], joined, 0.0)
+    share = blend_factor(problem.calibration, filled, joined)
+    return share, expect(problem.calibration, filled.with_vertices(new + share * joined))
 
 
-def _displacements(filled: FilledMesh, patches: Patches, predicted: FloatArray) -> tuple[FloatArray, Evidence]:
+def _displacements(filled: FilledMesh, patches: Patches, predicted: FloatArray) -> tuple[FloatArray, PatchAgreement]:
     """Displacements (n_invented, 3), zero at the rims, and the evidence behind them."""
     rim, rim_hole = rim_vertices(filled)
     inside = displace(filled, np.flatnonzero(filled.invented_vertices), patches, predicted)
     at_rim = displace(filled, rim, patches, predicted)
     joined = join_at_rim(filled, inside.mean, rim, at_rim.mean)
-    return joined, gather(filled, inside, joined, rim_hole, at_rim)
+    return joined, measure_agreement(filled, inside, joined, rim_hole, at_rim)

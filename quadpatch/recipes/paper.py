@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from quadpatch.calibration.energy_selection import FillRule
+from quadpatch.calibration.energy_selection import EnergyBlend
 from quadpatch.errors import NoQuadsError, OptionError, StageError
 from quadpatch.filling.fairing import Energy
 from quadpatch.filling.faults import find_faults
@@ -29,7 +29,7 @@ from quadpatch.patches.height_map import sample_height_maps
 from quadpatch.patches.layout import lay_out, pick_patches, seeds_near, take
 from quadpatch.patches.scale import PatchScale
 from quadpatch.patches.seeds import Seeds
-from quadpatch.recipes.assessment import count_new, evidence_of, gather, with_open_holes
+from quadpatch.recipes.assessment import count_new, evidence_of, measure_agreement, with_open_holes
 from quadpatch.recipes.result import Completion, HoleResult, Repair
 from quadpatch.recipes.verification import with_named_faults
 from quadpatch.reconstruction.displacement import rim_vertices
@@ -51,7 +51,7 @@ NOTHING_TO_DO = (
 )
 
 # Nothing is faired.
-NO_FAIRING = FillRule.of_one(Energy())
+NO_FAIRING = EnergyBlend.of_one(Energy())
 
 
 @dataclass(frozen=True)
@@ -229,7 +229,7 @@ def _reconstruct(filled: FilledMesh, patches: Patches, predicted: FloatArray, sc
     rim, rim_hole = rim_vertices(filled)
     placed = place(filled, np.flatnonzero(filled.invented_vertices), patches, predicted)
     at_rim = place(filled, rim, patches, predicted)
-    evidence = gather(filled, placed, placed.mean, rim_hole, at_rim)
+    evidence = measure_agreement(filled, placed, placed.mean, rim_hole, at_rim)
     moved = filled.with_vertices(new + placed.mean)
     return Completion(moved, evidence, evidence.coverage > 0, 1.0, None, scale, len(patches))
 

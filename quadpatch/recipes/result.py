@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass, field
 
-from quadpatch.calibration.energy_selection import FillRule
-from quadpatch.calibration.error_model import Expectation
+from quadpatch.calibration.energy_selection import EnergyBlend
+from quadpatch.calibration.error_model import ErrorModel
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.mesh.holes import Hole
 from quadpatch.patches.scale import PatchScale
@@ -45,7 +45,7 @@ class HoleResult:
 
 
 @dataclass(frozen=True)
-class Evidence:
+class PatchAgreement:
     """What the patches said about every hole, (n_holes,) float64 each, by position in the list of loops.
 
     Attributes
@@ -86,10 +86,10 @@ class Completion:
     """
 
     filled: FilledMesh
-    evidence: Evidence | None
+    evidence: PatchAgreement | None
     trust: BoolArray
-    believed: float
-    expectation: Expectation | None
+    blend_factor: float
+    error_model: ErrorModel | None
     scale: PatchScale
     n_patches: int
     undone: BoolArray | None = None
@@ -118,6 +118,6 @@ class Repair:
     filled: FilledMesh
     chosen: list[Hole]
     results: list[HoleResult]
-    rule: FillRule
+    rule: EnergyBlend
     completion: Completion | None
     warnings: list[str]

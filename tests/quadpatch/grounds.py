@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from quadpatch.calibration.energy_selection import FillRule
-from quadpatch.calibration.training_pairs import Ground
+from quadpatch.calibration.energy_selection import EnergyBlend
+from quadpatch.calibration.training_pairs import TrainingSurface
 from quadpatch.filling.fairing import THIN_PLATE
 from quadpatch.inpainters.inpainter import Surroundings
 from quadpatch.mesh.measures import mean_edge_length
@@ -16,12 +16,12 @@ from quadpatch.patches.seeds import Seeds
 from quadpatch.types import Patches, TriangleMesh
 
 
-def ground_of(mesh: TriangleMesh, diameter: float, overlap: int | None = None) -> Ground:
+def ground_of(mesh: TriangleMesh, diameter: float, overlap: int | None = None) -> TrainingSurface:
     """Prepare a whole mesh for holes of one diameter, as a repair would."""
     edge_length = mean_edge_length(mesh)
     scale = choose_scale([diameter], edge_length, PatchOptions(overlap=overlap), RESOLUTION)
     seeds = lay_out(laplacian_smooth(mesh, outline_iterations(scale.length, edge_length)), scale)
-    return Ground(mesh, seeds, scale, FillRule.of_one(THIN_PLATE), np.array([diameter]), edge_length)
+    return TrainingSurface(mesh, seeds, scale, EnergyBlend.of_one(THIN_PLATE), np.array([diameter]), edge_length)
 
 
 def looking_down(*places: tuple[float, float, float]) -> Seeds:
@@ -29,7 +29,7 @@ def looking_down(*places: tuple[float, float, float]) -> Seeds:
     return Seeds(np.array(places), np.tile(np.eye(3), (len(places), 1, 1)), np.zeros(len(places), np.int64))
 
 
-def surroundings_of(ground: Ground) -> Surroundings:
+def surroundings_of(ground: TrainingSurface) -> Surroundings:
     """What a model that is fitted by lessons alone is given: no patch, and the ground."""
     none = np.zeros((0, RESOLUTION, RESOLUTION))
     is_none = none > 0

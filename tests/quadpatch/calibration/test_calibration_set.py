@@ -6,13 +6,13 @@ import pytest
 from quadpatch.calibration.calibration_set import (
     MAX_HOLES,
     MIN_HOLES,
-    Practice,
-    believed_share,
+    CalibrationSet,
+    blend_factor,
     choose_energy,
+    cut_calibration_set,
     distance_per_hole,
     error_per_hole,
     expect,
-    practise,
 )
 from quadpatch.filling.fairing import THIN_PLATE, Energy
 from quadpatch.filling.fill import fair_holes
@@ -20,18 +20,18 @@ from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.mesh.boundary import boundary_loops
 from quadpatch.mesh.measures import mean_edge_length
 from quadpatch.mesh.raycast import RayScene
-from quadpatch.recipes.default import ENERGIES, USUAL_ENERGY
+from quadpatch.recipes.default import DEFAULT_ENERGY, FAIRING_ENERGIES
 from quadpatch.types import FloatArray, TriangleMesh
 from tests.quadpatch.shapes import bumpy_plate, open_grid, punched, relief, sphere
 
 DIAMETER = 0.25
 
 
-def practice_on(mesh: TriangleMesh, seed: int = 0, diameter: float = DIAMETER) -> Practice | None:
-    return practise(mesh, diameter, mean_edge_length(mesh), np.random.default_rng(seed))
+def practice_on(mesh: TriangleMesh, seed: int = 0, diameter: float = DIAMETER) -> CalibrationSet | None:
+    return cut_calibration_set(mesh, diameter, mean_edge_length(mesh), np.random.default_rng(seed))
 
 
-def some_practice(mesh: TriangleMesh, seed: int = 0, diameter: float = DIAMETER) -> Practice:
+def some_practice(mesh: TriangleMesh, seed: int = 0, diameter: float = DIAMETER) -> CalibrationSet:
     found = practice_on(mesh, seed, diameter)
     assert found is not None
     return found
@@ -51,12 +51,12 @@ RELIEF = relief(120, 2.0, 0.03, 10)
 
 
 def test_real_rims_stay_as_they_are_and_practice_keeps_away_from_them() -> None:
-    practice = some_practice(SHEET)
-    opened = practice.closed.mesh
+    calibration = some_practice(SHEET)
+    opened = calibration.closed.mesh
     real = loops_of(SHEET)
     assert real < loops_of(opened)
     assert MIN_HOLES <= len(loops_of(opened) - real) <= MAX_HOLES
-    assert practice.closed.n_holes == len(loops_of(opened) - real)
+    assert calibration.closed.n_holes == len(loops_of(opened) - real)
     rims = SHEET.vertices[np.concatenate([np.array(loop) for loop in real])]
     for loop in loops_of(opened) - real:
         apart = np.linalg.norm(opened.vertices[list(loop)][:, None] - rims[None], axis=2)
@@ -65,20 +65,22 @@ def test_real_rims_stay_as_they_are_and_practice_keeps_away_from_them() -> None:
 
 
 def test_practice_holes_are_about_as_wide_as_the_real_ones_and_apart() -> None:
-    practice = some_practice(SHEET)
-    loops = [np.array(loop) for loop in loops_of(practice.closed.mesh) - loops_of(SHEET)]
+    calibration = some_practice(SHEET)
+    loops = [np.array(loop) for loop in loops_of(calibration.closed.mesh) - loops_of(SHEET)]
     widths = [np.ptp(SHEET.vertices[loop, 0]) for loop in loops]
-    assert practice.diameter <= DIAMETER
-    assert abs(np.median(widths) - practice.diameter) < mean_edge_length(SHEET)
+    assert calibration.diameter <= DIAMETER
+    assert abs(np.median(widths) - calibration.diameter) < mean_edge_length(SHEET)
     corners = np.concatenate(loops)
     assert len(np.unique(corners)) == len(corners)
 
 
 def test_only_surface_is_cut_away() -> None:
-    practice = some_practice(SHEET)
-    kept = {tuple(row) for row in practice.closed.mesh.triangles.tolist()}
+    calibration = some_practice(SHEET)
+    kept = {tuple(row) for row in calibration.closed.mesh.triangles.tolist()}
     assert kept < {tuple(row) for row in SHEET.triangles.tolist()}
-    assert practice.closed.mesh.vertices is SHEET.vertices or (practice.closed.mesh.vertices == SHEET.vertices).all()
+    assert (
+        calibration.closed.mesh.vertices is SHEET.vertices or (calibration.closed.mesh.vertices == SHEET.vertices).all()
+    )
 
 
 def test_the_same_generator_cuts_the_same_holes_and_another_one_others() -> None:
@@ -96,106 +98,108 @@ def test_without_room_there_is_no_practice(mesh: TriangleMesh) -> None:
 
 
 def test_smaller_holes_are_tried_where_there_is_no_room_for_large_ones() -> None:
-    practice = some_practice(sphere(5), diameter=0.8)
-    assert practice.diameter < 0.8
+    calibration = some_practice(sphere(5), diameter=0.8)
+    assert calibration.diameter < 0.8
 
 
-def chosen_for(practice: Practice, usual: Energy = USUAL_ENERGY) -> Energy:
-    errors = np.array([error_per_hole(practice, fair_holes(practice.closed, energy)) for energy in ENERGIES])
-    return choose_energy(errors, practice.diameter, ENERGIES, usual)
+def chosen_for(calibration: CalibrationSet, usual: Energy = DEFAULT_ENERGY) -> Energy:
+    errors = np.array(
+        [error_per_hole(calibration, fair_holes(calibration.closed, energy)) for energy in FAIRING_ENERGIES]
+    )
+    return choose_energy(errors, calibration.diameter, FAIRING_ENERGIES, usual)
 
 
 def test_a_smooth_surface_is_continued_by_a_smooth_energy() -> None:
-    assert chosen_for(some_practice(sphere(5), diameter=0.5)) == ENERGIES[-1]
+    assert chosen_for(some_practice(sphere(5), diameter=0.5)) == FAIRING_ENERGIES[-1]
 
 
 def test_a_noisy_surface_is_continued_by_an_energy_that_carries_no_curvature_on() -> None:
     mesh = open_grid(100, 2.0)
     noise = np.random.default_rng(0).normal(0, 0.01, mesh.vertices.shape) * [0, 0, 1]
-    practice = some_practice(TriangleMesh(mesh.vertices + noise, mesh.triangles))
-    assert chosen_for(practice).variation == 0
+    calibration = some_practice(TriangleMesh(mesh.vertices + noise, mesh.triangles))
+    assert chosen_for(calibration).variation == 0
 
 
 def test_the_usual_energy_stays_where_practice_can_not_tell() -> None:
-    for usual in ENERGIES:
+    for usual in FAIRING_ENERGIES:
         assert chosen_for(some_practice(FLAT), usual) == usual
 
 
 def test_a_flat_surface_is_filled_without_error() -> None:
-    practice = some_practice(FLAT)
-    filled = fair_holes(practice.closed, THIN_PLATE)
-    errors = error_per_hole(practice, filled)
-    assert errors.shape == (practice.closed.n_holes,)
+    calibration = some_practice(FLAT)
+    filled = fair_holes(calibration.closed, THIN_PLATE)
+    errors = error_per_hole(calibration, filled)
+    assert errors.shape == (calibration.closed.n_holes,)
     assert errors.max() < 1e-9
 
 
 def test_the_error_is_the_distance_to_what_was_cut_away() -> None:
-    practice = some_practice(FLAT)
-    filled = fair_holes(practice.closed, THIN_PLATE)
+    calibration = some_practice(FLAT)
+    filled = fair_holes(calibration.closed, THIN_PLATE)
     lifted = filled.with_vertices(new_vertices(filled) + np.array([0, 0, 0.001]))
     # Triangles at the rim are lifted in part only.
-    assert error_per_hole(practice, lifted).mean() == pytest.approx(0.001, rel=0.25)
+    assert error_per_hole(calibration, lifted).mean() == pytest.approx(0.001, rel=0.25)
     one_hole = filled.vertex_hole == 3
     one = filled.with_vertices(new_vertices(filled) + one_hole[:, None] * np.array([0, 0, 0.001]))
-    errors = error_per_hole(practice, one)
+    errors = error_per_hole(calibration, one)
     assert errors[3] > 0.0007
     assert np.delete(errors, 3).max() < 1e-9
 
 
 def test_the_distance_of_a_fill_looks_one_way_only() -> None:
-    practice = some_practice(FLAT)
-    filled = fair_holes(practice.closed, THIN_PLATE)
+    calibration = some_practice(FLAT)
+    filled = fair_holes(calibration.closed, THIN_PLATE)
     lift = 0.001 * (filled.vertex_hole == 3)[:, None] * np.array([0, 0, 1])
     lifted = filled.with_vertices(new_vertices(filled) + lift)
-    distance = distance_per_hole(practice, lifted)
+    distance = distance_per_hole(calibration, lifted)
     assert distance[3] == pytest.approx(0.001)
     assert np.delete(distance, 3).max() < 1e-9
-    elsewhere = replace(practice, removed=practice.removed + np.array([0.0, 0, 1]))
+    elsewhere = replace(calibration, removed=calibration.removed + np.array([0.0, 0, 1]))
     assert (distance_per_hole(elsewhere, lifted) == distance).all()
     assert error_per_hole(elsewhere, lifted).min() > 0.4
 
 
 def test_every_practice_hole_is_as_wide_as_its_rim() -> None:
-    practice = some_practice(SHEET)
-    loops = [np.array(loop) for loop in loops_of(practice.closed.mesh) - loops_of(SHEET)]
+    calibration = some_practice(SHEET)
+    loops = [np.array(loop) for loop in loops_of(calibration.closed.mesh) - loops_of(SHEET)]
     widths = [np.linalg.norm(SHEET.vertices[loop][:, None] - SHEET.vertices[loop], axis=2).max() for loop in loops]
-    np.testing.assert_allclose(np.sort(practice.diameters), np.sort(widths))
+    np.testing.assert_allclose(np.sort(calibration.diameters), np.sort(widths))
 
 
 def test_what_is_expected_of_the_practice_holes_is_their_mean_distance() -> None:
-    practice = some_practice(RELIEF)
-    filled = fair_holes(practice.closed, ENERGIES[1])
-    expected = expect(practice, filled).errors(filled, practice.diameters)
-    assert expected.sum() == pytest.approx(distance_per_hole(practice, filled).sum())
+    calibration = some_practice(RELIEF)
+    filled = fair_holes(calibration.closed, FAIRING_ENERGIES[1])
+    expected = expect(calibration, filled).errors(filled, calibration.diameters)
+    assert expected.sum() == pytest.approx(distance_per_hole(calibration, filled).sum())
 
 
 @pytest.fixture(scope="module")
-def on_relief() -> tuple[Practice, FilledMesh, FloatArray]:
+def on_relief() -> tuple[CalibrationSet, FilledMesh, FloatArray]:
     """Practice on a relief, its fill, and what would take every new vertex to the truth."""
-    practice = some_practice(RELIEF)
-    filled = fair_holes(practice.closed, THIN_PLATE)
+    calibration = some_practice(RELIEF)
+    filled = fair_holes(calibration.closed, THIN_PLATE)
     above = new_vertices(filled) * [1, 1, 0] + [0, 0, 1]
     _, distance = RayScene(RELIEF).cast(above, np.tile([0.0, 0, -1], (len(above), 1)))
-    return practice, filled, np.column_stack([np.zeros((len(above), 2)), 1 - distance - new_vertices(filled)[:, 2]])
+    return calibration, filled, np.column_stack([np.zeros((len(above), 2)), 1 - distance - new_vertices(filled)[:, 2]])
 
 
-def test_a_model_that_is_right_is_believed(on_relief: tuple[Practice, FilledMesh, FloatArray]) -> None:
-    practice, filled, correction = on_relief
-    assert believed_share(practice, filled, correction) == 1.0
+def test_a_model_that_is_right_is_believed(on_relief: tuple[CalibrationSet, FilledMesh, FloatArray]) -> None:
+    calibration, filled, correction = on_relief
+    assert blend_factor(calibration, filled, correction) == 1.0
 
 
 def test_a_model_that_says_twice_as_much_is_believed_by_half(
-    on_relief: tuple[Practice, FilledMesh, FloatArray],
+    on_relief: tuple[CalibrationSet, FilledMesh, FloatArray],
 ) -> None:
-    practice, filled, correction = on_relief
-    assert believed_share(practice, filled, 2 * correction) == 0.5
+    calibration, filled, correction = on_relief
+    assert blend_factor(calibration, filled, 2 * correction) == 0.5
 
 
 @pytest.mark.parametrize("kind", ["nothing", "the opposite", "noise"])
 def test_a_model_that_does_not_help_is_not_believed(
-    on_relief: tuple[Practice, FilledMesh, FloatArray], kind: str
+    on_relief: tuple[CalibrationSet, FilledMesh, FloatArray], kind: str
 ) -> None:
-    practice, filled, correction = on_relief
+    calibration, filled, correction = on_relief
     noise = np.random.default_rng(0).normal(0, np.abs(correction).mean(), correction.shape)
     says = {"nothing": 0 * correction, "the opposite": -correction, "noise": noise}[kind]
-    assert believed_share(practice, filled, says) == 0.0
+    assert blend_factor(calibration, filled, says) == 0.0

@@ -1,13 +1,13 @@
 import numpy as np
 import pytest
 
-from quadpatch.calibration.calibration_set import choose_energy, error_per_hole, practise
-from quadpatch.calibration.energy_selection import SHARPNESS, FillRule, learn_fill_rule, rim_misses
+from quadpatch.calibration.calibration_set import choose_energy, cut_calibration_set, error_per_hole
+from quadpatch.calibration.energy_selection import SHARPNESS, EnergyBlend, learn_energy_blend, leave_one_ring_out
 from quadpatch.filling.fairing import THIN_PLATE, Energy
 from quadpatch.filling.fill import close_holes, fair_holes
 from quadpatch.mesh.holes import find_holes
 from quadpatch.mesh.measures import mean_edge_length
-from quadpatch.recipes.default import ENERGIES, USUAL_ENERGY
+from quadpatch.recipes.default import DEFAULT_ENERGY, FAIRING_ENERGIES
 from quadpatch.types import FloatArray, IntArray, TriangleMesh
 from tests.quadpatch.shapes import bumpy_plate, open_grid, punched, sphere
 
@@ -15,8 +15,8 @@ SMOOTH = Energy(plate=1.0, variation=40.0)
 PAIR = (THIN_PLATE, SMOOTH)
 
 
-def rule_of(log_error: list[float], log_miss: list[float]) -> FillRule:
-    return FillRule(PAIR, np.array(log_error), np.array(log_miss))
+def rule_of(log_error: list[float], log_miss: list[float]) -> EnergyBlend:
+    return EnergyBlend(PAIR, np.array(log_error), np.array(log_miss))
 
 
 def rims(mesh: TriangleMesh) -> list[IntArray]:
@@ -61,7 +61,7 @@ def test_a_rim_that_no_energy_misses_tells_nothing() -> None:
 
 def test_on_a_sphere_the_smoother_energy_misses_the_rim_by_less() -> None:
     mesh = punched(sphere(4), (0, 0, 1), (1, 0, 0), radius=0.3)
-    misses = rim_misses(mesh, rims(mesh), PAIR)
+    misses = leave_one_ring_out(mesh, rims(mesh), PAIR)
     assert misses.shape == (2, 2)
     assert (misses[:, 1] < 0.7 * misses[:, 0]).all()
 
@@ -70,7 +70,7 @@ def test_a_hole_beside_a_border_can_not_be_opened_wider() -> None:
     # The disk at the left leaves one row of squares to the border of the sheet.
     mesh = punched(open_grid(41, 4.0), (-1.4, 0, 0), (0.8, 0, 0), radius=0.45)
     loops = [hole.loop for hole in find_holes(mesh) if hole.diameter < 2.0]
-    misses = rim_misses(mesh, loops, PAIR)
+    misses = leave_one_ring_out(mesh, loops, PAIR)
     known = np.isfinite(misses).all(axis=1)
     left = np.array([mesh.vertices[loop, 0].mean() < 0 for loop in loops])
     assert sorted(known.tolist()) == [False, True]
@@ -79,34 +79,36 @@ def test_a_hole_beside_a_border_can_not_be_opened_wider() -> None:
 
 def test_holes_on_a_rough_and_on_a_smooth_half_are_filled_by_other_weights() -> None:
     mesh = roof()
-    practice = practise(mesh, 0.3, mean_edge_length(mesh), np.random.default_rng(0))
-    assert practice is not None
-    misses = rim_misses(practice.closed.mesh, practice.loops, ENERGIES)
-    rule = FillRule(ENERGIES, np.zeros(len(ENERGIES)), np.log(np.nanmean(misses, axis=0)))
+    calibration = cut_calibration_set(mesh, 0.3, mean_edge_length(mesh), np.random.default_rng(0))
+    assert calibration is not None
+    misses = leave_one_ring_out(calibration.closed.mesh, calibration.loops, FAIRING_ENERGIES)
+    rule = EnergyBlend(FAIRING_ENERGIES, np.zeros(len(FAIRING_ENERGIES)), np.log(np.nanmean(misses, axis=0)))
     weights = rule.weights(misses)
-    middles = np.array([mesh.vertices[loop, 0].mean() for loop in practice.loops])
+    middles = np.array([mesh.vertices[loop, 0].mean() for loop in calibration.loops])
     on_smooth, on_rough = weights[middles < -0.2].mean(axis=0), weights[middles > 0.2].mean(axis=0)
     # A plate under tension cuts off what is curved; of noise no energy knows more than another.
     assert on_smooth[0] < 0.01
-    assert on_rough == pytest.approx(1 / len(ENERGIES), abs=0.05)
+    assert on_rough == pytest.approx(1 / len(FAIRING_ENERGIES), abs=0.05)
 
 
 def test_learning_takes_what_fills_the_practice_holes_best() -> None:
     mesh = bumpy_plate(100, 2.0)
-    practice = practise(mesh, 0.3, mean_edge_length(mesh), np.random.default_rng(0))
-    assert practice is not None
-    _, filled = learn_fill_rule(practice, ENERGIES, USUAL_ENERGY)
-    errors = np.array([error_per_hole(practice, fair_holes(practice.closed, energy)) for energy in ENERGIES])
-    chosen = ENERGIES.index(choose_energy(errors, practice.diameter, ENERGIES, USUAL_ENERGY))
-    assert error_per_hole(practice, filled).mean() <= errors[chosen].mean()
+    calibration = cut_calibration_set(mesh, 0.3, mean_edge_length(mesh), np.random.default_rng(0))
+    assert calibration is not None
+    _, filled = learn_energy_blend(calibration, FAIRING_ENERGIES, DEFAULT_ENERGY)
+    errors = np.array(
+        [error_per_hole(calibration, fair_holes(calibration.closed, energy)) for energy in FAIRING_ENERGIES]
+    )
+    chosen = FAIRING_ENERGIES.index(choose_energy(errors, calibration.diameter, FAIRING_ENERGIES, DEFAULT_ENERGY))
+    assert error_per_hole(calibration, filled).mean() <= errors[chosen].mean()
 
 
 def test_where_weighing_gains_nothing_one_energy_fills_all_holes() -> None:
     mesh = open_grid(100, 2.0)
-    practice = practise(mesh, 0.3, mean_edge_length(mesh), np.random.default_rng(0))
-    assert practice is not None
-    rule, _ = learn_fill_rule(practice, ENERGIES, USUAL_ENERGY)
-    assert tuple(rule.energies) == (USUAL_ENERGY,)
+    calibration = cut_calibration_set(mesh, 0.3, mean_edge_length(mesh), np.random.default_rng(0))
+    assert calibration is not None
+    rule, _ = learn_energy_blend(calibration, FAIRING_ENERGIES, DEFAULT_ENERGY)
+    assert tuple(rule.energies) == (DEFAULT_ENERGY,)
 
 
 def corners(mesh: TriangleMesh) -> FloatArray:
@@ -131,7 +133,7 @@ def test_one_energy_alone_is_that_energy() -> None:
     mesh = punched(sphere(4), (0, 0, 1), radius=0.3)
     loops = rims(mesh)
     expected = fair_holes(close_holes(mesh, loops), SMOOTH)
-    assert FillRule.of_one(SMOOTH).fill(mesh, loops).mesh.vertices.tobytes() == expected.mesh.vertices.tobytes()
+    assert EnergyBlend.of_one(SMOOTH).fill(mesh, loops).mesh.vertices.tobytes() == expected.mesh.vertices.tobytes()
 
 
 def test_without_holes_nothing_is_filled() -> None:

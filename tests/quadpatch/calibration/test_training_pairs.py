@@ -4,8 +4,8 @@ from itertools import islice
 import numpy as np
 import pytest
 
-from quadpatch.calibration.energy_selection import FillRule
-from quadpatch.calibration.training_pairs import Ground, Lessons, give_lessons
+from quadpatch.calibration.energy_selection import EnergyBlend
+from quadpatch.calibration.training_pairs import TrainingPairs, TrainingSurface, make_training_pairs
 from quadpatch.filling.fairing import Energy
 from quadpatch.mesh.measures import mean_edge_length
 from quadpatch.patches.residual_input import LARGEST, RESOLUTION
@@ -20,8 +20,8 @@ RELIEF = relief(110, 2.0, 0.04, 6)
 LENGTH = 1.0
 
 
-def rounds(ground: Ground, count: int, seed: int = 0) -> list[Lessons]:
-    return list(islice(give_lessons(ground, np.random.default_rng(seed)), count))
+def rounds(ground: TrainingSurface, count: int, seed: int = 0) -> list[TrainingPairs]:
+    return list(islice(make_training_pairs(ground, np.random.default_rng(seed)), count))
 
 
 def height_of_relief(x: FloatArray, y: FloatArray) -> FloatArray:
@@ -39,17 +39,17 @@ def left_over(signal: FloatArray, truth: FloatArray, where: BoolArray, known: Bo
 
 
 @pytest.fixture(scope="module")
-def ground() -> Ground:
+def ground() -> TrainingSurface:
     return ground_of(RELIEF, DIAMETER)
 
 
 @pytest.fixture(scope="module")
-def lessons(ground: Ground) -> Lessons:
+def lessons(ground: TrainingSurface) -> TrainingPairs:
     (only,) = rounds(ground, 1)
     return only
 
 
-def test_the_fill_with_its_correction_is_the_surface_that_was_there(ground: Ground) -> None:
+def test_the_fill_with_its_correction_is_the_surface_that_was_there(ground: TrainingSurface) -> None:
     """Held against the formula of the relief: the known bins say in which scale."""
     places = [(x, y, 0.0) for x in (-0.3, 0.0, 0.3) for y in (-0.3, 0.0, 0.3)]
     scale = PatchScale(LENGTH, RESOLUTION, 0)
@@ -79,13 +79,13 @@ def test_a_fill_without_error_leaves_nothing_to_correct() -> None:
 
 def test_the_true_surface_of_a_ball_lies_above_a_fill_that_is_drawn_tight() -> None:
     ball = ground_of(sphere(5), 0.4)
-    (given,) = rounds(replace(ball, rule=FillRule.of_one(Energy(membrane=1.0))), 1)
+    (given,) = rounds(replace(ball, rule=EnergyBlend.of_one(Energy(membrane=1.0))), 1)
     corrections = given.correction[given.asked > 0]
     assert np.mean(corrections > 0) > 0.97
     assert np.median(corrections) > 0.5
 
 
-def test_nothing_is_asked_but_in_invented_bins(lessons: Lessons) -> None:
+def test_nothing_is_asked_but_in_invented_bins(lessons: TrainingPairs) -> None:
     asked = lessons.asked > 0
     assert set(np.unique(lessons.asked)) == {0.0, 1.0}
     assert asked.any(axis=(1, 2)).mean() > 0.9
@@ -93,7 +93,7 @@ def test_nothing_is_asked_but_in_invented_bins(lessons: Lessons) -> None:
     assert (lessons.correction[~asked] == 0).all()
 
 
-def test_lessons_are_bounded_and_of_the_shape_that_networks_read(lessons: Lessons) -> None:
+def test_lessons_are_bounded_and_of_the_shape_that_networks_read(lessons: TrainingPairs) -> None:
     assert len(lessons) > 50
     assert lessons.channels.shape == (len(lessons), 2, RESOLUTION, RESOLUTION)
     assert lessons.correction.shape == lessons.asked.shape == (len(lessons), RESOLUTION, RESOLUTION)
@@ -127,11 +127,11 @@ def test_surface_that_is_missing_already_is_never_asked_for() -> None:
 def test_where_there_is_no_room_for_a_hole_there_is_no_lesson() -> None:
     small = open_grid(12, 0.3)
     edge_length = mean_edge_length(small)
-    ground = Ground(
+    ground = TrainingSurface(
         small,
         looking_down((0, 0, 0)),
         PatchScale(0.6, RESOLUTION, 0),
-        FillRule.of_one(Energy(plate=1.0)),
+        EnergyBlend.of_one(Energy(plate=1.0)),
         np.array([0.5]),
         edge_length,
     )
@@ -140,10 +140,10 @@ def test_where_there_is_no_room_for_a_hole_there_is_no_lesson() -> None:
     assert [len(given) for given in rounds(replace(ground, mesh=nothing), 1)] == [0]
 
 
-def test_joined_lessons_stand_one_after_the_other(lessons: Lessons) -> None:
-    joined = Lessons.joined([lessons, lessons], RESOLUTION)
+def test_joined_lessons_stand_one_after_the_other(lessons: TrainingPairs) -> None:
+    joined = TrainingPairs.joined([lessons, lessons], RESOLUTION)
     assert len(joined) == 2 * len(lessons)
     np.testing.assert_array_equal(joined.channels[len(lessons) :], lessons.channels)
     np.testing.assert_array_equal(joined.correction[: len(lessons)], lessons.correction)
-    none = Lessons.joined([], RESOLUTION)
+    none = TrainingPairs.joined([], RESOLUTION)
     assert (len(none), none.channels.shape, none.asked.shape) == (0, (0, 2, 32, 32), (0, 32, 32))

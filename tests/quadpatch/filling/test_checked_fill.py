@@ -126,8 +126,8 @@ def assert_opened(checked: CheckedFill, mesh: TriangleMesh) -> None:
     assert_keeps(checked.filled, mesh)
     assert len(checked.filled.mesh.vertices) == len(mesh.vertices)
     assert len(checked.filled.mesh.triangles) == len(mesh.triangles)
-    assert checked.faults.severity.tolist() == [0] * len(checked.filled.gap)
-    assert checked.departure.tolist() == [0.0] * len(checked.filled.gap)
+    assert checked.faults.severity.tolist() == [0] * len(checked.filled.disagreement)
+    assert checked.departure.tolist() == [0.0] * len(checked.filled.disagreement)
 
 
 def test_a_lonely_triangle_is_refused_since_its_back_lies_on_it() -> None:

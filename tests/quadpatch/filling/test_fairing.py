@@ -104,7 +104,11 @@ def test_the_membrane_on_equal_triangles_is_the_graph_laplacian() -> None:
     np.testing.assert_allclose(faired[1:-1, 1:-1][inner][:, 2], cross[inner][:, 2], atol=1e-18)
 
 
-@given(seed=st.integers(0, 2**32 - 1), name=st.sampled_from(sorted(ENERGIES)), scale=st.sampled_from([1e-3, 1.0, 1e3]))
+@given(
+    seed=st.integers(0, 2**32 - 1),
+    name=st.sampled_from(sorted(ENERGIES)),
+    scale=st.sampled_from([1e-3, 1.0, 1e3]),
+)
 @settings(max_examples=20)
 def test_fairing_moves_turns_and_grows_with_the_mesh(seed: int, name: str, scale: float) -> None:
     rng = np.random.default_rng(seed)

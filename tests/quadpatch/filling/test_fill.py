@@ -54,7 +54,7 @@ def test_no_hole_gives_the_mesh_back() -> None:
     mesh = bumpy_plate(10, 1.0)
     result = filled(mesh, [])
     assert_keeps(result, mesh)
-    assert len(result.vertex_hole) == len(result.gap) == 0
+    assert len(result.vertex_hole) == len(result.disagreement) == 0
 
 
 @pytest.mark.parametrize("n", [3, 4])

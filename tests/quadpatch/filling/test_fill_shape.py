@@ -4,7 +4,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from quadpatch.filling.fairing import THIN_PLATE, Energy, fair
-from quadpatch.filling.fill import SECOND_OPINION, close_flat, close_holes, fair_holes
+from quadpatch.filling.fill import ALTERNATIVE_ENERGY, close_flat, close_holes, fair_holes
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.types import FloatArray, TriangleMesh
 from tests.quadpatch.filling.fills import CLOSED, SMOOTH, all_loops, assert_keeps, filled, short_loops
@@ -50,25 +50,27 @@ def test_the_gap_is_the_mean_distance_between_the_thin_plate_and_a_second_opinio
     mesh = CLOSED["sphere"]
     closed = close_holes(mesh, all_loops(mesh))
     plate = closed.plate
-    second = fair(plate.vertices, np.concatenate([closed.near.around, plate.triangles]), plate.is_new, SECOND_OPINION)
+    second = fair(
+        plate.vertices, np.concatenate([closed.near.around, plate.triangles]), plate.is_new, ALTERNATIVE_ENERGY
+    )
     apart = np.linalg.norm(second - plate.vertices, axis=1)[len(closed.near.used) :]
     for energy in (SMOOTH, THIN_PLATE):
         result = fair_holes(closed, energy)
         expected = [apart[result.vertex_hole == i].mean() for i in range(3)]
-        np.testing.assert_allclose(result.gap, expected, rtol=1e-9)
-        assert (result.gap > 0).all()
+        np.testing.assert_allclose(result.disagreement, expected, rtol=1e-9)
+        assert (result.disagreement > 0).all()
 
 
 def test_the_rim_turns_by_the_angle_between_neighbouring_normals() -> None:
     ball = CLOSED["sphere"]
     loops = all_loops(ball)
-    turn = filled(ball, loops, THIN_PLATE).rim_turn
+    turn = filled(ball, loops, THIN_PLATE).rim_variation
     for found, loop in zip(turn, loops, strict=True):
         # On a unit sphere normals are as far apart as the vertices themselves.
         rim = ball.vertices[loop]
         assert found == pytest.approx(np.linalg.norm(rim - np.roll(rim, 1, axis=0), axis=1).mean(), rel=0.2)
     flat = punched(open_grid(21, 2.0), (0, 0, 0), radius=0.3)
-    assert filled(flat, short_loops(flat), THIN_PLATE).rim_turn.max() < 1e-12
+    assert filled(flat, short_loops(flat), THIN_PLATE).rim_variation.max() < 1e-12
 
 
 def test_a_rough_rim_shows_in_the_signs_of_its_own_hole_only() -> None:
@@ -78,11 +80,11 @@ def test_a_rough_rim_shows_in_the_signs_of_its_own_hole_only() -> None:
     near = np.linalg.norm(rough - mesh.vertices[loops[0]].mean(axis=0), axis=1) < 0.3
     rough[near, 2] += np.random.default_rng(0).normal(0, 0.01, int(near.sum()))
     calm, ragged = (filled(one, loops, THIN_PLATE) for one in (mesh, TriangleMesh(rough, mesh.triangles)))
-    assert ragged.rim_turn[0] > 2 * calm.rim_turn[0]
-    assert ragged.gap[0] > 2 * calm.gap[0]
-    assert ragged.rim_turn[1] == calm.rim_turn[1]
+    assert ragged.rim_variation[0] > 2 * calm.rim_variation[0]
+    assert ragged.disagreement[0] > 2 * calm.disagreement[0]
+    assert ragged.rim_variation[1] == calm.rim_variation[1]
     # Energies have no unit: their weights go by the mean area of all new vertices.
-    assert ragged.gap[1] == pytest.approx(calm.gap[1], rel=0.01)
+    assert ragged.disagreement[1] == pytest.approx(calm.disagreement[1], rel=0.01)
 
 
 def test_a_fill_that_runs_away_from_a_ragged_rim_is_held_by_the_thin_plate() -> None:
@@ -99,7 +101,7 @@ def test_a_fill_that_runs_away_from_a_ragged_rim_is_held_by_the_thin_plate() -> 
     is_plate = (result.mesh.vertices[result.n_measured_vertices :] == plate).all(axis=1)
     assert is_plate[result.vertex_hole == 0].all()
     assert not is_plate[result.vertex_hole == 1].any()
-    assert result.gap[0] > 10 * result.gap[1]
+    assert result.disagreement[0] > 10 * result.disagreement[1]
 
 
 def test_far_away_scans_lose_nothing_beyond_their_own_rounding() -> None:
@@ -140,8 +142,8 @@ def test_a_flat_closing_leaves_new_vertices_on_the_triangles_that_span_the_rim()
     assert len(new) > 30
     assert new[:, 2].max() <= rim[:, 2].max()
     assert new[:, 2].min() >= rim[:, 2].min()
-    assert np.isnan(result.gap).all()
-    assert np.isnan(result.rim_turn).all()
+    assert np.isnan(result.disagreement).all()
+    assert np.isnan(result.rim_variation).all()
 
 
 def test_a_flat_closing_of_a_flat_hole_is_flat_and_as_dense_as_what_was_lost() -> None:

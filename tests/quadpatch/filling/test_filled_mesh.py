@@ -31,7 +31,7 @@ def assert_same_fill(one: FilledMesh, other: FilledMesh, loop: int) -> None:
 def test_without_some_loops_the_others_keep_their_fills(opened: list[int]) -> None:
     left = PLATE.without(np.array(opened, np.int64))
     assert_keeps(left, MESH)
-    assert len(left.gap) == 3
+    assert len(left.disagreement) == 3
     for loop in range(3):
         if loop in opened:
             assert [len(part) for part in fill_of(left, loop)] == [0, 0]
@@ -54,7 +54,10 @@ def test_the_fill_of_some_loops_is_renumbered_as_part_of_all() -> None:
     part = close_flat(MESH, [LOOPS[i] for i in chosen]).as_part_of(chosen, PLATE)
     assert_keeps(part, MESH)
     assert sorted(set(part.triangle_hole.tolist())) == [0, 2]
-    assert (part.gap.tobytes(), part.rim_turn.tobytes()) == (PLATE.gap.tobytes(), PLATE.rim_turn.tobytes())
+    assert (part.disagreement.tobytes(), part.rim_variation.tobytes()) == (
+        PLATE.disagreement.tobytes(),
+        PLATE.rim_variation.tobytes(),
+    )
     mixed = PLATE.with_fills(part, chosen)
     for loop in range(3):
         assert_same_fill(mixed, part if loop in (0, 2) else PLATE, loop)

@@ -202,4 +202,4 @@ def test_no_caps_change_nothing() -> None:
     tube = cylinder(8, 3)
     filled = flat_caps(tube, [])
     assert (filled.mesh.triangles == tube.triangles).all()
-    assert len(filled.vertex_hole) == len(filled.gap) == 0
+    assert len(filled.vertex_hole) == len(filled.disagreement) == 0

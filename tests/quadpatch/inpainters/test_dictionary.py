@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from quadpatch.calibration.energy_selection import FillRule
-from quadpatch.calibration.training_pairs import Ground
+from quadpatch.calibration.energy_selection import EnergyBlend
+from quadpatch.calibration.training_pairs import TrainingSurface
 from quadpatch.filling.fairing import THIN_PLATE
 from quadpatch.inpainters.dictionary import (
     LEAST_KNOWN,
@@ -33,7 +33,7 @@ def surroundings(patches: Patches) -> Surroundings:
     """Surface over a flat outline; dictionaries don't look at the ground."""
     flat = TriangleMesh(np.zeros((0, 3)), np.zeros((0, 3), np.int64))
     nowhere = Seeds(np.zeros((0, 3)), np.zeros((0, 3, 3)), np.zeros(0, np.int64))
-    ground = Ground(flat, nowhere, PatchScale(1.0, N, 1), FillRule.of_one(THIN_PLATE), np.ones(1), 0.1)
+    ground = TrainingSurface(flat, nowhere, PatchScale(1.0, N, 1), EnergyBlend.of_one(THIN_PLATE), np.ones(1), 0.1)
     return Surroundings(patches, 0 * patches.heights, ground)
 
 

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 import torch
 
-from quadpatch.calibration.training_pairs import Ground, Lessons, give_lessons
+from quadpatch.calibration.training_pairs import TrainingPairs, TrainingSurface, make_training_pairs
 from quadpatch.networks.fitting import LESSONS_SHARE, MAX_ROUNDS, FittingInpainter, fit, gather_lessons
 from quadpatch.networks.precision import has_fast_bfloat16
 from quadpatch.networks.residual import Errors, Residual, errors
@@ -24,24 +24,24 @@ AMPLE_S = 1e6
 
 
 @pytest.fixture(scope="module")
-def ground() -> Ground:
+def ground() -> TrainingSurface:
     """A pattern that repeats often enough to be learned at some places and asked for at others."""
     return ground_of(relief(70, 2.0, 0.04, 8), 0.3)
 
 
 @pytest.fixture(scope="module")
-def lessons(ground: Ground) -> Lessons:
+def lessons(ground: TrainingSurface) -> TrainingPairs:
     """One round."""
-    return next(give_lessons(ground, np.random.default_rng(1)))
+    return next(make_training_pairs(ground, np.random.default_rng(1)))
 
 
 @pytest.fixture(scope="module")
-def small_ground() -> Ground:
+def small_ground() -> TrainingSurface:
     """Room for a few holes a round."""
     return ground_of(relief(34, 0.9, 0.03, 3), 0.25, overlap=1)
 
 
-def measured(network: Residual, lessons: Lessons) -> Errors:
+def measured(network: Residual, lessons: TrainingPairs) -> Errors:
     channels, correction, asked = map(torch.from_numpy, (lessons.channels, lessons.correction, lessons.asked))
     with torch.inference_mode():
         return errors(network(channels), correction[:, None], asked[:, None])
@@ -56,17 +56,19 @@ def fresh() -> Residual:
     return Residual()
 
 
-def test_a_network_learns_from_some_holes_to_fill_others_of_the_same_surface(ground: Ground, lessons: Lessons) -> None:
+def test_a_network_learns_from_some_holes_to_fill_others_of_the_same_surface(
+    ground: TrainingSurface, lessons: TrainingPairs
+) -> None:
     network = fresh()
     assert fit(network, lessons, NetworkOptions(STEPS, AMPLE_S), seed=0) == STEPS
-    unseen = next(give_lessons(ground, np.random.default_rng(99)))
+    unseen = next(make_training_pairs(ground, np.random.default_rng(99)))
     untrained, trained = measured(Residual(), unseen), measured(network, unseen)
     assert untrained.network == untrained.fill == trained.fill
     assert trained.network < 0.75 * trained.fill
     assert trained.loss < 0.8 * untrained.loss
 
 
-def test_the_same_seed_gives_the_same_bits_and_another_one_others(lessons: Lessons) -> None:
+def test_the_same_seed_gives_the_same_bits_and_another_one_others(lessons: TrainingPairs) -> None:
     found = []
     for seed in (3, 3, 4):
         found.append(fresh())
@@ -75,7 +77,7 @@ def test_the_same_seed_gives_the_same_bits_and_another_one_others(lessons: Lesso
     assert weights(found[0]) != weights(found[2])
 
 
-def test_a_short_time_ends_the_steps_early_and_the_rate_still_falls_to_its_end(lessons: Lessons) -> None:
+def test_a_short_time_ends_the_steps_early_and_the_rate_still_falls_to_its_end(lessons: TrainingPairs) -> None:
     shares: list[float] = []
     network = fresh()
     options = NetworkOptions(steps=100_000, seconds=20.0)
@@ -86,14 +88,14 @@ def test_a_short_time_ends_the_steps_early_and_the_rate_still_falls_to_its_end(l
     assert measured(network, lessons).loss < measured(Residual(), lessons).loss
 
 
-def test_without_time_nothing_is_done(lessons: Lessons) -> None:
+def test_without_time_nothing_is_done(lessons: TrainingPairs) -> None:
     network = fresh()
     before = weights(network)
     assert fit(network, lessons, NetworkOptions(steps=10, seconds=1e-9), 0, clock=count(0.0).__next__) == 0
     assert weights(network) == before
 
 
-def test_matrix_products_are_in_bfloat16_only_where_the_processor_is_fast_at_them(lessons: Lessons) -> None:
+def test_matrix_products_are_in_bfloat16_only_where_the_processor_is_fast_at_them(lessons: TrainingPairs) -> None:
     network, seen = fresh(), set[torch.dtype]()
     network.last.register_forward_hook(lambda _module, _seen, answer: seen.add(answer.dtype))
     fit(network, lessons, NetworkOptions(steps=1, seconds=AMPLE_S), 0)
@@ -101,7 +103,7 @@ def test_matrix_products_are_in_bfloat16_only_where_the_processor_is_fast_at_the
 
 
 def test_the_outcome_is_the_same_on_a_busy_machine_as_long_as_the_time_is_not_ahead_of_the_steps(
-    lessons: Lessons,
+    lessons: TrainingPairs,
 ) -> None:
     options, found = NetworkOptions(steps=5, seconds=50.0), []
     for seconds_a_step in (0.01, 7.0, 9.9, 10.1):
@@ -112,23 +114,23 @@ def test_the_outcome_is_the_same_on_a_busy_machine_as_long_as_the_time_is_not_ah
     assert slow not in in_time
 
 
-def test_lessons_follow_from_the_seed_and_are_those_of_several_rounds(small_ground: Ground) -> None:
+def test_lessons_follow_from_the_seed_and_are_those_of_several_rounds(small_ground: TrainingSurface) -> None:
     surroundings = surroundings_of(small_ground)
     one, same, other = (gather_lessons(surroundings, seed) for seed in (0, 0, 1))
-    first = next(give_lessons(small_ground, np.random.default_rng([0, 3])))
+    first = next(make_training_pairs(small_ground, np.random.default_rng([0, 3])))
     assert len(first) < len(one) <= MAX_ROUNDS * len(small_ground.seeds)
     assert one.channels[: len(first)].tobytes() == first.channels.tobytes()
     assert one.channels.tobytes() == same.channels.tobytes()
     assert one.channels.tobytes() != other.channels.tobytes()
 
 
-def test_a_surface_with_too_few_lessons_leaves_the_network_as_it_is(small_ground: Ground) -> None:
+def test_a_surface_with_too_few_lessons_leaves_the_network_as_it_is(small_ground: TrainingSurface) -> None:
     inpainter = FittingInpainter(fresh(), NetworkOptions(steps=2))
     too_wide = replace(small_ground, diameters=np.array([1.5]))
     assert inpainter.fitted_to(surroundings_of(too_wide)) is inpainter
 
 
-def test_fitting_makes_another_network_and_tells_how_far_it_is(small_ground: Ground) -> None:
+def test_fitting_makes_another_network_and_tells_how_far_it_is(small_ground: TrainingSurface) -> None:
     heard: list[tuple[str, float]] = []
     inpainter = FittingInpainter(fresh(), NetworkOptions(steps=4, seconds=AMPLE_S), 0, lambda *said: heard.append(said))
     before = weights(inpainter.network)

@@ -4,7 +4,7 @@ from typing import Any, cast
 import numpy as np
 import pytest
 
-from quadpatch.calibration.error_model import Expectation
+from quadpatch.calibration.error_model import ErrorModel
 from quadpatch.filling.fairing import THIN_PLATE
 from quadpatch.filling.fill import close_holes, fair_holes
 from quadpatch.filling.filled_mesh import FilledMesh
@@ -12,8 +12,15 @@ from quadpatch.mesh.holes import Selection, find_holes, select_holes
 from quadpatch.mesh.measures import diagonal
 from quadpatch.options import HoleOptions
 from quadpatch.patches.scale import PatchScale
-from quadpatch.recipes.assessment import LEAST_COVERAGE, MOST_DISAGREEMENT, confidence, gather, judge, trusted
-from quadpatch.recipes.result import Completion, Evidence
+from quadpatch.recipes.assessment import (
+    LEAST_COVERAGE,
+    MOST_DISAGREEMENT,
+    assess,
+    confidence,
+    measure_agreement,
+    trusted_holes,
+)
+from quadpatch.recipes.result import Completion, PatchAgreement
 from quadpatch.reconstruction.displacement import Displacement, rim_vertices
 from quadpatch.types import BoolArray, FloatArray, TriangleMesh
 from tests.quadpatch.shapes import bumpy_plate, punched
@@ -33,17 +40,19 @@ class Says:
     departure: tuple[float, float, float] = (0.01, 0.01, 0.01)
     rim_misfit: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
-    def evidence(self) -> Evidence:
-        return Evidence(*(np.array(getattr(self, name)) for name in ("coverage", "spread", "departure", "rim_misfit")))
+    def evidence(self) -> PatchAgreement:
+        return PatchAgreement(
+            *(np.array(getattr(self, name)) for name in ("coverage", "spread", "departure", "rim_misfit"))
+        )
 
 
-EXPECTATION = Expectation(0.3, 0.7)
+EXPECTATION = ErrorModel(0.3, 0.7)
 
 
-def completion(says: Says, believed: float = 1.0, expectation: Expectation | None = EXPECTATION) -> Completion:
+def completion(says: Says, blend_factor: float = 1.0, error_model: ErrorModel | None = EXPECTATION) -> Completion:
     evidence = says.evidence()
-    trust = trusted(evidence) & (believed > 0)
-    return Completion(FILLED, evidence, trust, believed, expectation, PatchScale(0.5, 24, 2), 100)
+    trust = trusted_holes(evidence) & (blend_factor > 0)
+    return Completion(FILLED, evidence, trust, blend_factor, error_model, PatchScale(0.5, 24, 2), 100)
 
 
 @pytest.mark.parametrize(
@@ -57,7 +66,7 @@ def completion(says: Says, believed: float = 1.0, expectation: Expectation | Non
     ],
 )
 def test_a_model_may_complete_what_its_patches_cover_and_agree_about(says: Says, trust: list[bool]) -> None:
-    assert trusted(says.evidence()).tolist() == trust
+    assert trusted_holes(says.evidence()).tolist() == trust
 
 
 @pytest.mark.parametrize(
@@ -65,14 +74,14 @@ def test_a_model_may_complete_what_its_patches_cover_and_agree_about(says: Says,
     [
         (None, ["geometry"] * 3),
         (completion(Says()), ["", "", ""]),
-        (completion(Says(), believed=0.0), ["no_gain"] * 3),
-        (completion(Says(), believed=0.0, expectation=None), ["no_practice"] * 3),
+        (completion(Says(), blend_factor=0.0), ["no_gain"] * 3),
+        (completion(Says(), blend_factor=0.0, error_model=None), ["no_practice"] * 3),
         (completion(Says(coverage=(1.0, 0.2, 1.0))), ["", "no_height_map", ""]),
         (completion(Says(spread=(1.0, 0.0, 0.0))), ["patches_disagree", "", ""]),
     ],
 )
 def test_every_hole_says_why_it_was_not_filled_by_the_model(done: Completion | None, expected: list[str]) -> None:
-    results = judge(HOLES, SELECTION, FILLED, done, EXPECTATION)
+    results = assess(HOLES, SELECTION, FILLED, done, EXPECTATION)
     assert [result.hole.id for result in results] == [0, 1, 2, 3]
     assert (results[0].verdict, results[0].code) == ("skipped", "border")
     assert [result.code for result in results[1:]] == expected
@@ -82,28 +91,31 @@ def test_every_hole_says_why_it_was_not_filled_by_the_model(done: Completion | N
 
 
 def test_the_share_that_patches_see_is_told() -> None:
-    results = judge(HOLES, SELECTION, FILLED, completion(Says(coverage=(0.254, 1.0, 1.0))), EXPECTATION)
+    results = assess(HOLES, SELECTION, FILLED, completion(Says(coverage=(0.254, 1.0, 1.0))), EXPECTATION)
     assert "only 25 %" in results[1].reason
 
 
 def test_expected_errors_are_those_of_the_expectation_and_confidence_follows_them() -> None:
     errors = EXPECTATION.errors(FILLED, [hole.diameter for hole in SELECTION.chosen])
     assert (errors > 0).all()
-    for i, result in enumerate(judge(HOLES, SELECTION, FILLED, None, EXPECTATION)[1:]):
+    for i, result in enumerate(assess(HOLES, SELECTION, FILLED, None, EXPECTATION)[1:]):
         assert result.expected_error == errors[i]
         assert result.confidence == pytest.approx(np.exp(-errors[i] / (0.003 * diagonal(MESH))))
-        assert (result.measures["gap"], result.measures["rim_turn"]) == (FILLED.gap[i], FILLED.rim_turn[i])
+        assert (result.measures["gap"], result.measures["rim_turn"]) == (
+            FILLED.disagreement[i],
+            FILLED.rim_variation[i],
+        )
 
 
 def test_new_vertices_and_triangles_are_counted_by_hole() -> None:
-    results = judge(HOLES, SELECTION, FILLED, None, EXPECTATION)
+    results = assess(HOLES, SELECTION, FILLED, None, EXPECTATION)
     assert [result.n_new_vertices for result in results] == [0, *np.bincount(FILLED.vertex_hole).tolist()]
     assert [result.n_new_triangles for result in results] == [0, *np.bincount(FILLED.triangle_hole).tolist()]
 
 
 def test_a_hole_that_could_not_be_closed_is_refused() -> None:
     values: dict[str, Any] = {**FILLED.__dict__, "unfilled": [1]}
-    results = judge(HOLES, SELECTION, FilledMesh(**values), None, EXPECTATION)
+    results = assess(HOLES, SELECTION, FilledMesh(**values), None, EXPECTATION)
     assert [result.verdict for result in results] == ["skipped", "filled_smooth", "refused", "filled_smooth"]
     refused = results[2]
     assert refused.code == "no_triangulation"
@@ -114,7 +126,7 @@ def test_a_hole_that_could_not_be_closed_is_refused() -> None:
 def test_nothing_chosen_is_judged_too() -> None:
     nothing = fair_holes(close_holes(MESH, []), THIN_PLATE)
     selection = Selection([], {hole.id: ("not_chosen", "not among the chosen ids") for hole in HOLES})
-    assert {result.verdict for result in judge(HOLES, selection, nothing, None, EXPECTATION)} == {"skipped"}
+    assert {result.verdict for result in assess(HOLES, selection, nothing, None, EXPECTATION)} == {"skipped"}
 
 
 @pytest.mark.parametrize(
@@ -135,7 +147,7 @@ def test_of_two_holes_of_a_part_the_one_with_the_larger_error_is_less_sure_howev
     holes = find_holes(mesh)
     selection = select_holes(holes, HoleOptions(), 3.0)
     filled = fair_holes(close_holes(mesh, [hole.loop for hole in selection.chosen]), THIN_PLATE)
-    _, wide, narrow = judge(holes, selection, filled, None, EXPECTATION)
+    _, wide, narrow = assess(holes, selection, filled, None, EXPECTATION)
     assert wide.expected_error is not None
     assert wide.confidence is not None
     assert narrow.expected_error is not None
@@ -157,9 +169,9 @@ def test_a_part_has_the_size_of_what_was_measured_whatever_was_invented() -> Non
         "mesh": TriangleMesh(vertices, triangles),
         "n_measured_vertices": FILLED.n_measured_vertices + 1,
     }
-    expected = [result.confidence for result in judge(HOLES, SELECTION, FILLED, None, EXPECTATION)]
+    expected = [result.confidence for result in assess(HOLES, SELECTION, FILLED, None, EXPECTATION)]
     for other in (far, FilledMesh(**values)):
-        assert [result.confidence for result in judge(HOLES, SELECTION, other, None, EXPECTATION)] == expected
+        assert [result.confidence for result in assess(HOLES, SELECTION, other, None, EXPECTATION)] == expected
 
 
 def test_the_same_part_in_another_unit_has_the_same_confidences() -> None:
@@ -167,7 +179,10 @@ def test_the_same_part_in_another_unit_has_the_same_confidences() -> None:
     holes = find_holes(scaled)
     selection = select_holes(holes, HoleOptions(), 3.0 * 1024)
     filled = fair_holes(close_holes(scaled, [hole.loop for hole in selection.chosen]), THIN_PLATE)
-    here, there = judge(HOLES, SELECTION, FILLED, None, EXPECTATION), judge(holes, selection, filled, None, EXPECTATION)
+    here, there = (
+        assess(HOLES, SELECTION, FILLED, None, EXPECTATION),
+        assess(holes, selection, filled, None, EXPECTATION),
+    )
     for one, other in zip(here[1:], there[1:], strict=True):
         assert other.confidence == pytest.approx(one.confidence, rel=1e-9)
 
@@ -180,7 +195,7 @@ def test_evidence_is_averaged_over_the_vertices_of_each_hole() -> None:
     inside = Displacement(rng.normal(size=(n, 3)), rng.random(n), overlap)
     at_rim = Displacement(rng.normal(size=(len(rim), 3)), np.zeros(len(rim)), np.ones(len(rim), np.int64))
     joined = rng.normal(size=(n, 3))
-    evidence = gather(FILLED, inside, joined, rim_hole, at_rim)
+    evidence = measure_agreement(FILLED, inside, joined, rim_hole, at_rim)
     for hole in range(3):
         here: BoolArray = FILLED.vertex_hole == hole
         expected: dict[str, FloatArray] = {

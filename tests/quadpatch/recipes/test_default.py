@@ -65,7 +65,7 @@ def test_what_was_learned_from_a_relief_beats_the_smooth_fill(smooth_relief: Rep
     assert height_errors(learned_relief).mean() < 0.6 * height_errors(smooth_relief).mean()
     completion = learned_relief.completion
     assert completion is not None
-    assert completion.believed > 0
+    assert completion.blend_factor > 0
     filled = {result.hole.id for result in learned_relief.results if result.verdict == "filled"}
     assert filled == {learned_relief.chosen[i].id for i in np.flatnonzero(completion.trust).tolist()}
     assert len(filled) >= 6

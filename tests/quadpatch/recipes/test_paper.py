@@ -105,7 +105,7 @@ def test_nothing_is_faired_gated_or_joined() -> None:
     repair = inpaint_as_paper(mesh, HeightsInpainter(Dictionary(atoms, 16, 1)), RepairOptions())
     assert repair.rule is NO_FAIRING
     assert repair.completion is not None
-    assert repair.completion.believed == 1.0
+    assert repair.completion.blend_factor == 1.0
     assert verdicts(repair) == [("filled", "")]
     # Planes don't meet the rim of a hole in a sphere, and nobody makes them.
     assert repair.completion.evidence is not None

@@ -3,7 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from quadpatch.calibration.error_model import UNTRIED, Expectation
+from quadpatch.calibration.error_model import PRIOR, ErrorModel
 from quadpatch.filling.checked_fill import CheckedFill, fill_checked
 from quadpatch.filling.fairing import THIN_PLATE
 from quadpatch.filling.faults import find_faults
@@ -12,7 +12,7 @@ from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.filling.islands import JoinedRims
 from quadpatch.mesh.holes import Hole, Selection, find_holes
 from quadpatch.patches.scale import PatchScale
-from quadpatch.recipes.assessment import confidence, judge
+from quadpatch.recipes.assessment import assess, confidence
 from quadpatch.recipes.result import Completion, HoleResult
 from quadpatch.recipes.verification import limited_to, verified_results, with_named_faults, without_faults
 from quadpatch.types import FloatArray, IntArray, TriangleMesh
@@ -40,7 +40,7 @@ def displaced(displacement: FloatArray, trust: tuple[bool, bool, bool] = (True, 
     new = filled.mesh.vertices[filled.n_measured_vertices :]
     moved = np.where(np.array(trust)[filled.vertex_hole][:, None], new + displacement, new)
     return Completion(
-        filled.with_vertices(moved), None, np.array(trust), 1.0, Expectation(0.3, 0.7), PatchScale(0.5, 24, 2), 9
+        filled.with_vertices(moved), None, np.array(trust), 1.0, ErrorModel(0.3, 0.7), PatchScale(0.5, 24, 2), 9
     )
 
 
@@ -125,7 +125,7 @@ def judged(
 ) -> list[HoleResult]:
     chosen = {hole.id for hole in rims.chosen}
     selection = Selection(rims.chosen, {hole.id: ("not_chosen", "") for hole in HOLES if hole.id not in chosen})
-    results = judge(HOLES, selection, checked.filled, completion, UNTRIED)
+    results = assess(HOLES, selection, checked.filled, completion, PRIOR)
     return verified_results(results, rims, checked, checked.faults, SIZE)
 
 
