@@ -194,7 +194,8 @@ class NetworkOptions:
     steps : int
         At most so many, of 64 patches each.
     seconds : float
-        At most so long, lessons included. Where it ends before the steps do, another run may give other bytes.
+        At most so long, cutting training pairs included. Where it ends before the steps do, another run may give other
+        bytes.
     """
 
     steps: int = 1000

@@ -126,7 +126,7 @@ def test_the_numbers_of_the_method_are_those_of_the_code() -> None:
         f"σ² = {gaussian.NOISE}",
         f"fewer than {dictionary.MIN_TRAINING_PATCHES} usable patches",
         "b/a = " + ", ".join(f"{energy.variation / energy.plate:g}" for energy in default.FAIRING_ENERGIES[1:-1]),
-        f"fewer than {calibration_set.MIN_HOLES} practice holes",
+        f"fewer than {calibration_set.MIN_HOLES} calibration holes",
         f"{calibration_set.MAX_HOLES} holes of the median diameter",
         "one of "
         + ", ".join(f"{share:g}" for share in calibration_set.SHARES[:-1])
@@ -135,7 +135,7 @@ def test_the_numbers_of_the_method_are_those_of_the_code() -> None:
         f"{fill.ALTERNATIVE_ENERGY.variation / fill.ALTERNATIVE_ENERGY.plate:g} through",
         f"b is pulled to {error_model.PRIOR_SLOPE}",
         f"a scatter of {error_model.WEIGHT} in ln u",
-        f"Without practice b = {error_model.PRIOR.slope} and A = {error_model.PRIOR.factor}",
+        f"without calibration b = {error_model.PRIOR.slope} and A = {error_model.PRIOR.factor}",
         f"exp(−expected error / ({assessment.DOUBTFUL_SHARE:g} D))",
         f"{assessment.confidence(0.1 * assessment.DOUBTFUL_SHARE, 1.0):.2f} where the fill is expected to be off by "
         f"{10 * assessment.DOUBTFUL_SHARE:g} % of the diagonal, "

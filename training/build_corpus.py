@@ -3,7 +3,7 @@
 For the recipe `paper` a patch is the array `heights`, float32: heights over the plane of the patch less the mean of the
 known bins, in patch lengths, 0 in unknown bins; and the array `known`, bool. Not float16: its steps reach 1.2e-4 of the
 patch length where relief is deepest, as much as the least relief that is worth learning (`LEAST_RELIEF`), and mapped
-files need no memory that it would save. For the recipe `residual` see `training.lessons`.
+files need no memory that it would save. For the recipe `residual` see `training.training_pairs`.
 """
 
 import hashlib
@@ -18,7 +18,7 @@ from quadpatch.mesh.measures import mean_edge_length
 from quadpatch.patches import residual_input
 from quadpatch.patches.normalisation import HEIGHTS, mean_free
 from quadpatch.types import Progress, TriangleMesh, no_progress
-from training import lessons
+from training import training_pairs
 from training.corpus import PatchRecipe, cut_patches, read_mesh
 from training.dictionary import HOLDOUT_SEED_OFFSET, PROCEDURAL_SEEDS
 from training.patterns import PATTERNS
@@ -81,7 +81,7 @@ class CorpusOptions:
         return {
             "recipe": self.recipe,
             "resolution": self.resolution,
-            "length_rule": lessons.LENGTH_RULE if self.recipe == "residual" else self._length_rule(),
+            "length_rule": training_pairs.LENGTH_RULE if self.recipe == "residual" else self._length_rule(),
             "overlap": self.overlap,
             "max_places_per_mesh_and_scale": self.places,
             "procedural": {"patterns": sorted(PATTERNS), "n_each": self.n_procedural} if self.n_procedural else {},
@@ -162,12 +162,12 @@ def cut_heights(mesh: TriangleMesh, options: CorpusOptions, rng: np.random.Gener
     return {"heights": np.concatenate(heights), "known": np.concatenate(known)}
 
 
-def cut_lessons(mesh: TriangleMesh, options: CorpusOptions, rng: np.random.Generator) -> Arrays:
-    """Cut the lessons that the network `residual` learns from."""
-    return lessons.cut_lessons(mesh, options.places, rng)
+def cut_training_pairs(mesh: TriangleMesh, options: CorpusOptions, rng: np.random.Generator) -> Arrays:
+    """Cut the training pairs that the network `residual` learns from."""
+    return training_pairs.cut_training_pairs(mesh, options.places, rng)
 
 
-CUTTERS: dict[str, Cutter] = {"paper": cut_heights, "residual": cut_lessons}
+CUTTERS: dict[str, Cutter] = {"paper": cut_heights, "residual": cut_training_pairs}
 # Bins along one side where nothing else is asked for.
 RESOLUTIONS = {"paper": 24, "residual": residual_input.RESOLUTION}
 

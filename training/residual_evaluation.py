@@ -1,4 +1,4 @@
-"""How much of the fill's error a published network `residual` takes away on lessons that it has never seen."""
+"""How much of the fill's error a published network `residual` takes away on training pairs that it has never seen."""
 
 from pathlib import Path
 
@@ -13,7 +13,7 @@ MAX_PATCHES = 2000
 
 
 def evaluate_residual(path: Path, corpus: Corpus) -> dict[str, float]:
-    """Measure a network on the held-out lessons of a corpus.
+    """Measure a network on the held-out training pairs of a corpus.
 
     Parameters
     ----------

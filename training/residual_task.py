@@ -21,7 +21,7 @@ _ARRAYS = ("channels", "correction", "asked")
 
 @dataclass(frozen=True)
 class ResidualTask:
-    """The network, and lessons as `training.lessons` cuts them.
+    """The network, and training pairs as `training.training_pairs` cuts them.
 
     Attributes
     ----------
@@ -48,13 +48,13 @@ class ResidualTask:
         return self.architecture.build()
 
     def batch(self, rng: np.random.Generator, size: int, share: slice, device: torch.device) -> Batch:
-        """See `Task`; lessons are drawn with repeats, each batch turned in its own way."""
+        """See `Task`; pairs are drawn with repeats, each batch turned in its own way."""
         rows = rng.integers(0, len(self.train), size)
         turn = int(rng.integers(0, 8))
         return turned(self._make(self.train, rows[share], device), turn % 4, mirrored=turn >= 4)
 
     def validation(self, size: int, device: torch.device) -> Iterator[Batch]:
-        """See `Task`; lessons evenly from all held-out meshes, not turned."""
+        """See `Task`; pairs evenly from all held-out meshes, not turned."""
         rows = spread_rows(len(self.held_out), MAX_VALIDATION_PATCHES)
         for start in range(0, len(rows), size):
             yield self._make(self.held_out, rows[start : start + size], device)
@@ -72,5 +72,5 @@ class ResidualTask:
 
 
 def open_residual_task(architecture: Architecture, corpus: Corpus) -> ResidualTask:
-    """Join the network and a corpus of lessons."""
+    """Join the network and a corpus of training pairs."""
     return ResidualTask(architecture, corpus.patches("train"), corpus.patches("validation"), corpus.sha256)

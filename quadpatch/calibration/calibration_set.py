@@ -1,4 +1,4 @@
-"""Practice: holes cut into undamaged surface of the very mesh that is to be repaired, where the truth is known.
+"""Calibration: holes cut into undamaged surface of the very mesh that is to be repaired, where the truth is known.
 
 They are as large as the real ones, or the largest for which the surface has room, and filled by the same code. From
 them follow the energy that continues this surface best, how much of a model's displacement to believe, and how large an
@@ -28,7 +28,7 @@ MIN_HOLES = 12
 _SIZES = (1.0, 0.7, 0.5)
 _ENOUGH = 24
 
-# Surface left between a practice hole and any other rim, in mean edge lengths: what the fairing reads.
+# Surface left between a calibration hole and any other rim, in mean edge lengths: what the fairing reads.
 _MARGIN_EDGES = 4.0
 
 # Errors that differ by less than this share of a hole's diameter are the same.
@@ -41,7 +41,7 @@ _LEAST_GAIN = 0.02
 
 @dataclass(frozen=True)
 class CalibrationSet:
-    """A mesh with practice holes, closed again. Real holes are open in it.
+    """A mesh with calibration holes, closed again. Real holes are open in it.
 
     Attributes
     ----------
@@ -50,12 +50,12 @@ class CalibrationSet:
     removed : (r, 3) float64
         Vertices that were cut away.
     cut_away : (n_triangles,) bool
-        Triangles of the mesh that practice holes took.
+        Triangles of the mesh that calibration holes took.
     loops : list of (n_loop,) int64
-        Rims of the practice holes.
+        Rims of the calibration holes.
     closed : ClosedMesh
     diameter : float
-        That the practice holes were meant to have, in mesh units.
+        That the calibration holes were meant to have, in mesh units.
     diameters : (n_holes,) float64
         That their rims have.
     """
@@ -86,7 +86,7 @@ def cut_calibration_set(
 
     Returns
     -------
-    Practice or None
+    CalibrationSet or None
         None where the undamaged surface has no room for enough holes.
     """
     best: tuple[Punched, float] | None = None
@@ -108,7 +108,7 @@ def cut_calibration_set(
 
 
 def choose_energy(errors: FloatArray, diameter: float, energies: Sequence[Energy], usual: Energy) -> Energy:
-    """Choose the energy that leaves the practice holes, of some diameter, closest to the truth.
+    """Choose the energy that leaves the calibration holes, of some diameter, closest to the truth.
 
     Takes errors (n_energies, n_holes) as `error_per_hole` measures them, in mesh units as the diameter.
 
@@ -132,7 +132,7 @@ def blend_factor(calibration: CalibrationSet, filled: FilledMesh, displacement: 
 
 
 def error_per_hole(calibration: CalibrationSet, filled: FilledMesh) -> FloatArray:
-    """Measure how far each practice hole's fill is from the true surface, both ways.
+    """Measure how far each calibration hole's fill is from the true surface, both ways.
 
     Half from the new vertices and the centroids of the new triangles to the truth, half from the vertices that were cut
     away to the fill.
@@ -156,11 +156,11 @@ def error_per_hole(calibration: CalibrationSet, filled: FilledMesh) -> FloatArra
 
 
 def distance_per_hole(calibration: CalibrationSet, filled: FilledMesh) -> FloatArray:
-    """Mean distance (n_holes,) of each practice hole's new vertices to the true surface; 0 without any."""
+    """Mean distance (n_holes,) of each calibration hole's new vertices to the true surface; 0 without any."""
     new = filled.mesh.vertices[filled.n_measured_vertices :]
     return mean_by(filled.vertex_hole, distance_to_mesh(new, calibration.truth), len(filled.disagreement))
 
 
 def expect(calibration: CalibrationSet, filled: FilledMesh) -> ErrorModel:
-    """Learn from the practice holes, filled like the real ones, how large an error to expect."""
+    """Learn from the calibration holes, filled like the real ones, how large an error to expect."""
     return fit_error_model(filled, calibration.diameters, distance_per_hole(calibration, filled))

@@ -36,9 +36,9 @@ class EnergyBlend:
     energies : sequence of Energy
         One alone needs no weights.
     log_error : (n_energies,) float64
-        Logarithm of each one's mean error on practice holes.
+        Logarithm of each one's mean error on calibration holes.
     log_miss : (n_energies,) float64
-        Logarithm of how far each one misses the rims of practice holes on average, opened one ring wider.
+        Logarithm of how far each one misses the rims of calibration holes on average, opened one ring wider.
     """
 
     energies: Sequence[Energy]
@@ -72,13 +72,13 @@ class EnergyBlend:
 def learn_energy_blend(
     calibration: CalibrationSet, energies: Sequence[Energy], usual: Energy
 ) -> tuple[EnergyBlend, FilledMesh]:
-    """Learn from practice holes how to fill: by one energy, as `choose_energy` picks it, unless weighing beats it.
+    """Learn from calibration holes how to fill: by one energy, as `choose_energy` picks it, unless weighing beats it.
 
     Returns
     -------
     FillRule
     FilledMesh
-        The practice holes, filled by it.
+        The calibration holes, filled by it.
     """
     fills = [fair_holes(calibration.closed, energy) for energy in energies]
     errors = np.array([error_per_hole(calibration, fill) for fill in fills])

@@ -1,9 +1,9 @@
-"""How large an error to expect of a fill, learned from practice holes, whose true error is known.
+"""How large an error to expect of a fill, learned from calibration holes, whose true error is known.
 
 Two signs tell uncertain holes from sure ones, both without unit: the gap between two sensible fills as a share of the
 hole's width, and how much the surface turns along the rim. Their geometric mean is the uncertainty u of the hole. The
 mean error, as a share of the width, is taken for a power of it, ``factor * u ** slope``. Where u says nothing about the
-practice holes (a relief that is as deep everywhere) the slope comes out as 0: all holes are taken for equally wrong.
+calibration holes (a relief that is as deep everywhere) the slope comes out as 0: all holes are taken for equally wrong.
 """
 
 from collections.abc import Sequence
@@ -17,8 +17,9 @@ from quadpatch.types import FloatArray
 # Logarithms need more than nothing: what is smaller counts as this.
 _LEAST = 1e-9
 
-# The slope on 22 scans and reliefs outside the benchmark, and what it weighs against practice holes whose ln u scatter
-# by as large a sum of squares: the variance of errors around their power law over that of the slope between meshes.
+# The slope on 22 scans and reliefs outside the benchmark, and what it weighs against calibration holes whose ln u
+# scatter by as large a sum of squares: the variance of errors around their power law over that of the slope between
+# meshes.
 PRIOR_SLOPE = 0.9
 WEIGHT = 1.6
 
@@ -44,7 +45,7 @@ class ErrorModel:
         return expected
 
 
-# What holds on these (the factor within a third), for surfaces that have no room for practice.
+# What holds on these (the factor within a third), for surfaces that have no room for calibration.
 PRIOR = ErrorModel(0.3, PRIOR_SLOPE)
 
 

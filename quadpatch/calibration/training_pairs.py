@@ -1,4 +1,4 @@
-"""Lessons for networks: fills of holes that were cut into undamaged surface, beside the surface that was there.
+"""Training pairs for networks: fills of holes that were cut into undamaged surface, beside the surface that was there.
 
 The holes are cut into the mesh and filled by the same code as the real ones, since a network can only learn to correct
 the errors that it is shown.
@@ -29,7 +29,7 @@ WIDTHS = (0.8, 1.15)
 
 @dataclass(frozen=True)
 class TrainingSurface:
-    """Surface that lessons are cut from.
+    """Surface that training pairs are cut from.
 
     Attributes
     ----------
@@ -78,7 +78,7 @@ class TrainingPairs:
 
     @staticmethod
     def joined(parts: "list[TrainingPairs]", resolution: int) -> "TrainingPairs":
-        """Join the lessons of several rounds."""
+        """Join the training pairs of several rounds."""
         none = np.zeros((0, resolution, resolution), np.float32)
         return TrainingPairs(
             np.concatenate([np.zeros((0, 2, resolution, resolution), np.float32), *(p.channels for p in parts)]),
@@ -87,7 +87,7 @@ class TrainingPairs:
         )
 
 
-def make_training_pairs(ground: TrainingSurface, rng: np.random.Generator) -> Iterator[TrainingPairs]:
+def make_training_pairs(training_surface: TrainingSurface, rng: np.random.Generator) -> Iterator[TrainingPairs]:
     """Cut, fill and compare, round after round, at other places each time.
 
     Parameters
@@ -97,28 +97,30 @@ def make_training_pairs(ground: TrainingSurface, rng: np.random.Generator) -> It
 
     Yields
     ------
-    Lessons
+    TrainingPairs
         None where the surface has no room for a hole.
     """
     while True:
-        width = float(rng.choice(ground.diameters)) * rng.uniform(*WIDTHS)
-        yield _round(ground, width, rng)
+        width = float(rng.choice(training_surface.diameters)) * rng.uniform(*WIDTHS)
+        yield _round(training_surface, width, rng)
 
 
-def _round(ground: TrainingSurface, diameter: float, rng: np.random.Generator) -> TrainingPairs:
-    scale = ground.scale
-    spacing = Spacing(ground.edge_length, _MARGIN_EDGES * ground.edge_length)
-    punched = cut_holes(ground.mesh, diameter, spacing, rng)
-    filled = ground.rule.fill(punched.mesh, punched.loops)
-    outline = laplacian_smooth(filled.mesh, outline_iterations(scale.length, ground.edge_length))
+def _round(training_surface: TrainingSurface, diameter: float, rng: np.random.Generator) -> TrainingPairs:
+    scale = training_surface.scale
+    spacing = Spacing(training_surface.edge_length, _MARGIN_EDGES * training_surface.edge_length)
+    punched = cut_holes(training_surface.mesh, diameter, spacing, rng)
+    filled = training_surface.rule.fill(punched.mesh, punched.loops)
+    outline = laplacian_smooth(filled.mesh, outline_iterations(scale.length, training_surface.edge_length))
     invented = filled.mesh.vertices[filled.n_measured_vertices :]
-    near = take(ground.seeds, seeds_near(ground.seeds, invented, scale.length))
+    near = take(training_surface.seeds, seeds_near(training_surface.seeds, invented, scale.length))
     sampled = patchify(filled, outline, near, scale)
     sampled = pick(sampled, is_unfolded(sampled.patches))
     patches = sampled.patches
     places = Seeds(patches.origins, patches.frames, np.zeros(len(patches), np.int64))
-    nothing = np.zeros(len(ground.mesh.triangles), bool)
-    truth = sample_height_maps(RayScene(ground.mesh), ground.mesh, nothing, places, scale.length, scale.resolution)
+    nothing = np.zeros(len(training_surface.mesh.triangles), bool)
+    truth = sample_height_maps(
+        RayScene(training_surface.mesh), training_surface.mesh, nothing, places, scale.length, scale.resolution
+    )
     asked = truth.seen & patches.seen & ~patches.known
     seen = network_input(patches, sampled.outline)
     correction = in_spreads(np.where(asked, truth.heights - patches.heights, 0.0), seen.spread)

@@ -14,15 +14,15 @@ class Surroundings:
     Attributes
     ----------
     patches : Patches
-        Practice holes count as unknown.
+        Calibration holes count as unknown.
     outline : (n_patches, N, N) float64
     ground : Ground
-        The same surface to cut lessons from; practice holes are open.
+        The same surface to cut training pairs from; calibration holes are open.
     """
 
     patches: Patches
     outline: FloatArray
-    ground: TrainingSurface
+    training_surface: TrainingSurface
 
 
 class Inpainter(Protocol):

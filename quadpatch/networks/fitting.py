@@ -21,12 +21,12 @@ BATCH = 64
 RATE = 4e-3
 # Steps over which the rate rises to its full height.
 WARM_UP = 50
-# More lessons than this add seconds, not quality; fewer rounds than this show too few places.
-ENOUGH_LESSONS = 8000
+# More training pairs than this add seconds, not quality; fewer rounds than this show too few places.
+ENOUGH_PAIRS = 8000
 MAX_ROUNDS = 8
-MIN_LESSONS = 64
-# Of the time there is, what cutting lessons may take.
-LESSONS_SHARE = 0.4
+MIN_PAIRS = 64
+# Of the time there is, what cutting training pairs may take.
+CUTTING_SHARE = 0.4
 # Longest gradient, over all weights, that one step follows.
 _LONGEST_GRADIENT = 1.0
 # Patches in one run of the network.
@@ -57,23 +57,23 @@ class FittingInpainter:
         return RESOLUTION
 
     def fitted_to(self, surroundings: Surroundings) -> "FittingInpainter":
-        """See `Inpainter`. Leaves the weights as they are where the mesh has no room for lessons."""
+        """See `Inpainter`. Leaves the weights as they are where the mesh has no room to cut any."""
         started = time.monotonic()
-        for_lessons = LESSONS_SHARE * self.options.seconds
-        lessons = gather_lessons(surroundings, self.seed, for_lessons, self._first_part)
-        if len(lessons) < MIN_LESSONS:
+        cutting_s = CUTTING_SHARE * self.options.seconds
+        pairs = collect_training_pairs(surroundings, self.seed, cutting_s, self._first_part)
+        if len(pairs) < MIN_PAIRS:
             return self
         network = Residual()
         network.load_state_dict(self.network.state_dict())
         left = self.options.seconds - (time.monotonic() - started)
-        fit(network, lessons, replace(self.options, seconds=max(left, 1e-3)), self.seed, self._second_part)
+        fit(network, pairs, replace(self.options, seconds=max(left, 1e-3)), self.seed, self._second_part)
         return replace(self, network=network)
 
     def _first_part(self, stage: str, fraction: float) -> None:
-        self.progress(stage, LESSONS_SHARE * fraction)
+        self.progress(stage, CUTTING_SHARE * fraction)
 
     def _second_part(self, stage: str, fraction: float) -> None:
-        self.progress(stage, LESSONS_SHARE + (1.0 - LESSONS_SHARE) * fraction)
+        self.progress(stage, CUTTING_SHARE + (1.0 - CUTTING_SHARE) * fraction)
 
     def predict(self, patches: Patches, outline: FloatArray) -> FloatArray:
         """See `Inpainter`."""
@@ -86,14 +86,16 @@ class FittingInpainter:
         return corrected(patches, seen.spread, np.concatenate(answers).astype(np.float64))
 
 
-def gather_lessons(
+def collect_training_pairs(
     surroundings: Surroundings, seed: int, seconds: float = np.inf, progress: Progress = no_progress
 ) -> TrainingPairs:
-    """Cut lessons until there are enough, or another round would come too often to the same places, or too late."""
+    """Cut pairs until there are enough, or another round would come too often to the same places, or too late."""
     started, parts = time.monotonic(), list[TrainingPairs]()
-    for part in islice(make_training_pairs(surroundings.ground, np.random.default_rng([seed, 3])), MAX_ROUNDS):
+    for part in islice(
+        make_training_pairs(surroundings.training_surface, np.random.default_rng([seed, 3])), MAX_ROUNDS
+    ):
         parts.append(part)
-        done = max(sum(len(part) for part in parts) / ENOUGH_LESSONS, (time.monotonic() - started) / seconds)
+        done = max(sum(len(part) for part in parts) / ENOUGH_PAIRS, (time.monotonic() - started) / seconds)
         progress("learn", min(done, 1.0))
         if done >= 1.0:
             break
@@ -102,7 +104,7 @@ def gather_lessons(
 
 def fit(
     network: Residual,
-    lessons: TrainingPairs,
+    pairs: TrainingPairs,
     options: NetworkOptions,
     seed: int,
     progress: Progress = no_progress,
@@ -116,7 +118,7 @@ def fit(
     Parameters
     ----------
     network : Residual
-    lessons : Lessons
+    pairs : TrainingPairs
     options : NetworkOptions
     seed : int
     progress : callable
@@ -130,7 +132,7 @@ def fit(
         Steps done.
     """
     random = torch.Generator().manual_seed(seed)
-    arrays = lessons.channels, lessons.correction[:, None], lessons.asked[:, None]
+    arrays = pairs.channels, pairs.correction[:, None], pairs.asked[:, None]
     tensors = tuple(torch.from_numpy(array) for array in arrays)
     network.to(memory_format=torch.channels_last)  # type: ignore[call-overload]  # torch's own stubs lack it
     optimiser = torch.optim.AdamW(network.parameters(), RATE, weight_decay=1e-2)

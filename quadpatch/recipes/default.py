@@ -32,10 +32,10 @@ FAIRING_ENERGIES = (
     *(Energy(plate=1.0, variation=weight) for weight in (0.4, 2.0, 40.0)),
 )
 
-# For surfaces on which practice can't tell the energies apart.
+# For surfaces on which calibration can't tell the energies apart.
 DEFAULT_ENERGY = FAIRING_ENERGIES[2]
-# For surfaces without room for practice: they are coarse for their holes, and a rim of few edges shows no curvature to
-# carry on.
+# For surfaces without room for calibration: they are coarse for their holes, and a rim of few edges shows no curvature
+# to carry on.
 PRIOR_ENERGY = THIN_PLATE
 
 
@@ -135,7 +135,7 @@ def _fill(
 
 
 def suitable_rule(calibration: CalibrationSet | None) -> tuple[EnergyBlend, FilledMesh | None]:
-    """Learn how this surface is continued best, as far as practice on it can tell; also the practice holes, filled."""
+    """Learn how this surface is continued best, as far as calibration tells; also the calibration holes, filled."""
     if calibration is None:
         return EnergyBlend.of_one(PRIOR_ENERGY), None
     return learn_energy_blend(calibration, FAIRING_ENERGIES, DEFAULT_ENERGY)

@@ -23,7 +23,7 @@ from quadpatch.reconstruction.displacement import displace, join_at_rim, rim_ver
 from quadpatch.stages import Stages
 from quadpatch.types import BoolArray, FloatArray, Patches, TriangleMesh
 
-# Believed of a model's displacement where the mesh has no room for practice.
+# Believed of a model's displacement where the mesh has no room for calibration.
 PRIOR_BLEND_FACTOR = 0.0
 
 # Patches that a self-similar dictionary is learned from.
@@ -44,8 +44,8 @@ class CompletionInput:
     edge_length : float
         Mean edge length, in mesh units.
     practice : Practice or None
-    practice_filled : FilledMesh or None
-        The practice holes, filled like the real ones.
+    calibration_filled : FilledMesh or None
+        The calibration holes, filled like the real ones.
     """
 
     filled: FilledMesh
@@ -106,12 +106,12 @@ def complete(
         everywhere = patchify(filled, outline, take(seeds, wanted), scale)
         sampled = pick(everywhere, near[wanted] & is_unfolded(everywhere.patches))
     with stages.stage("learn"):
-        lesson = _without_practice(everywhere.patches, problem)
+        known_patches = _without_calibration_holes(everywhere.patches, problem)
         if inpainter is None:
-            inpainter = learn_from_patches(lesson, everywhere.outline)
+            inpainter = learn_from_patches(known_patches, everywhere.outline)
         else:
-            ground = _training_surface(problem, seeds, scale)
-            inpainter = inpainter.fitted_to(Surroundings(lesson, everywhere.outline, ground))
+            training_surface = _training_surface(problem, seeds, scale)
+            inpainter = inpainter.fitted_to(Surroundings(known_patches, everywhere.outline, training_surface))
         if inpainter is None:
             return None
         blend_factor, error_model = _calibrate(problem, _Model(inpainter, seeds, scale))
@@ -135,8 +135,8 @@ def _outline(filled: FilledMesh, scale: PatchScale, edge_length: float) -> Trian
     return laplacian_smooth(filled.mesh, outline_iterations(scale.length, edge_length))
 
 
-def _without_practice(patches: Patches, problem: CompletionInput) -> Patches:
-    """Hide what practice holes took, or a model would be tried on what it has learned by heart."""
+def _without_calibration_holes(patches: Patches, problem: CompletionInput) -> Patches:
+    """Hide what calibration holes took, or a model would be tried on patches that it was learned from."""
     if problem.calibration is None:
         return patches
     cut_away = np.zeros(len(problem.filled.mesh.triangles), bool)
@@ -146,7 +146,7 @@ def _without_practice(patches: Patches, problem: CompletionInput) -> Patches:
 
 
 def _training_surface(problem: CompletionInput, seeds: Seeds, scale: PatchScale) -> TrainingSurface:
-    """Measured surface, without what practice holes took."""
+    """Measured surface, without what calibration holes took."""
     filled, calibration = problem.filled, problem.calibration
     measured = filled.mesh.triangles[: filled.n_measured_triangles]
     triangles = measured if calibration is None else measured[~calibration.cut_away]
@@ -162,7 +162,7 @@ def _some(count: int, rng: np.random.Generator) -> BoolArray:
 
 
 def _calibrate(problem: CompletionInput, model: _Model) -> tuple[float, ErrorModel | None]:
-    """Complete the practice holes: the share of the displacement to believe, and the error to expect."""
+    """Complete the calibration holes: the share of the displacement to believe, and the error to expect."""
     filled = problem.calibration_filled
     if problem.calibration is None or filled is None:
         return PRIOR_BLEND_FACTOR, None

@@ -76,7 +76,7 @@ class Completion:
     believed : float
         Share of the displacement that was applied, 0..1, as practice on this mesh advised.
     expectation : Expectation or None
-        How large an error to expect, as practice holes taught; None without practice.
+        How large an error to expect, as calibration holes taught; None without calibration.
     scale : PatchScale
     n_patches : int
     undone : (n_holes,) bool or None

@@ -13,7 +13,7 @@ from training.shards import Arrays, Corpus, CorpusWriter
 from training.sources import Source
 
 
-def lessons(count: int, seed: int) -> Arrays:
+def training_pairs(count: int, seed: int) -> Arrays:
     rng = np.random.default_rng(seed)
     shape = (count, RESOLUTION, RESOLUTION)
     return {
@@ -27,8 +27,8 @@ def lessons(count: int, seed: int) -> Arrays:
 def made_corpus(tmp_path: Path) -> Corpus:
     writer = CorpusWriter(tmp_path / "corpus", {"recipe": "residual", "resolution": RESOLUTION})
     for name, count in (("scan", 5), ("procedural_waves", 7)):
-        writer.add(Source(name, Path(), "00"), "validation", lessons(count, count))
-    writer.add(Source("seen", Path(), "00"), "train", lessons(3, 3))
+        writer.add(Source(name, Path(), "00"), "validation", training_pairs(count, count))
+    writer.add(Source("seen", Path(), "00"), "train", training_pairs(3, 3))
     return writer.finish()
 
 

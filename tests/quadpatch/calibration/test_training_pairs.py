@@ -20,8 +20,8 @@ RELIEF = relief(110, 2.0, 0.04, 6)
 LENGTH = 1.0
 
 
-def rounds(ground: TrainingSurface, count: int, seed: int = 0) -> list[TrainingPairs]:
-    return list(islice(make_training_pairs(ground, np.random.default_rng(seed)), count))
+def rounds(training_surface: TrainingSurface, count: int, seed: int = 0) -> list[TrainingPairs]:
+    return list(islice(make_training_pairs(training_surface, np.random.default_rng(seed)), count))
 
 
 def height_of_relief(x: FloatArray, y: FloatArray) -> FloatArray:
@@ -39,21 +39,21 @@ def left_over(signal: FloatArray, truth: FloatArray, where: BoolArray, known: Bo
 
 
 @pytest.fixture(scope="module")
-def ground() -> TrainingSurface:
+def training_surface() -> TrainingSurface:
     return ground_of(RELIEF, DIAMETER)
 
 
 @pytest.fixture(scope="module")
-def lessons(ground: TrainingSurface) -> TrainingPairs:
-    (only,) = rounds(ground, 1)
+def pairs(training_surface: TrainingSurface) -> TrainingPairs:
+    (only,) = rounds(training_surface, 1)
     return only
 
 
-def test_the_fill_with_its_correction_is_the_surface_that_was_there(ground: TrainingSurface) -> None:
+def test_the_fill_with_its_correction_is_the_surface_that_was_there(training_surface: TrainingSurface) -> None:
     """Held against the formula of the relief: the known bins say in which scale."""
     places = [(x, y, 0.0) for x in (-0.3, 0.0, 0.3) for y in (-0.3, 0.0, 0.3)]
     scale = PatchScale(LENGTH, RESOLUTION, 0)
-    (given,) = rounds(replace(ground, seeds=looking_down(*places), scale=scale), 1)
+    (given,) = rounds(replace(training_surface, seeds=looking_down(*places), scale=scale), 1)
     assert len(given) == len(places)
     tick = ((np.arange(RESOLUTION) + 0.5) / RESOLUTION - 0.5) * LENGTH
     offset_x, offset_y = np.meshgrid(tick, tick)
@@ -85,28 +85,28 @@ def test_the_true_surface_of_a_ball_lies_above_a_fill_that_is_drawn_tight() -> N
     assert np.median(corrections) > 0.5
 
 
-def test_nothing_is_asked_but_in_invented_bins(lessons: TrainingPairs) -> None:
-    asked = lessons.asked > 0
-    assert set(np.unique(lessons.asked)) == {0.0, 1.0}
+def test_nothing_is_asked_but_in_invented_bins(pairs: TrainingPairs) -> None:
+    asked = pairs.asked > 0
+    assert set(np.unique(pairs.asked)) == {0.0, 1.0}
     assert asked.any(axis=(1, 2)).mean() > 0.9
-    assert (lessons.channels[:, 1][asked] == 0).all()
-    assert (lessons.correction[~asked] == 0).all()
+    assert (pairs.channels[:, 1][asked] == 0).all()
+    assert (pairs.correction[~asked] == 0).all()
 
 
-def test_lessons_are_bounded_and_of_the_shape_that_networks_read(lessons: TrainingPairs) -> None:
-    assert len(lessons) > 50
-    assert lessons.channels.shape == (len(lessons), 2, RESOLUTION, RESOLUTION)
-    assert lessons.correction.shape == lessons.asked.shape == (len(lessons), RESOLUTION, RESOLUTION)
-    for array in (lessons.channels, lessons.correction, lessons.asked):
+def test_lessons_are_bounded_and_of_the_shape_that_networks_read(pairs: TrainingPairs) -> None:
+    assert len(pairs) > 50
+    assert pairs.channels.shape == (len(pairs), 2, RESOLUTION, RESOLUTION)
+    assert pairs.correction.shape == pairs.asked.shape == (len(pairs), RESOLUTION, RESOLUTION)
+    for array in (pairs.channels, pairs.correction, pairs.asked):
         assert array.dtype == np.float32
         assert np.isfinite(array).all()
         assert np.abs(array).max() <= LARGEST
 
 
 def test_the_same_generator_gives_the_same_lessons_and_another_round_or_generator_others() -> None:
-    ground = ground_of(relief(60, 1.2, 0.04, 4), DIAMETER)
-    one, next_one = rounds(ground, 2)
-    (same,), (other,) = rounds(ground, 1), rounds(ground, 1, seed=1)
+    training_surface = ground_of(relief(60, 1.2, 0.04, 4), DIAMETER)
+    one, next_one = rounds(training_surface, 2)
+    (same,), (other,) = rounds(training_surface, 1), rounds(training_surface, 1, seed=1)
     assert one.channels.tobytes() == same.channels.tobytes()
     assert one.correction.tobytes() == same.correction.tobytes()
     assert one.asked.tobytes() == same.asked.tobytes()
@@ -127,7 +127,7 @@ def test_surface_that_is_missing_already_is_never_asked_for() -> None:
 def test_where_there_is_no_room_for_a_hole_there_is_no_lesson() -> None:
     small = open_grid(12, 0.3)
     edge_length = mean_edge_length(small)
-    ground = TrainingSurface(
+    training_surface = TrainingSurface(
         small,
         looking_down((0, 0, 0)),
         PatchScale(0.6, RESOLUTION, 0),
@@ -135,15 +135,15 @@ def test_where_there_is_no_room_for_a_hole_there_is_no_lesson() -> None:
         np.array([0.5]),
         edge_length,
     )
-    assert [len(given) for given in rounds(ground, 2)] == [0, 0]
+    assert [len(given) for given in rounds(training_surface, 2)] == [0, 0]
     nothing = TriangleMesh(small.vertices, small.triangles[:0])
-    assert [len(given) for given in rounds(replace(ground, mesh=nothing), 1)] == [0]
+    assert [len(given) for given in rounds(replace(training_surface, mesh=nothing), 1)] == [0]
 
 
-def test_joined_lessons_stand_one_after_the_other(lessons: TrainingPairs) -> None:
-    joined = TrainingPairs.joined([lessons, lessons], RESOLUTION)
-    assert len(joined) == 2 * len(lessons)
-    np.testing.assert_array_equal(joined.channels[len(lessons) :], lessons.channels)
-    np.testing.assert_array_equal(joined.correction[: len(lessons)], lessons.correction)
+def test_joined_lessons_stand_one_after_the_other(pairs: TrainingPairs) -> None:
+    joined = TrainingPairs.joined([pairs, pairs], RESOLUTION)
+    assert len(joined) == 2 * len(pairs)
+    np.testing.assert_array_equal(joined.channels[len(pairs) :], pairs.channels)
+    np.testing.assert_array_equal(joined.correction[: len(pairs)], pairs.correction)
     none = TrainingPairs.joined([], RESOLUTION)
     assert (len(none), none.channels.shape, none.asked.shape) == (0, (0, 2, 32, 32), (0, 32, 32))

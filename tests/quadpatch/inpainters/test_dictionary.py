@@ -33,8 +33,10 @@ def surroundings(patches: Patches) -> Surroundings:
     """Surface over a flat outline; dictionaries don't look at the ground."""
     flat = TriangleMesh(np.zeros((0, 3)), np.zeros((0, 3), np.int64))
     nowhere = Seeds(np.zeros((0, 3)), np.zeros((0, 3, 3)), np.zeros(0, np.int64))
-    ground = TrainingSurface(flat, nowhere, PatchScale(1.0, N, 1), EnergyBlend.of_one(THIN_PLATE), np.ones(1), 0.1)
-    return Surroundings(patches, 0 * patches.heights, ground)
+    training_surface = TrainingSurface(
+        flat, nowhere, PatchScale(1.0, N, 1), EnergyBlend.of_one(THIN_PLATE), np.ones(1), 0.1
+    )
+    return Surroundings(patches, 0 * patches.heights, training_surface)
 
 
 def waves(count: int, seed: int = 0) -> FloatArray:

@@ -1,4 +1,4 @@
-"""Cutting the lessons of the network `residual` out of training meshes, as a repair would.
+"""Cutting the training pairs of the network `residual` out of training meshes, as a repair would.
 
 See `quadpatch.calibration.training_pairs`.
 
@@ -23,21 +23,21 @@ from quadpatch.recipes.default import suitable_rule
 from quadpatch.types import TriangleMesh
 from training.shards import Arrays
 
-# Diameters of the holes, in mean edges, from scratches to the widest that leave a scan room for practice.
+# Diameters of the holes, in mean edges, from scratches to the widest that leave a scan room for calibration.
 HOLE_EDGES = (6.0, 9.0, 13.0, 18.0)
 # Rounds of cutting for each diameter, so that a small mesh doesn't show the same places over and over.
 ROUNDS = 4
 LENGTH_RULE = f"as wide as for a repair of holes {', '.join(f'{edges:g}' for edges in HOLE_EDGES)} mean edges wide"
 
 
-def cut_lessons(mesh: TriangleMesh, most: int, rng: np.random.Generator) -> Arrays:
-    """Cut lessons with holes of several diameters.
+def cut_training_pairs(mesh: TriangleMesh, most: int, rng: np.random.Generator) -> Arrays:
+    """Cut training pairs with holes of several diameters.
 
     Parameters
     ----------
     mesh : TriangleMesh
     most : int
-        Lessons of one diameter, at most.
+        Training pairs of one diameter, at most.
     rng : numpy.random.Generator
 
     Returns
@@ -46,11 +46,11 @@ def cut_lessons(mesh: TriangleMesh, most: int, rng: np.random.Generator) -> Arra
         See the head of this module; no row where the mesh is too small.
     """
     parts = [_of_diameter(mesh, edges * mean_edge_length(mesh), most, rng) for edges in HOLE_EDGES]
-    lessons = TrainingPairs.joined(parts, RESOLUTION)
+    pairs = TrainingPairs.joined(parts, RESOLUTION)
     return {
-        "channels": lessons.channels.astype(np.float16),
-        "correction": lessons.correction.astype(np.float16),
-        "asked": lessons.asked > 0,
+        "channels": pairs.channels.astype(np.float16),
+        "correction": pairs.correction.astype(np.float16),
+        "asked": pairs.asked > 0,
     }
 
 
@@ -62,12 +62,12 @@ def _of_diameter(mesh: TriangleMesh, diameter: float, most: int, rng: np.random.
         seeds = lay_out(laplacian_smooth(mesh, outline_iterations(scale.length, edge_length)), scale)
     except NoQuadsError:
         return TrainingPairs.joined([], RESOLUTION)
-    ground = TrainingSurface(mesh, seeds, scale, rule, np.array([diameter]), edge_length)
+    training_surface = TrainingSurface(mesh, seeds, scale, rule, np.array([diameter]), edge_length)
     parts: list[TrainingPairs] = []
-    for part in islice(make_training_pairs(ground, rng), ROUNDS):
+    for part in islice(make_training_pairs(training_surface, rng), ROUNDS):
         parts.append(part)
         if sum(len(part) for part in parts) >= most:
             break
-    lessons = TrainingPairs.joined(parts, RESOLUTION)
-    chosen = np.sort(rng.permutation(len(lessons))[:most])
-    return TrainingPairs(lessons.channels[chosen], lessons.correction[chosen], lessons.asked[chosen])
+    pairs = TrainingPairs.joined(parts, RESOLUTION)
+    chosen = np.sort(rng.permutation(len(pairs))[:most])
+    return TrainingPairs(pairs.channels[chosen], pairs.correction[chosen], pairs.asked[chosen])

@@ -4,10 +4,10 @@ import pytest
 from quadpatch.patches.residual_input import LARGEST, RESOLUTION
 from quadpatch.types import TriangleMesh
 from tests.quadpatch.shapes import open_grid
-from training import lessons
-from training.lessons import HOLE_EDGES, cut_lessons
+from training import training_pairs
 from training.procedural import relief_mesh
 from training.shards import Arrays
+from training.training_pairs import HOLE_EDGES, cut_training_pairs
 
 
 @pytest.fixture(scope="module")
@@ -17,7 +17,7 @@ def relief() -> TriangleMesh:
 
 @pytest.fixture(scope="module")
 def cut(relief: TriangleMesh) -> Arrays:
-    return cut_lessons(relief, 12, np.random.default_rng(0))
+    return cut_training_pairs(relief, 12, np.random.default_rng(0))
 
 
 def test_lessons_are_small_on_disk_and_ask_in_invented_bins_only(cut: Arrays) -> None:
@@ -40,15 +40,15 @@ def test_holes_of_every_width_give_as_much_as_they_may(cut: Arrays) -> None:
 
 @pytest.mark.slow
 def test_the_same_generator_cuts_the_same_lessons(relief: TriangleMesh, cut: Arrays) -> None:
-    again = cut_lessons(relief, 12, np.random.default_rng(0))
+    again = cut_training_pairs(relief, 12, np.random.default_rng(0))
     assert all(again[name].tobytes() == array.tobytes() for name, array in cut.items())
 
 
 def test_a_mesh_too_small_for_a_hole_gives_no_lesson() -> None:
-    cut = cut_lessons(open_grid(6), 10, np.random.default_rng(0))
+    cut = cut_training_pairs(open_grid(6), 10, np.random.default_rng(0))
     assert [len(array) for array in cut.values()] == [0, 0, 0]
 
 
 def test_the_rule_of_the_patch_length_names_the_widths_of_the_holes() -> None:
     for edges in HOLE_EDGES:
-        assert f"{edges:g}" in lessons.LENGTH_RULE
+        assert f"{edges:g}" in training_pairs.LENGTH_RULE
