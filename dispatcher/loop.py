@@ -1,7 +1,7 @@
 """Duties, each in a thread of its own, done by whoever leads.
 
-A slow duty, such as a webhook that does not answer, holds up no other one. Whatever goes wrong in a duty is logged, and
-the duty is done again at its next turn.
+A slow periodic task, such as a webhook that does not answer, holds up no other one. Whatever goes wrong in a periodic task is logged, and
+the periodic task is done again at its next turn.
 """
 
 import logging
@@ -16,7 +16,7 @@ _log = logging.getLogger("quadpatch.dispatcher")
 
 
 @dataclass(frozen=True)
-class Duty:
+class PeriodicTask:
     """Something to do again and again.
 
     Attributes
@@ -46,10 +46,10 @@ class Dispatch:
     duties : sequence of Duty
     """
 
-    def __init__(self, leadership: Leadership, renew_s: float, duties: Sequence[Duty]) -> None:
+    def __init__(self, leadership: Leadership, renew_s: float, tasks: Sequence[PeriodicTask]) -> None:
         self._leadership = leadership
         self._renew_s = renew_s
-        self._duties = duties
+        self._duties = tasks
         self._leads = threading.Event()
         self._stopped = threading.Event()
 
@@ -59,7 +59,7 @@ class Dispatch:
 
     def run(self) -> None:
         """Work until stopped, then let somebody else lead."""
-        threads = [threading.Thread(target=self._keep_doing, args=(duty,), name=duty.name) for duty in self._duties]
+        threads = [threading.Thread(target=self._keep_doing, args=(task,), name=task.name) for task in self._duties]
         for thread in threads:
             thread.start()
         try:
@@ -83,12 +83,12 @@ class Dispatch:
             (self._leads.set if leads else self._leads.clear)()
             self._stopped.wait(self._renew_s)
 
-    def _keep_doing(self, duty: Duty) -> None:
+    def _keep_doing(self, task: PeriodicTask) -> None:
         while not self._stopped.is_set():
             # Wakes at once when the lead comes, and often enough to see the end.
-            if self._leads.wait(timeout=min(duty.interval_s, 1.0)):
-                _do(duty, self._is_over)
-                self._stopped.wait(duty.interval_s)
+            if self._leads.wait(timeout=min(task.interval_s, 1.0)):
+                _do(task, self._is_over)
+                self._stopped.wait(task.interval_s)
 
     def _is_over(self) -> bool:
         return self._stopped.is_set() or not self._leads.is_set()
@@ -100,13 +100,13 @@ class Dispatch:
             _log.warning("the lead was not handed on: %s", error)
 
 
-def _do(duty: Duty, is_over: Callable[[], bool]) -> None:
+def _do(task: PeriodicTask, is_over: Callable[[], bool]) -> None:
     try:
-        words = duty.work(is_over)
+        words = task.work(is_over)
     except JobkitError as error:
-        _log.warning("%s: %s", duty.name, error)
+        _log.warning("%s: %s", task.name, error)
     except Exception:  # noqa: BLE001 - the outermost frame of a thread that has to live for years
-        _log.exception("%s failed", duty.name)
+        _log.exception("%s failed", task.name)
     else:
         if words:
-            _log.info("%s: %s", duty.name, words)
+            _log.info("%s: %s", task.name, words)

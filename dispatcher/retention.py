@@ -3,7 +3,7 @@
 from collections.abc import Callable
 
 from dispatcher.missing_objects import Missing, MissingObjects
-from dispatcher.unreferenced_objects import Swept, sweep_objects
+from dispatcher.unreferenced_objects import SweepResult, sweep_objects
 from jobkit.database.clock import shared_now
 from jobkit.database.idempotency import forget_keys
 from jobkit.database.session import Database
@@ -46,7 +46,7 @@ class Sweeper:
         return "; ".join(_words(swept, missing))
 
 
-def _words(swept: Swept, missing: Missing) -> list[str]:
+def _words(swept: SweepResult, missing: Missing) -> list[str]:
     counts = [
         (swept.objects, f"deleted {swept.objects} objects without a row, {swept.size_bytes} bytes"),
         (missing.meshes, f"{missing.meshes} meshes are gone from the store and were marked"),

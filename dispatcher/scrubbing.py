@@ -1,4 +1,4 @@
-"""The duty that reads all stored objects, a little at a time, and looks whether they are still what was stored."""
+"""The periodic task that reads all stored objects, a little at a time, and looks whether they are still what was stored."""
 
 from collections.abc import Callable
 
@@ -11,7 +11,7 @@ _MB = 1 << 20
 
 
 class Scrubbing:
-    """The duty.
+    """The periodic task.
 
     Parameters
     ----------

@@ -24,7 +24,7 @@ from jobkit.database.tables import JobRow, MeshRow, ModelRow
 from jobkit.errors import ObjectNotFoundError
 from jobkit.schema import JobState
 from jobkit.storage.base import ListedObject, ObjectStore, result_key
-from jobkit.storage.removals import START_S, claim, let_go, named_keys
+from jobkit.storage.removals import START_S, claim, named_keys, release
 
 GRACE = timedelta(hours=24)
 CONTENT_PREFIXES = ("meshes", "models")
@@ -37,19 +37,19 @@ _log = logging.getLogger("quadpatch.sweep")
 
 
 @dataclass(frozen=True)
-class Swept:
+class SweepResult:
     """What a sweep deleted."""
 
     objects: int = 0
     size_bytes: int = 0
 
-    def __add__(self, other: "Swept") -> "Swept":
-        return Swept(self.objects + other.objects, self.size_bytes + other.size_bytes)
+    def __add__(self, other: "SweepResult") -> "SweepResult":
+        return SweepResult(self.objects + other.objects, self.size_bytes + other.size_bytes)
 
 
 def sweep_objects(
     database: Database, store: ObjectStore, now: datetime, is_over: Callable[[], bool] = lambda: False
-) -> Swept:
+) -> SweepResult:
     """Delete objects that no row names and that nobody touched for GRACE.
 
     Parameters
@@ -68,8 +68,8 @@ def sweep_objects(
     before = now - GRACE
     if not _is_older(database, before):
         _log.info("nothing is swept: the oldest row of the database is younger than %s", GRACE)
-        return Swept()
-    swept = Swept()
+        return SweepResult()
+    swept = SweepResult()
     for batch in _old_objects(store, RESULT_PREFIX, before):
         if is_over():
             return swept
@@ -94,7 +94,7 @@ def _old_objects(store: ObjectStore, prefix: str, before: datetime) -> Iterator[
         yield batch
 
 
-def _sweep_results(database: Database, store: ObjectStore, batch: list[ListedObject]) -> Swept:
+def _sweep_results(database: Database, store: ObjectStore, batch: list[ListedObject]) -> SweepResult:
     """Delete results of jobs that are gone, of attempts that published nothing, and of names that nobody gave."""
     wanted = _wanted_results(database, {_job_of(found.key) for found in batch})
     return _delete(store, (found for found in batch if not _is_wanted(found.key, wanted)))
@@ -121,7 +121,7 @@ def _is_wanted(key: str, wanted: dict[str, set[str]]) -> bool:
     return key in names or key.rpartition("/")[0] + "/" in names
 
 
-def _sweep_contents(database: Database, store: ObjectStore, batch: list[ListedObject], before: datetime) -> Swept:
+def _sweep_contents(database: Database, store: ObjectStore, batch: list[ListedObject], before: datetime) -> SweepResult:
     """Delete meshes and models that no row names; `jobkit.storage.removals` handles uploads of the same bytes."""
     keys = {found.key for found in batch}
     with database.read() as session:
@@ -129,31 +129,31 @@ def _sweep_contents(database: Database, store: ObjectStore, batch: list[ListedOb
     folders: defaultdict[str, list[str]] = defaultdict(list)
     for key in sorted(keys):
         folders[key.rpartition("/")[0]].append(key)
-    swept = Swept()
+    swept = SweepResult()
     for folder, orphans in folders.items():
         for start in range(0, len(orphans), _CLAIMS):
             swept += _remove(database, store, folder, orphans[start : start + _CLAIMS], before)
     return swept
 
 
-def _remove(database: Database, store: ObjectStore, folder: str, keys: list[str], before: datetime) -> Swept:
+def _remove(database: Database, store: ObjectStore, folder: str, keys: list[str], before: datetime) -> SweepResult:
     deadline = time.monotonic() + START_S
     claimed = claim(database, keys)
     if not claimed:
-        return Swept()
+        return SweepResult()
     # The last look at their age, now that they are claimed.
     found = [found for found in store.keys(folder) if found.key in claimed and found.modified_at < before]
     # A deletion that failed may still take effect, so an error leaves the claims to run out.
     swept = _delete(store, (orphan for orphan in found if time.monotonic() < deadline))
-    let_go(database, claimed)
+    release(database, claimed)
     return swept
 
 
-def _delete(store: ObjectStore, orphans: Iterable[ListedObject]) -> Swept:
-    swept = Swept()
+def _delete(store: ObjectStore, orphans: Iterable[ListedObject]) -> SweepResult:
+    swept = SweepResult()
     for orphan in orphans:
         # A file that somebody else put there under no name of ours stays.
         with contextlib.suppress(ObjectNotFoundError):
             store.delete(orphan.key)
-            swept += Swept(1, orphan.size_bytes)
+            swept += SweepResult(1, orphan.size_bytes)
     return swept

@@ -1,4 +1,4 @@
-"""The duty that delivers messages to subscribers: many at a time, a few to each, none waiting for another.
+"""The periodic task that delivers messages to subscribers: many at a time, a few to each, none waiting for another.
 
 A turn lasts as long as there is anything to send. Deliveries are at least once: what a dispatcher sent and could not
 note is sent again, under the same id.
@@ -55,7 +55,7 @@ def forget_old_deliveries(database: Database, days: float, is_over: IsOver) -> s
 
 
 class _Round:
-    """One turn of the duty."""
+    """One turn of the periodic task."""
 
     def __init__(self, database: Database, sender: Sender, claim_s: float, is_over: IsOver) -> None:
         self._database = database

@@ -11,12 +11,12 @@ from jobkit.telemetry import Telemetry
 from service.auth import AuthMiddleware, check_exposure
 from service.bodies import BodiesMiddleware
 from service.document import TITLE, VERSION, install_document, operation_id
-from service.frame import FrameMiddleware
 from service.handlers import install_handlers
 from service.head import HeadMiddleware
 from service.kept import KEPT_S, Kept
 from service.metrics import StateCollector, new_registry
 from service.observe import ObserveMiddleware
+from service.request_context import RequestContextMiddleware
 from service.routes import (
     deliveries,
     events,
@@ -77,7 +77,7 @@ def create_app(settings: Settings, telemetry: Telemetry | None = None) -> FastAP
     app.add_middleware(HeadMiddleware)
     app.add_middleware(BodiesMiddleware, most=settings.max_bodies)
     app.add_middleware(AuthMiddleware, settings=settings)
-    app.add_middleware(FrameMiddleware)
+    app.add_middleware(RequestContextMiddleware)
     app.add_middleware(ObserveMiddleware, registry=app.state.registry, telemetry=app.state.telemetry)
     app.add_middleware(TurnsMiddleware, turns=Turns())
     return app

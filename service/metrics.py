@@ -21,7 +21,7 @@ from jobkit.database.session import Database
 from jobkit.errors import DatabaseUnavailableError, QueueUnavailableError
 from jobkit.queue import TaskQueue
 from jobkit.settings import Settings
-from service.figures import database_figures
+from service.database_metrics import database_figures
 from service.services import Services
 
 CACHE_S = 1.0

@@ -22,7 +22,7 @@ from jobkit.storage.base import ObjectStore
 from jobkit.storage.open import open_store
 from jobkit.webhooks.deliveries import Deliveries
 from jobkit.webhooks.subscriptions import Webhooks
-from service.board import Board
+from service.job_cache import JobCache
 from service.streams import EventStreams
 from service.waiting import Waiters
 
@@ -44,7 +44,7 @@ class Services:
     deliveries: Deliveries
     estimates: Estimates
     streams: EventStreams
-    board: Board
+    job_cache: JobCache
     job_waiters: Waiters
     mesh_waiters: Waiters
     model_waiters: Waiters
@@ -87,7 +87,7 @@ def open_services(settings: Settings) -> Services:
         Deliveries(database),
         estimates,
         EventStreams(database, settings.max_streams),
-        Board(jobs, estimates),
+        JobCache(jobs, estimates),
         Waiters(jobs.unfinished, settings.max_waiters),
         Waiters(meshes.analysing, settings.max_waiters),
         Waiters(proofs.proving, settings.max_waiters),

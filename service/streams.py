@@ -20,7 +20,7 @@ from starlette.types import Receive, Scope, Send
 
 from jobkit.database.session import Database
 from jobkit.errors import DatabaseUnavailableError
-from jobkit.jobs.events import News, read_news
+from jobkit.jobs.events import NewEvents, read_new_events
 from jobkit.schema import Event
 from service.problems import RETRY_AFTER_S, ProblemError
 
@@ -189,9 +189,9 @@ class EventStreams:
             if found is None or found.is_all:
                 stream.end()
 
-    def _read(self, watched: Mapping[str, int]) -> dict[str, News]:
+    def _read(self, watched: Mapping[str, int]) -> dict[str, NewEvents]:
         with self._database.read() as session:
-            return read_news(session, watched, _MOST_EVENTS)
+            return read_new_events(session, watched, _MOST_EVENTS)
 
 
 class _StreamResponse(EventSourceResponse):

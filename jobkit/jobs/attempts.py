@@ -29,7 +29,7 @@ from jobkit.jobs.endings import (
 )
 from jobkit.jobs.events import append_event
 from jobkit.jobs.stage_seconds import StageSeconds, add_stages
-from jobkit.jobs.transitions import Move, make_move, update_job
+from jobkit.jobs.transitions import Transition, make_transition, update_job
 from jobkit.schema import Job, JobError, JobResult, JobState
 
 AT_WORK = (JobState.RUNNING.value, JobState.CANCELING.value)
@@ -85,9 +85,9 @@ class Attempts:
                 "stage": None,
                 "percent": 0.0,
             }
-            move = Move(JobState.QUEUED, JobState.RUNNING, "started", values)
+            move = Transition(JobState.QUEUED, JobState.RUNNING, "started", values)
             is_due = or_(JobRow.not_before.is_(None), JobRow.not_before <= now)
-            if not make_move(session, job_id, move, now, JobRow.attempt == number - 1, is_due):
+            if not make_transition(session, job_id, move, now, JobRow.attempt == number - 1, is_due):
                 raise StaleAttemptError(f"job {job_id} is {row.state} and can't be started now")
             session.add(AttemptRow(job_id=job_id, number=number, worker=worker, started_at=now))
             started = existing_job(session, job_id)

@@ -10,7 +10,7 @@ from sqlalchemy.orm import Session
 from jobkit.database.counters import count_attempt
 from jobkit.database.tables import AttemptRow, JobRow
 from jobkit.errors import StaleAttemptError
-from jobkit.jobs.transitions import Move, make_move
+from jobkit.jobs.transitions import Transition, make_transition
 from jobkit.schema import EventType, JobError, JobResult, JobState
 
 
@@ -72,8 +72,8 @@ def end_attempt(session: Session, attempt: Attempt, ending: Ending, now: datetim
     StaleAttemptError
         If the attempt is not the latest any more, or the job has ended.
     """
-    move = Move(JobState.RUNNING, ending.target, ending.event, ending.values, ending.data)
-    if make_move(session, attempt.job_id, move, now, JobRow.attempt == attempt.number):
+    move = Transition(JobState.RUNNING, ending.target, ending.event, ending.values, ending.data)
+    if make_transition(session, attempt.job_id, move, now, JobRow.attempt == attempt.number):
         _close(session, attempt, ending.outcome, now, ending.error)
         return ending.target
     cancel_attempt(session, attempt, now)
@@ -82,8 +82,8 @@ def end_attempt(session: Session, attempt: Attempt, ending: Ending, now: datetim
 
 def cancel_attempt(session: Session, attempt: Attempt, now: datetime) -> None:
     """End an attempt whose job is to be canceled; raise StaleAttemptError."""
-    move = Move(JobState.CANCELING, JobState.CANCELED, "canceled")
-    if not make_move(session, attempt.job_id, move, now, JobRow.attempt == attempt.number):
+    move = Transition(JobState.CANCELING, JobState.CANCELED, "canceled")
+    if not make_transition(session, attempt.job_id, move, now, JobRow.attempt == attempt.number):
         raise stale(attempt)
     _close(session, attempt, JobState.CANCELED.value, now, None)
 

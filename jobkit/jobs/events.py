@@ -47,7 +47,7 @@ def _to_event(row: EventRow) -> Event:
 
 
 @dataclass(frozen=True)
-class News:
+class NewEvents:
     """What has happened to a job since somebody looked last.
 
     Attributes
@@ -62,7 +62,7 @@ class News:
     is_all: bool
 
 
-def read_news(session: Session, watched: Mapping[str, int], limit: int) -> dict[str, News]:
+def read_new_events(session: Session, watched: Mapping[str, int], limit: int) -> dict[str, NewEvents]:
     """Look at many jobs at once: one query for all, and one more for each job that has changed.
 
     Parameters
@@ -80,9 +80,9 @@ def read_news(session: Session, watched: Mapping[str, int], limit: int) -> dict[
     """
     rows = session.execute(select(JobRow.id, JobRow.revision, JobRow.state).where(JobRow.id.in_(watched))).all()
 
-    def look(row: Row[str, int, str]) -> tuple[str, News]:
+    def look(row: Row[str, int, str]) -> tuple[str, NewEvents]:
         job_id, revision, state = row
         events = read_events(session, job_id, watched[job_id], limit) if revision > watched[job_id] else []
-        return job_id, News(events, JobState(state).is_terminal and len(events) < limit)
+        return job_id, NewEvents(events, JobState(state).is_terminal and len(events) < limit)
 
     return dict(readable(rows, look))

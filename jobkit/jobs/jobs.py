@@ -16,7 +16,7 @@ from jobkit.database.tables import JobRow, MeshRow, ModelRow
 from jobkit.errors import JobFinishedError, JobNotFoundError, MeshNotFoundError, ModelNotFoundError
 from jobkit.ids import new_job_id
 from jobkit.jobs.events import append_event, read_events
-from jobkit.jobs.transitions import Move, make_move
+from jobkit.jobs.transitions import Transition, make_transition
 from jobkit.schema import EventPage, Job, JobPage, JobSpec, JobState, ResolvedModel
 
 
@@ -154,9 +154,11 @@ class Jobs:
             now = shared_now(session)
             # Or it might start between the two moves, and fit neither.
             existing_job(session, job_id, locked=True)
-            _ = make_move(session, job_id, Move(JobState.QUEUED, JobState.CANCELED, "canceled"), now) or make_move(
-                session, job_id, Move(JobState.RUNNING, JobState.CANCELING, "cancel_requested"), now
+            transitions = (
+                Transition(JobState.QUEUED, JobState.CANCELED, "canceled"),
+                Transition(JobState.RUNNING, JobState.CANCELING, "cancel_requested"),
             )
+            any(make_transition(session, job_id, transition, now) for transition in transitions)
             job = self._show(existing_job(session, job_id))
         if job.state not in (JobState.CANCELED, JobState.CANCELING):
             raise JobFinishedError(f"job {job_id} has already ended as {job.state.value}")

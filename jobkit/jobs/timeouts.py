@@ -17,7 +17,7 @@ from jobkit.database.tables import AttemptRow, JobRow
 from jobkit.errors import JobNotFoundError, StaleAttemptError
 from jobkit.jobs.attempts import AT_WORK
 from jobkit.jobs.endings import Attempt, Ending, another_try, cancel_attempt, counts_out, end_attempt, failure
-from jobkit.jobs.transitions import Move, make_move
+from jobkit.jobs.transitions import Transition, make_transition
 from jobkit.schema import JobError, JobState
 
 # A worker that lives acknowledges a cancel within a second; after this long nobody waits for a dead one.
@@ -107,8 +107,8 @@ def _end(session: Session, row: JobRow, ending: Ending, now: datetime) -> None:
 
 def _give_up(session: Session, row: JobRow, error: JobError, now: datetime) -> None:
     wire = error.model_dump(mode="json")
-    move = Move(JobState.QUEUED, JobState.FAILED, "failed", {"error": wire}, {"error": wire})
-    if not make_move(session, row.id, move, now, JobRow.attempt == row.attempt):
+    move = Transition(JobState.QUEUED, JobState.FAILED, "failed", {"error": wire}, {"error": wire})
+    if not make_transition(session, row.id, move, now, JobRow.attempt == row.attempt):
         existing_job(session, row.id)
         raise StaleAttemptError(f"job {row.id} waits no more")
 

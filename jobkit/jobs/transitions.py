@@ -15,7 +15,7 @@ from jobkit.webhooks.outbox import write_messages
 
 
 @dataclass(frozen=True)
-class Move:
+class Transition:
     """A step in a job's life.
 
     Attributes
@@ -41,7 +41,9 @@ class Move:
             raise ValueError(f"a job never goes from {self.source} to {self.target}")
 
 
-def make_move(session: Session, job_id: str, move: Move, at: datetime, *fences: ColumnElement[bool]) -> bool:
+def make_transition(
+    session: Session, job_id: str, move: Transition, at: datetime, *fences: ColumnElement[bool]
+) -> bool:
     """Move a job if it is in the move's source state and within the fences; return whether it was."""
     values: dict[str, Any] = {"state": move.target.value, "revision": JobRow.revision + 1, "updated_at": at}
     if move.source in (JobState.RUNNING, JobState.CANCELING) and move.target != JobState.CANCELING:

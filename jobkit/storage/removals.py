@@ -56,7 +56,7 @@ def claim(database: Database, keys: Iterable[str]) -> list[str]:
     return free
 
 
-def let_go(database: Database, keys: Iterable[str]) -> None:
+def release(database: Database, keys: Iterable[str]) -> None:
     """End claims."""
     with database.write() as session:
         session.execute(delete(RemovalRow).where(RemovalRow.key.in_(list(keys))))

@@ -11,7 +11,7 @@ from jobkit.schema.webhooks import EXAMPLE_MESSAGE_ID
 from service.routes.common import CallerDep, WebhookIdPath, problems
 from service.routes.webhooks import QUEUED, delivery_response
 from service.services import ServicesDep
-from service.strict import StrictRoute
+from service.strict_validation import StrictRoute
 
 router = APIRouter(tags=["webhooks"], route_class=StrictRoute)
 

@@ -11,7 +11,7 @@ from starlette.responses import Response
 from jobkit.schema import EventPage
 from service.routes.common import JobIdPath, json_response, problems
 from service.services import ServicesDep
-from service.strict import StrictRoute
+from service.strict_validation import StrictRoute
 
 router = APIRouter(tags=["jobs"], route_class=StrictRoute)
 

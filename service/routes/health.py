@@ -16,7 +16,7 @@ from service.problems import RETRY_AFTER_S, ProblemError
 from service.readiness import Readiness, find_failures, read_readiness
 from service.routes.common import problems
 from service.services import Services, ServicesDep
-from service.strict import StrictRoute
+from service.strict_validation import StrictRoute
 
 router = APIRouter(tags=["service"], route_class=StrictRoute)
 _PAGE = """<!doctype html>

@@ -25,7 +25,7 @@ from service.routes.common import (
     problems,
 )
 from service.services import PrincipalDep, Services, ServicesDep
-from service.strict import StrictRoute
+from service.strict_validation import StrictRoute
 from service.submission import Submission, plan, submit
 from service.waiting import PreferHeader, note_applied, preferred_wait_s
 
@@ -94,11 +94,11 @@ async def get_job(
     """Show where a job stands. Its entity tag covers all but `eta_s`, which ages by itself."""
     has_waited = await _wait_for_end(services, job_id, prefer)
     if if_none_match is not None:
-        sight = await services.board.glance(job_id)
+        sight = await services.job_cache.glance(job_id)
         tag = etag_of(sight.glance.revision, sight.queue_position, sight.glance.is_pinned)
         if is_unchanged(request, tag):
             return Response(status_code=304, headers={"ETag": tag})
-    response = job_response(await services.board.job(job_id))
+    response = job_response(await services.job_cache.job(job_id))
     response.status_code = 200
     if has_waited:
         note_applied(response, prefer)
@@ -159,7 +159,7 @@ async def answer_submission(services: Services, submission: Submission, prefer: 
     """Submit a job, wait as long as the client prefers to, and say how it stands."""
     job, is_new = await run_in_threadpool(submit, services, submission)
     has_waited = await _wait_for_end(services, job.id, prefer)
-    response = job_response(await services.board.job(job.id))
+    response = job_response(await services.job_cache.job(job.id))
     if has_waited:
         note_applied(response, prefer)
     return note_replayed(response, is_new=is_new)
@@ -168,6 +168,6 @@ async def answer_submission(services: Services, submission: Submission, prefer: 
 async def _wait_for_end(services: Services, job_id: str, prefer: str | None) -> bool:
     """Wait as the client prefers; return whether that was possible, so that it can be told."""
     wait_s = min(preferred_wait_s(prefer), services.settings.max_wait_s)
-    if wait_s <= 0 or (await services.board.glance(job_id)).glance.state.is_terminal:
+    if wait_s <= 0 or (await services.job_cache.glance(job_id)).glance.state.is_terminal:
         return True
     return await services.job_waiters.wait(job_id, wait_s)

@@ -27,7 +27,7 @@ from service.routes.common import (
     problems,
 )
 from service.services import Services, ServicesDep
-from service.strict import StrictRoute
+from service.strict_validation import StrictRoute
 from service.submission import request_analysis
 from service.uploads import Upload, UploadRules, receive_upload
 from service.waiting import PreferHeader, note_applied, preferred_wait_s

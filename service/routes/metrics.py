@@ -8,7 +8,7 @@ from starlette.responses import Response
 
 from service.auth import METRICS_PATH
 from service.routes.common import problems
-from service.strict import StrictRoute
+from service.strict_validation import StrictRoute
 
 router = APIRouter(tags=["service"], route_class=StrictRoute)
 _TEXT: dict[int | str, dict[str, Any]] = {

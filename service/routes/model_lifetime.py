@@ -9,7 +9,7 @@ from jobkit.models import lifetime
 from jobkit.schema import DeprecationReason, ModelVersion
 from service.routes.common import AliasPath, ModelNamePath, VersionPath, problems
 from service.services import ServicesDep
-from service.strict import StrictRoute
+from service.strict_validation import StrictRoute
 
 router = APIRouter(tags=["models"], route_class=StrictRoute)
 

@@ -15,7 +15,7 @@ from service.routes.common import FILE, IdempotencyKey, problems
 from service.routes.jobs import ACCEPTED, answer_submission
 from service.routes.meshes import MESH_PREFIX, register_mesh
 from service.services import PrincipalDep, ServicesDep
-from service.strict import StrictRoute
+from service.strict_validation import StrictRoute
 from service.submission import Submission
 from service.uploads import UploadRules, receive_upload
 from service.waiting import PreferHeader

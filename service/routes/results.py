@@ -12,7 +12,7 @@ from jobkit.storage.base import result_key
 from service.content import OCTETS, Content, content_response, repaired_name
 from service.routes.common import BINARY, CONDITIONAL, JobIdPath, not_modified, problems
 from service.services import Services, ServicesDep
-from service.strict import StrictRoute
+from service.strict_validation import StrictRoute
 
 router = APIRouter(tags=["results"], route_class=StrictRoute)
 

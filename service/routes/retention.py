@@ -11,7 +11,7 @@ from jobkit.retention import pin_job as set_job_pin
 from jobkit.retention import pin_mesh as set_mesh_pin
 from service.routes.common import JobIdPath, MeshIdPath, problems
 from service.services import ServicesDep
-from service.strict import StrictRoute
+from service.strict_validation import StrictRoute
 
 router = APIRouter(tags=["retention"], route_class=StrictRoute)
 

@@ -10,7 +10,7 @@ from jobkit.schema import DeliveryDetail, NewWebhook, Webhook, WebhookChange, We
 from service.idempotency import note_replayed
 from service.routes.common import CallerDep, WebhookIdPath, described_header, json_response, linked, problems
 from service.services import ServicesDep
-from service.strict import StrictRoute
+from service.strict_validation import StrictRoute
 
 router = APIRouter(tags=["webhooks"], route_class=StrictRoute)
 

@@ -2,7 +2,7 @@
 
 from datetime import timedelta
 
-from dispatcher.duties import duties_of
+from dispatcher.periodic_tasks import duties_of
 from dispatcher.retention import Sweeper, remove_expired
 from dispatcher.unreferenced_objects import GRACE
 from jobkit.database.leadership import Leadership
@@ -57,15 +57,15 @@ def test_a_sweep_tells_what_it_found_in_either_direction(database: Database, sto
 def test_all_are_duties_of_the_dispatcher(settings: Settings, database: Database, store: ObjectStore) -> None:
     queue = TaskQueue(settings.redis_url.get_secret_value(), settings.queue_name, 60)
     leadership = Leadership(database, "dispatcher", "a", 60)
-    duties = {duty.name: duty for duty in duties_of(settings, database, store, queue, leadership)}
+    tasks = {task.name: task for task in duties_of(settings, database, store, queue, leadership)}
     upload(database, store, b"scan")
     age_rows(database, 31 * DAY)
-    assert duties["retention"].work(never) == "removed 0 jobs and 1 meshes"
-    assert duties["sweep"].work(never) == ""
-    assert {duties[name].interval_s for name in ("retention", "sweep")} == {settings.sweep_s}
+    assert tasks["retention"].work(never) == "removed 0 jobs and 1 meshes"
+    assert tasks["sweep"].work(never) == ""
+    assert {tasks[name].interval_s for name in ("retention", "sweep")} == {settings.sweep_s}
     assert len(keys_in(store)) == 1
     upload(database, store, b"kept")
     age_rows(database, 28 * DAY)
-    assert duties["scrub"].work(never) == "checked 1 objects, 4 bytes; 0 more are damaged"
-    assert duties["scrub"].work(never) == ""
+    assert tasks["scrub"].work(never) == "checked 1 objects, 4 bytes; 0 more are damaged"
+    assert tasks["scrub"].work(never) == ""
     queue.close()

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from dispatcher.unreferenced_objects import GRACE, Swept, sweep_objects
+from dispatcher.unreferenced_objects import GRACE, SweepResult, sweep_objects
 from jobkit.database.clock import utc_now
 from jobkit.database.session import Database
 from jobkit.errors import StoreUnavailableError
@@ -16,13 +16,13 @@ from jobkit.retention import delete_mesh
 from jobkit.schema import Job, Mesh
 from jobkit.storage.base import ObjectStore, result_key
 from jobkit.storage.open import open_store
-from jobkit.storage.removals import START_S, assure, claim, let_go
+from jobkit.storage.removals import START_S, assure, claim, release
 from tests.jobkit.holdings import AgingStore, KilledError, age_rows, fail, finish, keys_in, put, upload
 
 SOON = timedelta(minutes=1)
 
 
-def sweep(database: Database, store: ObjectStore) -> Swept:
+def sweep(database: Database, store: ObjectStore) -> SweepResult:
     return sweep_objects(database, store, utc_now())
 
 
@@ -42,7 +42,7 @@ def test_what_rows_name_stays_whatever_its_age(
     finish(database, store, Jobs(database).create(new_job)[0].id)
     before = keys_in(store)
     assert len(before) == 3
-    assert sweep_objects(database, store, utc_now() + 2 * GRACE) == Swept()
+    assert sweep_objects(database, store, utc_now() + 2 * GRACE) == SweepResult()
     assert keys_in(store) == before
 
 
@@ -52,11 +52,11 @@ def test_what_no_row_names_goes_after_a_day_and_not_before(
     before = keys_in(store)
     orphans = [put(aging, b"broken off"), put(aging, b"no model", MODEL_PREFIX)]
     orphans.append(put(aging, b"of a job that is gone", key=result_key("job_gone", 1, "repaired.ply")))
-    assert sweep(database, aging) == Swept()
+    assert sweep(database, aging) == SweepResult()
     aging.wait(GRACE - SOON)
-    assert sweep(database, aging) == Swept()
+    assert sweep(database, aging) == SweepResult()
     aging.wait(2 * SOON)
-    assert sweep(database, aging) == Swept(3, sum(orphan.size_bytes for orphan in orphans))
+    assert sweep(database, aging) == SweepResult(3, sum(orphan.size_bytes for orphan in orphans))
     assert keys_in(store) == before
 
 
@@ -80,9 +80,9 @@ def test_a_database_that_was_just_set_up_deletes_nothing(database: Database, sto
     put(store, b"of another time")
     aging = AgingStore(store)
     aging.wait(99 * GRACE)
-    assert sweep(database, aging) == Swept()
+    assert sweep(database, aging) == SweepResult()
     upload(database, aging, b"the first mesh")
-    assert sweep(database, aging) == Swept()
+    assert sweep(database, aging) == SweepResult()
     age_rows(database, GRACE + SOON)
     assert sweep(database, aging).objects == 1
 
@@ -92,7 +92,7 @@ def test_files_that_are_no_objects_are_left_alone(database: Database, data_dir: 
     odd = data_dir / "objects" / "meshes" / ".keep"
     odd.parent.mkdir(exist_ok=True)
     odd.touch()
-    assert sweep_objects(database, store, utc_now() + 2 * GRACE) == Swept()
+    assert sweep_objects(database, store, utc_now() + 2 * GRACE) == SweepResult()
     assert odd.exists()
 
 
@@ -107,7 +107,7 @@ def test_bytes_that_come_again_before_the_last_look_are_kept(database: Database,
             arrived.append(put(aging, b"ply\n").key)
 
     aging.on_list = send_again
-    assert sweep(database, aging) == Swept()
+    assert sweep(database, aging) == SweepResult()
     assert len(arrived) == 1
     assure(database, aging, arrived[0], patience_s=0)
 
@@ -158,7 +158,7 @@ def test_a_sweep_that_is_killed_anywhere_is_done_by_the_next(
 def test_a_sweep_breaks_off_when_told(database: Database, aging: AgingStore) -> None:
     put(aging, b"orphan")
     aging.wait(GRACE + SOON)
-    assert sweep_objects(database, aging, utc_now(), lambda: True) == Swept()
+    assert sweep_objects(database, aging, utc_now(), lambda: True) == SweepResult()
     assert sweep(database, aging).objects == 1
 
 
@@ -166,7 +166,7 @@ def test_one_sweep_at_a_time_claims_a_key_and_none_that_has_a_name(database: Dat
     named = Meshes(database).source(mesh.id).key
     assert claim(database, [named, "meshes/ab/a", "meshes/ab/b"]) == ["meshes/ab/a", "meshes/ab/b"]
     assert claim(database, ["meshes/ab/b", "meshes/ab/c"]) == ["meshes/ab/c"]
-    let_go(database, ["meshes/ab/a", "meshes/ab/b"])
+    release(database, ["meshes/ab/a", "meshes/ab/b"])
     assert claim(database, ["meshes/ab/b"]) == ["meshes/ab/b"]
 
 
@@ -186,5 +186,5 @@ def anchor(database: Database, store: ObjectStore) -> None:
 
 def test_a_job_that_was_accepted_keeps_its_mesh_from_the_sweep(database: Database, aging: AgingStore, job: Job) -> None:
     aging.wait(99 * GRACE)
-    assert sweep(database, aging) == Swept()
+    assert sweep(database, aging) == SweepResult()
     assert aging.size(Meshes(database).source(job.mesh_id).key) == 4

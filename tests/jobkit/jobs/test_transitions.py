@@ -1,6 +1,6 @@
 import pytest
 
-from jobkit.jobs.transitions import Move
+from jobkit.jobs.transitions import Transition
 from jobkit.schema import TRANSITIONS, JobState
 
 
@@ -8,7 +8,7 @@ from jobkit.schema import TRANSITIONS, JobState
 @pytest.mark.parametrize("target", JobState)
 def test_only_the_drawn_steps_can_be_made(source: JobState, target: JobState) -> None:
     if target in TRANSITIONS[source]:
-        Move(source, target, "started")
+        Transition(source, target, "started")
     else:
         with pytest.raises(ValueError, match="never"):
-            Move(source, target, "started")
+            Transition(source, target, "started")

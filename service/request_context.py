@@ -23,7 +23,7 @@ _DEFAULT_HEADERS: Mapping[str, str] = {
 }
 
 
-class FrameMiddleware:
+class RequestContextMiddleware:
     """Gives each request an id, each response its headers, and each fault a problem document and a log entry."""
 
     def __init__(self, app: ASGIApp) -> None:

@@ -11,8 +11,8 @@ from collections.abc import Callable
 from jobkit.requeue import Reconciled
 
 
-class Keeper:
-    """The duty that looks after jobs.
+class LeaseReaper:
+    """The periodic task that looks after jobs.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
 """Everything that a leading dispatcher does, and how often."""
 
-from dispatcher.keeper import Keeper
-from dispatcher.loop import Duty
+from dispatcher.lease_reaper import LeaseReaper
+from dispatcher.loop import PeriodicTask
 from dispatcher.retention import Sweeper, remove_expired
 from dispatcher.scrub import ROUND_S
 from dispatcher.scrubbing import Scrubbing
@@ -19,7 +19,7 @@ _HOUR_S = 3_600.0
 
 def duties_of(
     settings: Settings, database: Database, store: ObjectStore, queue: TaskQueue, leadership: Leadership
-) -> list[Duty]:
+) -> list[PeriodicTask]:
     """Return the duties.
 
     Parameters
@@ -32,7 +32,7 @@ def duties_of(
         Of this dispatcher.
     """
     limits = TimeLimits(settings.queue_time_limit_s, settings.total_time_limit_s, settings.job_memory_limit_mb)
-    keeper = Keeper(
+    keeper = LeaseReaper(
         lambda takes_leases: reconcile(database, queue, limits, takes_leases=takes_leases),
         lambda: leadership.found_unled_at,
         settings.heartbeat_s,
@@ -40,12 +40,12 @@ def duties_of(
     sweeper = Sweeper(database, store)
     scrubbing = Scrubbing(settings, database, store)
     return [
-        Duty("jobs", settings.dispatch_s, keeper.look),
-        Duty("webhooks", settings.dispatch_s, lambda is_over: deliver_webhooks(database, settings, is_over)),
-        Duty(
+        PeriodicTask("jobs", settings.dispatch_s, keeper.look),
+        PeriodicTask("webhooks", settings.dispatch_s, lambda is_over: deliver_webhooks(database, settings, is_over)),
+        PeriodicTask(
             "webhook log", _HOUR_S, lambda is_over: forget_old_deliveries(database, settings.webhook_log_days, is_over)
         ),
-        Duty("retention", settings.sweep_s, lambda is_over: remove_expired(settings, database, store, is_over)),
-        Duty("sweep", settings.sweep_s, sweeper.sweep),
-        Duty("scrub", ROUND_S, scrubbing.round),
+        PeriodicTask("retention", settings.sweep_s, lambda is_over: remove_expired(settings, database, store, is_over)),
+        PeriodicTask("sweep", settings.sweep_s, sweeper.sweep),
+        PeriodicTask("scrub", ROUND_S, scrubbing.round),
     ]

@@ -13,7 +13,7 @@ from jobkit.jobs.jobs import Glance, Jobs, NewJob
 from jobkit.meshes import Meshes
 from jobkit.schema import Job, JobSpec, JobState, ResolvedModel
 from jobkit.storage.base import ObjectStore
-from service.board import Board
+from service.job_cache import JobCache
 from tests.service.rounds import most_in_a_round
 from tests.waiting import GUARD_S
 
@@ -61,7 +61,7 @@ def test_who_comes_during_a_look_shares_the_next_one_and_sees_what_has_changed_m
     found: dict[int, Any] = {}
 
     async def look(place: int) -> None:
-        found[place] = await board.job(job.id)
+        found[place] = await job_cache.job(job.id)
 
     async def live() -> None:
         async with anyio.create_task_group() as tasks:
@@ -73,7 +73,7 @@ def test_who_comes_during_a_look_shares_the_next_one_and_sees_what_has_changed_m
             await anyio.sleep(0)
             jobs.may_go_on.set()
 
-    board = Board(jobs, Estimates(database))
+    job_cache = JobCache(jobs, Estimates(database))
     anyio.run(live)
     assert len(jobs.glanced) == 2
     assert {found[place].state for place in range(1, 50)} == {JobState.RUNNING}
@@ -83,57 +83,57 @@ def test_a_job_is_read_whole_once_for_each_change_and_only_if_somebody_wants_it(
     database: Database, job: Job, jobs: CountingJobs
 ) -> None:
     jobs.may_go_on.set()
-    board = Board(jobs, Estimates(database))
+    job_cache = JobCache(jobs, Estimates(database))
 
     async def live() -> None:
-        await board.glance(job.id)
-        assert (await board.job(job.id)).revision == 1
-        await board.job(job.id)
+        await job_cache.glance(job.id)
+        assert (await job_cache.job(job.id)).revision == 1
+        await job_cache.job(job.id)
         await anyio.to_thread.run_sync(Attempts(database).start, job.id, "test", 30.0)
-        assert (await board.glance(job.id)).glance.revision == 2
-        assert (await board.job(job.id)).revision == 2
+        assert (await job_cache.glance(job.id)).glance.revision == 2
+        assert (await job_cache.job(job.id)).revision == 2
 
     anyio.run(live)
     assert [ids for ids in jobs.read_whole if ids] == [{job.id}, {job.id}]
 
 
 def test_what_the_board_shows_is_what_the_database_holds(database: Database, job: Job) -> None:
-    board = Board(Jobs(database), Estimates(database))
+    job_cache = JobCache(Jobs(database), Estimates(database))
     attempts = Attempts(database)
 
     async def live() -> None:
         attempt = attempts.start(job.id, "test", 30).attempt
         for percent in (10.0, 20.0):
             attempts.report_progress(attempt, "fill", percent)
-            assert await board.job(job.id) == Jobs(database).get(job.id)
+            assert await job_cache.job(job.id) == Jobs(database).get(job.id)
 
     anyio.run(live)
 
 
 def test_one_unknown_job_leaves_the_others_their_answers(database: Database, job: Job) -> None:
-    board = Board(Jobs(database), Estimates(database))
+    job_cache = JobCache(Jobs(database), Estimates(database))
     refused = []
 
     async def unknown() -> None:
         with pytest.raises(JobNotFoundError):
-            await board.job("job_" + "0" * 26)
+            await job_cache.job("job_" + "0" * 26)
         refused.append(True)
 
     async def live() -> None:
         async with anyio.create_task_group() as tasks:
             tasks.start_soon(unknown)
-            assert (await board.job(job.id)).id == job.id
+            assert (await job_cache.job(job.id)).id == job.id
 
     anyio.run(live)
     assert refused
 
 
 def test_a_client_that_hangs_up_takes_nobody_elses_look_away(database: Database, job: Job, jobs: CountingJobs) -> None:
-    board = Board(jobs, Estimates(database))
+    job_cache = JobCache(jobs, Estimates(database))
     found = []
 
     async def look() -> None:
-        found.append(await board.job(job.id))
+        found.append(await job_cache.job(job.id))
 
     async def live() -> None:
         async with anyio.create_task_group() as tasks, anyio.create_task_group() as hasty:
@@ -151,7 +151,7 @@ def test_a_client_that_hangs_up_takes_nobody_elses_look_away(database: Database,
 def test_those_that_shared_a_look_write_their_answers_one_after_the_other(
     database: Database, job: Job, jobs: CountingJobs
 ) -> None:
-    board = Board(jobs, Estimates(database))
+    job_cache = JobCache(jobs, Estimates(database))
     jobs.may_go_on.set()
-    assert anyio.run(most_in_a_round, lambda: board.job(job.id), 100) == 1
+    assert anyio.run(most_in_a_round, lambda: job_cache.job(job.id), 100) == 1
     assert len(jobs.glanced) < 10

@@ -43,7 +43,7 @@ class _Batch:
     task: asyncio.Task[dict[str, Sight]] | None = None
 
 
-class Board:
+class JobCache:
     """Where all requests of a process look for jobs."""
 
     def __init__(self, jobs: Jobs, estimates: Estimates) -> None:
