@@ -6,7 +6,7 @@ READY  := $(VENV)/.ready
 # Twice quiet: errors only.
 PIP    := $(BIN)/python -m pip --quiet --quiet --disable-pip-version-check
 
-.PHONY: demo test test-slow test-postgres explore faults fuzz mutants flood contract check serve openapi samples lock sbom bench bench-quality bench-scans clean
+.PHONY: demo test test-slow test-postgres test-lowest explore faults fuzz mutants flood contract check serve openapi samples lock sbom bench bench-quality bench-scans clean
 
 $(READY): pyproject.toml constraints.txt
 	@echo "setting up $(VENV); this takes a few minutes the first time ..." >&2
@@ -35,6 +35,15 @@ test-slow: $(READY)       ## the tests that take long: whole campaigns, training
 test-postgres: $(READY)   ## the tests of service and workers on PostgreSQL and S3, both started by the tests
 	@TEST_BACKEND=postgres-s3 $(TEST) \
 		tests/jobkit tests/service tests/worker tests/dispatcher tests/integration tests/contract tests/onebox
+
+# In an environment of its own. Old versions warn of what they did not know yet, so warnings are no errors here.
+LOWEST := .venv-lowest
+test-lowest:              ## the tests with the lowest versions that pyproject.toml allows
+	@$(PYTHON) -m venv $(LOWEST)
+	@$(PYTHON) -m deploy.lowest > $(LOWEST)/lowest.txt
+	@$(LOWEST)/bin/python -m pip --quiet install --constraint $(LOWEST)/lowest.txt --editable '.[service,dev]'
+	@touch $(LOWEST)/.ready
+	@$(MAKE) --no-print-directory test VENV=$(LOWEST) ARGS="-W default $(ARGS)"
 
 explore: $(READY)         ## the property tests with other examples than `make test` has: make explore ARGS="tests/quadpatch"
 	@TEST_EXAMPLES=explore $(TEST) -m hypothesis $(ARGS)
