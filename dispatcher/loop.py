@@ -1,7 +1,7 @@
-"""Duties, each in a thread of its own, done by whoever leads.
+"""Periodic tasks, each in a thread of its own, done by the dispatcher that leads.
 
-A slow periodic task, such as a webhook that does not answer, holds up no other one. Whatever goes wrong in a periodic task is logged, and
-the periodic task is done again at its next turn.
+A slow one, such as a webhook that does not answer, holds up no other. What goes wrong in a task is logged, and the task
+is done again at its next turn.
 """
 
 import logging

@@ -1,4 +1,4 @@
-"""The periodic task that reads all stored objects, a little at a time, and looks whether they are still what was stored."""
+"""The periodic task that reads all stored objects, a little at a time, and checks that they are what was stored."""
 
 from collections.abc import Callable
 
