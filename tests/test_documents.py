@@ -31,7 +31,13 @@ from service.problems import to_problem_error
 
 E = TypeVar("E", bound=Exception)
 ROOT = Path(__file__).resolve().parent.parent
-DOCUMENTS = [ROOT / "README.md", ROOT / "SECURITY.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").glob("*.md"))]
+DOCUMENTS = [
+    ROOT / "README.md",
+    ROOT / "SECURITY.md",
+    ROOT / "CONTRIBUTING.md",
+    ROOT / "CHANGELOG.md",
+    *sorted((ROOT / "docs").glob("*.md")),
+]
 PACKAGES = ("quadpatch", "jobkit", "service", "worker", "training", "client", "onebox", "benchmarks", "tests")
 # Only bases of others; nothing raises them.
 BASES = {"quadpatch_error", "invalid_mesh", "jobkit_error", "not_found", "conflict"}
@@ -107,7 +113,7 @@ def test_every_state_verdict_and_stage_is_explained() -> None:
 
 def test_every_reason_of_a_hole_is_explained() -> None:
     method = read("docs/method.md")
-    source = read("quadpatch/mesh/holes.py") + read("quadpatch/assessment.py")
+    source = read("quadpatch/mesh/holes.py") + read("quadpatch/recipes/assessment.py")
     # A code is followed by a sentence, or stands behind its verdict.
     reasons = re.findall(r'"([a-z_]+)",\s*f?"[^"]* [^"]*"', source)
     reasons += re.findall(r'"(?:filled_smooth|refused)", "(\w+)"', source)

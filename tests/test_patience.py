@@ -14,7 +14,7 @@ MAY_LOOK_AT_THE_CLOCK = {
     "client/test_watching.py": "its server stays silent",
     "dispatcher/test_keeper.py": "a moment by the clock is what is handed over",
     "dispatcher/test_sending.py": "its server is slow",
-    "jobkit/test_leadership.py": "a moment by the clock is what is handed back",
+    "jobkit/database/test_leadership.py": "a moment by the clock is what is handed back",
     "worker/rogue_engine.py": "an engine that hangs",
 }
 CLOCKS = {"sleep", "monotonic", "monotonic_ns", "perf_counter", "perf_counter_ns", "process_time", "time", "time_ns"}
