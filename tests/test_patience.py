@@ -12,7 +12,7 @@ TESTS = Path(__file__).parent
 MAY_LOOK_AT_THE_CLOCK = {
     "waiting.py": "waits for everybody",
     "client/test_watching.py": "its server stays silent",
-    "dispatcher/test_keeper.py": "a moment by the clock is what is handed over",
+    "dispatcher/test_lease_reaper.py": "a moment by the clock is what is handed over",
     "dispatcher/test_sending.py": "its server is slow",
     "jobkit/database/test_leadership.py": "a moment by the clock is what is handed back",
     "worker/rogue_engine.py": "an engine that hangs",
