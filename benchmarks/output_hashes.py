@@ -53,3 +53,7 @@ def _without_seconds(value: Any) -> Any:
     if isinstance(value, dict):
         return {name: _without_seconds(item) for name, item in value.items() if name != "seconds"}
     return [_without_seconds(item) for item in value] if isinstance(value, list) else value
+
+
+if __name__ == "__main__":
+    main()
