@@ -36,7 +36,7 @@ DOCUMENTS = [
     ROOT / "SECURITY.md",
     ROOT / "CONTRIBUTING.md",
     ROOT / "CHANGELOG.md",
-    *sorted((ROOT / "docs").glob("*.md")),
+    *sorted((ROOT / "docs").rglob("*.md")),
 ]
 PACKAGES = ("quadpatch", "jobkit", "service", "worker", "training", "client", "onebox", "benchmarks", "tests")
 # Only bases of others; nothing raises them.
