@@ -87,7 +87,7 @@ class Files:
 
 
 def repair(client: Client, screen: Screen, task: Task) -> Job:
-    """Upload, start, wait, fetch; a job that nobody waits for any more is canceled.
+    """Upload, start, wait, fetch; a job is canceled when the wait for it ends early.
 
     Raises
     ------

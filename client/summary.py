@@ -9,7 +9,7 @@ _LONGEST_LIST = 6
 
 
 def verdicts(counts: HoleCounts) -> str:
-    """Say what became of the holes, without those verdicts that nobody got."""
+    """Say what became of the holes, without verdicts that no hole got."""
     parts = [
         f"{counts.filled} filled with the model" if counts.filled else "",
         f"{counts.filled_smooth} filled smoothly" if counts.filled_smooth else "",

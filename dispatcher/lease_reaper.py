@@ -1,8 +1,8 @@
-"""Looks after jobs, and takes no lease for run out that nobody could renew.
+"""Looks after jobs, and takes no lease for run out that could not be renewed.
 
-While the database is away, no worker can renew its lease, and all of them run out at once. So where nobody has led for
-longer than a handover takes, which is what an outage looks like afterwards, workers get one heartbeat to say that they
-live.
+While the database is away, no worker can renew its lease, and all of them run out at once. So where no dispatcher has
+led for longer than a handover takes, which is what an outage looks like afterwards, workers get one heartbeat to say
+that they live.
 """
 
 import time

@@ -58,7 +58,7 @@ class Dispatch:
         self._stopped.set()
 
     def run(self) -> None:
-        """Work until stopped, then let somebody else lead."""
+        """Work until stopped, then let another dispatcher lead."""
         threads = [threading.Thread(target=self._keep_doing, args=(task,), name=task.name) for task in self._duties]
         for thread in threads:
             thread.start()

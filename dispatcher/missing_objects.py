@@ -1,4 +1,4 @@
-"""Rows whose object is gone from the store: a disk that was restored in part, a bucket that somebody tidied up.
+"""Rows whose object is gone from the store: a disk that was restored in part, a bucket that was tidied by hand.
 
 A mesh is marked as rejected with the code `mesh_missing`, and jobs that still wait for it fail with the same; it is
 analysed again once its bytes are there again, by an upload or because the disk is back. A finished job keeps its row

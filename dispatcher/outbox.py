@@ -57,7 +57,7 @@ def claim_due(database: Database, most: int, at_work: Mapping[str, int], claim_s
         Most claims.
     at_work : mapping of str to int
         How many deliveries to each subscriber are being sent now; none gets more than MAX_PER_WEBHOOK at a time, so a
-        slow one holds up nobody but itself.
+        slow one holds up no other.
     claim_s : float
         Seconds after which a delivery is due again that nothing was heard of.
     """
@@ -91,7 +91,7 @@ def note_answer(database: Database, claim: Claim, answer: Answer, chance: float)
     """
     with database.write() as session:
         now = shared_now(session)
-        # The subscription before the delivery, as everybody who writes both: else two of them wait for each other.
+        # The subscription before the delivery, as all code that writes both: else two writers wait for each other.
         locked = select(WebhookRow).where(WebhookRow.id == claim.webhook_id).with_for_update()
         webhook = session.scalars(locked).one_or_none()
         if webhook is None or session.get(DeliveryRow, claim.delivery_id) is None:

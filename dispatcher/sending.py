@@ -3,7 +3,7 @@
 The name in the URL is resolved once, all its addresses are judged, and the connection goes to one of them; certificate
 and Host header are those of the name. No redirect is followed, no proxy asked, no cookie kept, no connection used
 twice: two names may share an address, and what was checked for one of them says nothing of the other. What a receiver
-answers besides its status is read up to a bound and thrown away, so nobody can read an inner service through this one.
+answers besides its status is read up to a bound and thrown away, so an inner service can't be read through this one.
 """
 
 import asyncio
@@ -77,7 +77,7 @@ class Sender:
         self._allowed = allowed
         self._timeout_s = timeout_s
         self._look_up = look_up
-        # Of their own: names that nobody answers for must not keep others, or the database, waiting.
+        # Of their own: names that no server answers for must not keep others, or the database, waiting.
         self._resolvers = ThreadPoolExecutor(_MAX_RESOLVERS, "resolver")
 
     @cached_property

@@ -1,11 +1,11 @@
 """Objects that no row names: left behind by crashes, deletions and uploads that were broken off.
 
-Only an object that has not changed for GRACE is deleted: whoever writes an object lets a row name it soon after. And a
+Only an object that has not changed for GRACE is deleted: the writer of an object lets a row name it soon after. And a
 database that is younger than that deletes nothing at all: one that was just set up, by a slip of a setting or before
 its backup was restored, knows nothing of what the store holds. (What tells its age are its models and meshes: the
 models that ship are registered at the first start, and stay.)
 
-A store belongs to one database. Where two share one, each takes the objects of the other for nobody's.
+A store belongs to one database. Where two share one, each takes the objects of the other for unreferenced.
 """
 
 import contextlib
@@ -50,7 +50,7 @@ class SweepResult:
 def sweep_objects(
     database: Database, store: ObjectStore, now: datetime, is_over: Callable[[], bool] = lambda: False
 ) -> SweepResult:
-    """Delete objects that no row names and that nobody touched for GRACE.
+    """Delete objects that no row names and that did not change for GRACE.
 
     Parameters
     ----------
@@ -95,7 +95,7 @@ def _old_objects(store: ObjectStore, prefix: str, before: datetime) -> Iterator[
 
 
 def _sweep_results(database: Database, store: ObjectStore, batch: list[ListedObject]) -> SweepResult:
-    """Delete results of jobs that are gone, of attempts that published nothing, and of names that nobody gave."""
+    """Delete results of jobs that are gone, of attempts that published nothing, and of names that were never given."""
     wanted = _wanted_results(database, {_job_of(found.key) for found in batch})
     return _delete(store, (found for found in batch if not _is_wanted(found.key, wanted)))
 
@@ -152,7 +152,7 @@ def _remove(database: Database, store: ObjectStore, folder: str, keys: list[str]
 def _delete(store: ObjectStore, orphans: Iterable[ListedObject]) -> SweepResult:
     swept = SweepResult()
     for orphan in orphans:
-        # A file that somebody else put there under no name of ours stays.
+        # A file that was put there under no name of ours stays.
         with contextlib.suppress(ObjectNotFoundError):
             store.delete(orphan.key)
             swept += SweepResult(1, orphan.size_bytes)

@@ -1,8 +1,8 @@
 """Which addresses messages may be sent to: those that the whole world can reach, and those that are allowed by setting.
 
-Whoever may subscribe chooses where this service sends requests. So it sends none to its own network, where a metadata
-service or a database listens, unless the operator allows it. A name is resolved once; all of its addresses are judged,
-and the connection goes to one of these, so a name that changes its meaning in between gains nothing.
+A client that may subscribe chooses where this service sends requests. So it sends none to its own network, where a
+metadata service or a database listens, unless the operator allows it. A name is resolved once; all of its addresses are
+judged, and the connection goes to one of these, so a name that changes its meaning in between gains nothing.
 """
 
 import ipaddress

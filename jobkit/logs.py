@@ -1,6 +1,6 @@
 """One way of logging for all processes: a line of text for a terminal, or one JSON object a line for machines.
 
-What a line is about (the request, the job, the attempt) is kept in the context, so that whoever logs below need not
+What a line is about (the request, the job, the attempt) is kept in the context, so that code below need not
 know it. Threads start with an empty context: one that works for a job is given a copy of its maker's.
 """
 

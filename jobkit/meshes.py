@@ -138,7 +138,7 @@ class Meshes:
     def forgive(self, analysis: Analysis, delay_s: float = 0.0) -> None:
         """Hand an analysis back, and don't count it: what ended it lies outside of the mesh.
 
-        Nobody takes the mesh for `delay_s` seconds. Raises StaleAttemptError.
+        No worker takes the mesh for `delay_s` seconds. Raises StaleAttemptError.
         """
         values = {"lease_until": None, "enqueued_at": None, "forgiven": MeshRow.forgiven + 1}
         self._write(analysis, values, delay_s)

@@ -25,7 +25,7 @@ PROVE_MODEL = "worker.jobs.prove_model"
 _MARGIN_S = 60
 _SOCKET_TIMEOUT_S = 5.0
 _CONNECT_TIMEOUT_S = 2.0
-# A connection that broke is made anew once. Nobody waits here for a server that is away: the database has the job.
+# A connection that broke is made anew once. A server that is away is not waited for: the database has the job.
 _RETRIES = 1
 _RETRY_PAUSE_S = 0.1
 
@@ -88,7 +88,7 @@ class TaskQueue:
             try:
                 persistence, memory = self.connection.info("persistence"), self.connection.info("memory")
             except ResponseError:
-                return None  # not everybody may ask, least of all at those who run servers for others
+                return None  # not every user may ask, least of all on a server that is rented
         keeps_log, policy = persistence.get("aof_enabled"), memory.get("maxmemory_policy")
         if keeps_log is None or policy is None:
             return None

@@ -27,7 +27,7 @@ from jobkit.errors import (
 from jobkit.schema import JobState
 from jobkit.storage.base import ObjectStore
 
-# Of one transaction: long enough to be quick, short enough to hold up nobody.
+# Of one transaction: long enough to be quick, short enough to hold up no other.
 BATCH = 50
 ENDED = tuple(state.value for state in JobState if state.is_terminal)
 
@@ -93,7 +93,7 @@ def delete_mesh(database: Database, mesh_id: str) -> None:
 def expire_jobs(
     database: Database, store: ObjectStore, days: float, now: datetime, is_over: Callable[[], bool] = lambda: False
 ) -> int:
-    """Remove finished jobs that nobody pinned and that ended long ago.
+    """Remove finished jobs that are not pinned and that ended long ago.
 
     Parameters
     ----------
@@ -126,7 +126,7 @@ def expire_jobs(
 
 
 def expire_meshes(database: Database, days: float, now: datetime, is_over: Callable[[], bool] = lambda: False) -> int:
-    """Remove meshes that nobody pinned, that no job names, and that came out of use long ago.
+    """Remove meshes that are not pinned, that no job names, and that came out of use long ago.
 
     Parameters
     ----------

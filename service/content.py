@@ -33,7 +33,7 @@ class Content:
     key, sha256 : str
     size_bytes : int
     filename : str
-        Proposed to whoever saves it.
+        Proposed to the client that saves it.
     media_type : str
     """
 

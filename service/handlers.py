@@ -40,7 +40,7 @@ def install_handlers(app: FastAPI, routes: Sequence[BaseRoute]) -> None:
 
     @app.exception_handler(ClientDisconnect)
     async def on_disconnect(request: Request, error: ClientDisconnect) -> Response:
-        # Nobody is there to read it; the status only shows in the access log.
+        # The client is gone; the status only shows in the access log.
         return Response(status_code=HTTPStatus.BAD_REQUEST)
 
     @app.exception_handler(HTTPException)

@@ -2,8 +2,8 @@
 
 Most requests are polls, and most polls find nothing new. So requests that come while a look is under way wait for the
 next one and share it: one hop to a thread and one short query for all of them, however many there are. A job is read
-whole only if somebody wants it whole and it has changed since it was read last. Nobody is told of a moment before the
-request: a look that has begun takes nobody in.
+whole only if a caller wants it whole and it has changed since it was read last. No caller is told of a moment before
+the request: a look that has begun takes no further caller in.
 """
 
 import asyncio
@@ -80,7 +80,7 @@ class JobCache:
         return sight
 
     def _keep_fresh(self) -> None:
-        """See to estimates beside the looks: a long queue takes longer to go through than anybody should wait."""
+        """See to estimates beside the looks: a long queue takes longer to go through than a caller should wait."""
         if self._estimates.is_due and (self._refreshing is None or self._refreshing.done()):
             self._refreshing = asyncio.create_task(self._refresh())
 

@@ -1,7 +1,7 @@
 """What the service stands on, and what of it has to work for it to take jobs.
 
 To accept a job needs the database, which holds the promise, and the store, which holds the mesh. Without the queue or a
-dispatcher jobs wait, none is lost, and what should show is that somebody has to look: `degraded`, not a refusal.
+dispatcher jobs wait, none is lost, and what should show is that an operator has to look: `degraded`, not a refusal.
 """
 
 import logging

@@ -72,7 +72,7 @@ class TrainOptions:
 
 @dataclass(frozen=True)
 class Status:
-    """How a run stands, for whoever watches it.
+    """How a run stands, for the person who watches it.
 
     Attributes
     ----------

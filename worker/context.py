@@ -1,7 +1,7 @@
 """What every task of a worker process shares: opened once at start, handed to the tasks by name.
 
 RQ calls tasks by their dotted path with plain arguments, so the context has to be found rather than passed; it is set
-by `python -m worker` and by nobody else.
+by `python -m worker` alone.
 """
 
 import secrets

@@ -12,7 +12,7 @@ Codes made here, besides those of `quadpatch.errors`, which pass through:
     out_of_memory               more memory than the limit
     time_limit_exceeded         more wall-clock time than the limit
     engine_crashed              the engine died of a signal, or without a word; another attempt may succeed
-    engine_error                an error that nobody foresaw
+    engine_error                unexpected internal error
     no_space                    the disk of the worker is full; the attempt is not counted
     disk_error                  the disk of the worker can't be used; the attempt is not counted
     store_unavailable           the object store can't be read or written; the attempt is not counted
@@ -30,7 +30,7 @@ from dataclasses import dataclass
 from jobkit.text import printable
 
 _LONGEST_CODE = 64
-# A full disk or a store that is away comes back by itself or by somebody's hand; asking every moment helps neither.
+# A full disk or a store that is away comes back by itself or by an operator's hand; asking every moment helps neither.
 OUTAGE_DELAY_S = 10.0
 _BROKEN_DISK = (errno.EIO, errno.EROFS, errno.EACCES, errno.EPERM, errno.ESTALE, errno.EMFILE, errno.ENFILE)
 
@@ -40,7 +40,7 @@ class StopReason(enum.Enum):
 
     CANCELED = "canceled"
     DRAINED = "drained"
-    LOST = "lost"  # the attempt belongs to somebody else by now
+    LOST = "lost"  # the attempt belongs to another worker by now
 
 
 @dataclass(frozen=True)

@@ -34,13 +34,13 @@ class Vitals:
     renew : callable
         Renews the lease, given the most memory that was seen, in MiB; raises StaleAttemptError.
     is_canceled : callable
-        Reads whether somebody asked for the end.
+        Reads whether a client asked for the end.
     report : callable
         Writes stage and percent; raises StaleAttemptError.
     heartbeat_s : float
         Seconds between two renewals.
     patience_s : float
-        Seconds for which a database that is away is waited for: while it is, nobody else can start the job either.
+        Seconds for which a database that is away is waited for: while it is, no other worker can start the job either.
     """
 
     renew: Callable[[int], object]

@@ -1,4 +1,4 @@
-"""How a task ended: with a value, a failure, or because somebody wanted it to end."""
+"""How a task ended: with a value, a failure, or because it was asked to end."""
 
 import logging
 from collections.abc import Callable, Iterator
@@ -51,7 +51,7 @@ def outcome_of(work: Callable[[], T], subject: str) -> T | Failure | StopReason:
         return from_os_error(error, None)
     except Exception:  # noqa: BLE001 - the worker's outermost frame: the client gets a code, the log the traceback
         _log.exception("%s failed", subject)
-        return Failure("engine_error", "the worker met an error that nobody foresaw")
+        return Failure("engine_error", "unexpected internal error of the worker")
 
 
 @contextmanager

@@ -180,7 +180,7 @@ def _vitals(context: Context, started: StartedAttempt) -> Vitals:
 
 
 def _is_canceled(job: Job, attempt: Attempt) -> bool:
-    """Tell whether somebody asked for the end; raise StaleAttemptError where the attempt has ended without its worker.
+    """Tell whether a client asked for the end; raise StaleAttemptError where the attempt has ended without its worker.
 
     The dispatcher does not wait long for a worker that is slow to acknowledge a cancel.
     """

@@ -42,7 +42,7 @@ _CLOSE_UPS = Picture("closeups", CLOSE_UPS_NAME, "closeups", "there are no close
 def store_result(
     folder: Path, request: EngineRequest, attempt: Attempt, store: ObjectStore, seconds: float
 ) -> JobResult:
-    """Copy an engine's files to where this attempt may write, and describe them; nobody sees them yet.
+    """Copy an engine's files to where this attempt may write, and describe them; no row names them yet.
 
     Parameters
     ----------

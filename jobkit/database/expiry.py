@@ -1,4 +1,4 @@
-"""When something is removed if nobody keeps it."""
+"""When something is removed unless it is kept."""
 
 from datetime import datetime, timedelta
 
@@ -13,7 +13,7 @@ def expiry(since: datetime | None, days: float, is_pinned: bool) -> datetime | N
     days : float
         How long it is kept after that; 0: for ever.
     is_pinned : bool
-        Whether somebody asked to keep it.
+        Whether it is to be kept.
     """
     if since is None or days == 0 or is_pinned:
         return None

@@ -42,12 +42,12 @@ class Leadership:
     holder : str
         Name of the candidate; no two may have the same.
     lease_s : float
-        Seconds without a renewal until somebody else may lead.
+        Seconds without a renewal until another candidate may lead.
 
     Attributes
     ----------
     found_unled_at : float
-        When, by the monotonic clock, this candidate last found that nobody had led for longer than a handover takes:
+        When, by the monotonic clock, this candidate last found that none had led for longer than a handover takes:
         all dispatchers were gone, or the database was. Minus infinity before that.
     """
 
@@ -59,7 +59,7 @@ class Leadership:
         self.found_unled_at = float("-inf")
 
     def lead(self) -> bool:
-        """Take the lead if nobody has it, or renew it; return whether this candidate leads now."""
+        """Take the lead if it is free, or renew it; return whether this candidate leads now."""
         with self._database.write() as session:
             now = shared_now(session)
             until = now + timedelta(seconds=self._lease_s)
@@ -80,7 +80,7 @@ class Leadership:
         return True
 
     def resign(self) -> None:
-        """Let somebody else lead at once; nothing happens where this candidate does not."""
+        """Let another candidate lead at once; nothing happens where this candidate does not."""
         with self._database.write() as session:
             session.execute(delete(LeaderRow).where(LeaderRow.name == self._name, LeaderRow.holder == self._holder))
 
@@ -95,7 +95,7 @@ class Leadership:
 
 
 def current_leader(database: Database, name: str) -> Leader | None:
-    """Return who led last; None where nobody ever did, or the last one resigned."""
+    """Return who led last; None where none ever did, or the last one resigned."""
     with database.read() as session:
         row = session.scalars(select(LeaderRow).where(LeaderRow.name == name)).one_or_none()
         if row is None:

@@ -139,8 +139,8 @@ class Attempts:
         Returns
         -------
         JobState
-            `succeeded`, `succeeded_with_warnings` where the result has warnings, or `canceled` where somebody asked
-            for that in time; then the files belong to nobody.
+            `succeeded`, `succeeded_with_warnings` where the result has warnings, or `canceled` where a client asked
+            for that in time; then no row names the files.
 
         Raises
         ------

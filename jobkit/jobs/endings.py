@@ -24,7 +24,7 @@ class Attempt:
 
 @dataclass(frozen=True)
 class Ending:
-    """How an attempt ends: the job's next state if nobody asked for its end, and what is written then."""
+    """How an attempt ends: the job's next state if no cancel was asked for, and what is written then."""
 
     target: JobState
     event: EventType
@@ -65,7 +65,7 @@ def counts_out(row: JobRow) -> bool:
 
 
 def end_attempt(session: Session, attempt: Attempt, ending: Ending, now: datetime) -> JobState:
-    """End an attempt; return the job's state afterwards, which is `canceled` where somebody asked for that in time.
+    """End an attempt; return the job's state afterwards, which is `canceled` where that was asked for in time.
 
     Raises
     ------

@@ -1,7 +1,7 @@
 """How long jobs still take, learned from past jobs of their size, and where they stand in the queue.
 
 A past job is like another one if its model is of the same kind and its mesh of about the same size: the middle one of
-their seconds for each byte, times the bytes, is what a job should take. What nobody can know stays unknown: of a kind
+their seconds for each byte, times the bytes, is what a job should take. What can't be known stays unknown: of a kind
 or size that was hardly seen there is no estimate, and a job without one is taken to hold its worker for ever, so that
 estimates of those behind it err on the long side.
 """
@@ -117,7 +117,7 @@ def left_in_queue(free_in_s: list[float], waiting: Iterable[tuple[float | None, 
     Parameters
     ----------
     free_in_s : list of float
-        Seconds until each worker is free; infinite where nobody knows.
+        Seconds until each worker is free; infinite where unknown.
     waiting : iterable of (float or None, float)
         For each job, first to last: what it takes, and before how many seconds it will not start.
 
@@ -169,7 +169,7 @@ class Estimates:
 
     def refresh(self) -> None:
         """Look anew if the last look is over a second old."""
-        # Whoever comes while somebody else looks takes what was seen before, unless that is too old.
+        # A caller that comes during a look takes what was seen before, unless that is too old.
         if not self.is_due or not self._lock.acquire(blocking=self.is_old):
             return
         try:

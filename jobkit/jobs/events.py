@@ -20,7 +20,7 @@ _log = logging.getLogger("quadpatch.rows")
 def append_event(session: Session, job_id: str, kind: EventType, at: datetime, data: dict[str, Any]) -> None:
     """Log a change; to be called right after the statement that raised the job's revision, in its transaction.
 
-    That statement holds the job's row, so nobody else can take the same sequence number.
+    That statement holds the job's row, so no other writer can take the same sequence number.
     """
     attempt, revision = session.execute(select(JobRow.attempt, JobRow.revision).where(JobRow.id == job_id)).one()
     session.add(EventRow(job_id=job_id, sequence=revision, type=kind, at=at, attempt=attempt, data=data))
@@ -48,7 +48,7 @@ def _to_event(row: EventRow) -> Event:
 
 @dataclass(frozen=True)
 class NewEvents:
-    """What has happened to a job since somebody looked last.
+    """What has happened to a job since the last look.
 
     Attributes
     ----------

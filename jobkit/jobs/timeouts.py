@@ -1,4 +1,4 @@
-"""Jobs whose time is over: leases that ran out, cancels that nobody acknowledged, limits that were passed.
+"""Jobs whose time is over: leases that ran out, cancels that no worker acknowledged, limits that were passed.
 
 Everything here is a fenced step of its own, so two dispatchers that do it at the same moment do it once.
 """
@@ -20,7 +20,7 @@ from jobkit.jobs.endings import Attempt, Ending, another_try, cancel_attempt, co
 from jobkit.jobs.transitions import Transition, make_transition
 from jobkit.schema import JobError, JobState
 
-# A worker that lives acknowledges a cancel within a second; after this long nobody waits for a dead one.
+# A worker that lives acknowledges a cancel within a second; after this long a dead one is not waited for.
 CANCEL_PATIENCE_S = 1.5
 # A worker that was last seen this close to its memory limit and then fell silent was ended by the kernel.
 _FULL_MEMORY = 0.9

@@ -28,7 +28,7 @@ def read_network_card(path: Path) -> dict[str, Any] | None:
     Returns
     -------
     dict or None
-        None where there is no card, or the file is no network: whoever runs it checks it in depth.
+        None where there is no card, or the file is no network: the worker checks it in depth.
     """
     with path.open("rb") as file:
         try:

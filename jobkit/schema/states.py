@@ -4,7 +4,7 @@ r"""The life of a job, of a mesh and of a model version, written once.
 
     queued -> running -> succeeded | succeeded_with_warnings | failed
        \         \-> queued (attempt lost or drained, attempts left)
-        \-> canceling -> canceled      (a queued job has nobody to wait for and is canceled at once)
+        \-> canceling -> canceled      (a queued job is canceled at once)
 """
 
 from enum import StrEnum

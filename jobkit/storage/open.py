@@ -34,5 +34,5 @@ def open_store(url: str, scratch: Path | None = None) -> ObjectStore:
         from jobkit.storage.s3 import S3Store  # noqa: PLC0415
 
         return S3Store(parts.netloc, parts.path.strip("/"), scratch or Path(tempfile.gettempdir(), "quadpatch-scratch"))
-    # Without the URL: somebody may have put a password into it.
+    # Without the URL: it may hold a password.
     raise SettingsError("that object store is not supported; use file:///a/folder or s3://bucket/prefix")

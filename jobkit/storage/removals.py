@@ -1,9 +1,9 @@
 """Objects whose key follows from their bytes: how a sweep removes one without taking it from an upload.
 
-Such an object may be written again, with the same bytes, while a sweep is about to delete it as nobody's. So a sweep
-claims a key in the database before it looks at the object's age for the last time, and lets go of it after the
-deletion. Whoever has written an object waits for such a claim to go, and then looks whether the object is there, before
-a row may name it. Of an object written
+Such an object may be written again, with the same bytes, while a sweep is about to delete it as unreferenced. So a
+sweep claims a key in the database before it looks at the object's age for the last time, and lets go of it after the
+deletion. The writer of an object waits for such a claim to go, and then looks whether the object is there, before a row
+may name it. Of an object written
 
 - before that last look: the sweep sees that it is young, and leaves it;
 - between the look and the deletion: the writer meets the claim or misses the object, and is asked to send it again;
@@ -83,7 +83,7 @@ def assure(database: Database, store: ObjectStore, key: str, patience_s: float =
     deadline = time.monotonic() + patience_s
     while _is_claimed(database, key):
         if time.monotonic() > deadline:
-            raise StoreUnavailableError("the same bytes are being removed as nobody's; send them again later")
+            raise StoreUnavailableError("the same bytes are being removed as unreferenced; send them again later")
         time.sleep(_PAUSE_S)
     with database.read() as session:
         was_damaged = is_known_damaged(session, key)

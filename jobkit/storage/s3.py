@@ -28,7 +28,7 @@ _RANGE_BYTES = 4 << 20
 _LISTED_AT_ONCE = 1_000
 # Written over and over by `check`.
 _CHECK_KEY = "writable"
-# The API answers 503 and workers wait a while, so nobody waits here for long.
+# The API answers 503 and workers wait a while, so waits here are short.
 _CONNECT_TIMEOUT_S = 3
 _REQUEST_TIMEOUT_S = 120
 _MAX_RETRIES = 3
@@ -55,7 +55,7 @@ class S3Store:
             bucket,
             prefix=prefix or None,
             client_options={
-                # Whoever names an endpoint without TLS wants it.
+                # An endpoint without TLS was named on purpose.
                 "allow_http": _endpoint().startswith("http://"),
                 "connect_timeout": timedelta(seconds=_CONNECT_TIMEOUT_S),
                 "timeout": timedelta(seconds=_REQUEST_TIMEOUT_S),

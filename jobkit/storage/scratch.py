@@ -1,6 +1,6 @@
 """Files that are still on their way: each is locked by its maker, so those of killed makers can be told from the rest.
 
-The kernel drops a lock with the process that holds it. Whoever opens the folder next removes what nobody holds.
+The kernel drops a lock with the process that holds it. The next process that opens the folder removes what is not held.
 """
 
 import contextlib

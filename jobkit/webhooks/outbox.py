@@ -31,7 +31,7 @@ UNTOLD = ("expires_at", "queue_position", "eta_s")
 
 
 def write_messages(session: Session, job_id: str, change: EventType, at: datetime) -> None:
-    """Leave a message for everybody who wants to hear of a change of a job; one query where nobody does."""
+    """Leave a message for each subscription to a change of a job; one query where there is none."""
     event = EVENTS.get(change)
     if event is None:
         return

@@ -37,8 +37,8 @@ from quadpatch.reconstruction.placement import place
 from quadpatch.stages import Stages
 from quadpatch.types import BoolArray, FloatArray, Patches, Progress, TriangleMesh, Triangles, no_progress
 
-# The paper gives patch length, resolution and overlap for each of its objects. Where nobody does: patches nearly twice
-# as wide as the holes, bins as in the paper's networks, every vertex in about nine patches.
+# The paper gives patch length, resolution and overlap for each of its objects. Where none are given, patches are twice
+# as wide as the holes, nearly, with bins as in the paper's networks and every vertex in about nine patches.
 HOLES_PER_LENGTH = 1.8
 RESOLUTION = 24
 OVERLAP = 2

@@ -159,7 +159,7 @@ def _unit(vector: FloatArray, fallback: FloatArray) -> FloatArray:
 
 
 def _replace_useless(atoms: FloatArray, codes: FloatArray, values: FloatArray, residual: FloatArray) -> None:
-    """Put the worst represented signals in place of atoms that nobody uses or that repeat another; in place."""
+    """Put the worst represented signals in place of atoms that no signal uses or that repeat another; in place."""
     useless = np.union1d(_merge_duplicates(atoms, codes), np.flatnonzero(~codes.any(axis=0)))
     error = (residual**2).sum(axis=1)
     worst = np.argsort(-error, kind="stable")[: len(useless)]

@@ -87,6 +87,6 @@ async def _document(request: Request, media_type: str, write: Callable[[dict[str
 
 @router.get("/", include_in_schema=False)
 def page() -> Response:
-    """Say what this is to whoever opens it in a browser."""
+    """Say what this is to a person who opens it in a browser."""
     policy = "default-src 'none'; style-src 'unsafe-inline'; frame-ancestors 'none'"
     return HTMLResponse(_PAGE, headers={"Content-Security-Policy": policy})

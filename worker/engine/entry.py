@@ -42,7 +42,7 @@ def run_framed(folder: Path, descriptor: int, task: Callable[[EngineRequest, Rep
         reporter.failed(from_os_error(error, reporter.stage))
     except Exception:  # noqa: BLE001 - nothing above may see a traceback; the log gets it
         _print_traceback()
-        reporter.failed(Failure("engine_error", "the engine met an error that nobody foresaw", reporter.stage))
+        reporter.failed(Failure("engine_error", "unexpected internal error of the engine", reporter.stage))
     else:
         reporter.done()
 

@@ -28,7 +28,7 @@ _LONGEST_STAGE = 64
 _MOST_LAST_LINES = 40
 _LOG_TAIL_BYTES = 8000
 _FULL_MEMORY = 0.9
-# The child closes its pipe in its last breath; the kernel then frees its memory, which takes a while for gigabytes.
+# The child closes its pipe as it ends; the kernel then frees its memory, which takes a while for gigabytes.
 _EXIT_TIMEOUT_S = 30.0
 
 _log = logging.getLogger("quadpatch.worker.engine")
@@ -141,7 +141,7 @@ class _Watch:
                     raise EngineStoppedError(reason)
 
     def end(self) -> int | None:
-        """Make sure that the child and all it started are gone; return how it ended, None if nobody knows."""
+        """Make sure that the child and all it started are gone; return how it ended, None if unknown."""
         os.close(self._child.reports)
         if not self.is_done:
             self._kill()
@@ -200,7 +200,7 @@ def _resident_mb(pid: int) -> float:
 def _diagnose(status: int | None, watch: _Watch, limits: EngineLimits, log: Path) -> Failure:
     """Tell why a child ended without a word."""
     stage = watch.stage
-    # Native code that is refused memory throws, and a throw that nobody catches ends in SIGABRT.
+    # Native code that is refused memory throws, and an uncaught throw ends in SIGABRT.
     if b"bad_alloc" in _tail(log):
         return over_memory(limits.memory_mb, stage)
     # The kernel ends who fills the machine or the container; one far below its limit was ended for others' sake.

@@ -115,7 +115,7 @@ def test_the_details_of_an_unforeseen_error_stay_in_the_log(
     rogue_nursery: Nursery, tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
     failure = failure_of(rogue_nursery, tmp_path, "raise_something_unforeseen")
-    assert failure == Failure("engine_error", "the engine met an error that nobody foresaw", "fill")
+    assert failure == Failure("engine_error", "unexpected internal error of the engine", "fill")
     assert "secret detail" in caplog.text
 
 
