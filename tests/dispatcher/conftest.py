@@ -16,6 +16,10 @@ from jobkit.storage.base import ObjectStore
 from jobkit.webhooks.deliveries import Deliveries
 from jobkit.webhooks.subscriptions import Webhooks
 from tests.dispatcher.receivers import LOOPBACK
+from tests.jobkit.conftest import any_database, any_store, job, mesh, new_job
+
+# Sweeps and scrubs start from the same meshes, jobs and stores.
+__all__ = ["any_database", "any_store", "job", "mesh", "new_job"]
 
 Subscribe = Callable[..., WebhookWithSecret]
 FailJob = Callable[[], str]

@@ -19,7 +19,7 @@ def nursery(unlearned_models: Path) -> Iterator[Nursery]:
     """Of a worker that was installed without torch."""
     with pytest.MonkeyPatch.context() as environment:
         # What it names is a library, which engines may read.
-        environment.setenv("PYTHONPATH", f"{Path(__file__).parent}:{unlearned_models}")
+        environment.setenv("PYTHONPATH", f"{Path(__file__).parents[1]}:{unlearned_models}")
         with Nursery(n_threads=1, engine="engine_without_torch") as nursery:
             yield nursery
 

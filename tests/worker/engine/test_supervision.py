@@ -53,7 +53,7 @@ def test_an_engine_works_in_its_folder_and_reports_progress(rogue_nursery: Nurse
 
 
 def test_an_engine_is_told_no_secret_of_its_worker(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("PYTHONPATH", str(Path(__file__).parent))
+    monkeypatch.setenv("PYTHONPATH", str(Path(__file__).parents[1]))
     secrets = ("QUADPATCH_DATABASE_URL", "QUADPATCH_API_KEYS", "AWS_SECRET_ACCESS_KEY", "PGPASSWORD", "UNHEARD_OF")
     for name in (*secrets, "MALLOC_ARENA_MAX"):
         monkeypatch.setenv(name, "2")
