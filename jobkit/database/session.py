@@ -1,8 +1,8 @@
 """Database: sessions that read, sessions that write, and migrations at start.
 
 On SQLite a transaction that reads first and writes later fails at once when another one wrote in between, without
-waiting for the busy timeout. So a writing session takes the write lock at its beginning (BEGIN IMMEDIATE), and the
-rest is left to the timeout.
+waiting for the busy timeout. So a writing session takes the write lock at its beginning (BEGIN IMMEDIATE). Threads of
+one process take turns; between processes the rest is left to the timeout.
 
 On PostgreSQL writing sessions run side by side (READ COMMITTED): every statement sees what has been committed until
 then, and an UPDATE that waited for a row looks at its conditions again. So what was read before is stated once more in
@@ -12,8 +12,10 @@ the WHERE of the UPDATE, or the row is locked while it is read (`with_for_update
 import fcntl
 import json
 import re
+import threading
+from collections import deque
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from pathlib import Path
 from typing import Any
 
@@ -65,6 +67,9 @@ class Database:
         self._engine = _make_engine(url)
         self._reader = self._engine
         self._writer = self._engine.execution_options(quadpatch_write=True)
+        self._write_queue: AbstractContextManager[object] = nullcontext()
+        if self._engine.dialect.name == "sqlite":
+            self._write_queue = WriteQueue()
         if self._engine.dialect.name == "postgresql":
             self._reader = self._engine.execution_options(isolation_level="REPEATABLE READ", postgresql_readonly=True)
             self._writer = self._engine.execution_options(isolation_level="READ COMMITTED")
@@ -83,7 +88,12 @@ class Database:
     @contextmanager
     def write(self) -> Iterator[Session]:
         """Open a session that commits at its end, or rolls back when an error leaves it."""
-        with _translated(), Session(self._writer, expire_on_commit=False) as session, session.begin():
+        with (
+            self._write_queue,
+            _translated(),
+            Session(self._writer, expire_on_commit=False) as session,
+            session.begin(),
+        ):
             yield session
 
     def ping(self) -> None:
@@ -127,6 +137,41 @@ class Database:
                 finally:
                     cursor.execute("PRAGMA foreign_keys = ON")
                     cursor.close()
+
+
+class WriteQueue:
+    """Lets the threads of a process write to SQLite in the order in which they come.
+
+    SQLite's own wait for its lock is a series of pauses: of several threads that write all the time, one may find the
+    lock taken at each look until its time is over.
+    """
+
+    def __init__(self) -> None:
+        self._changed = threading.Condition()
+        self._waiting: deque[object] = deque()
+
+    def __len__(self) -> int:
+        """Return how many threads write or wait for it."""
+        return len(self._waiting)
+
+    def __enter__(self) -> None:
+        mine = object()
+        with self._changed:
+            self._waiting.append(mine)
+            is_first = False
+            try:
+                is_first = self._changed.wait_for(lambda: self._waiting[0] is mine, BUSY_TIMEOUT_MS / 1000)
+            finally:
+                if not is_first:
+                    self._waiting.remove(mine)
+                    self._changed.notify_all()
+        if not is_first:
+            raise DatabaseUnavailableError("other threads write to the database")
+
+    def __exit__(self, *_: object) -> None:
+        with self._changed:
+            self._waiting.popleft()
+            self._changed.notify_all()
 
 
 def write_json(value: Any) -> str:
