@@ -73,7 +73,7 @@ def parse_numbers(text: bytes) -> FloatArray:
         return np.zeros(0)
     try:
         numbers = np.fromstring(text, dtype=np.float64, sep=" ")
-    except (ValueError, DeprecationWarning) as error:
+    except ValueError as error:
         raise ReadError(f"{_first_bad_word(text)!r} is no number") from error
     # `1-2` is one word to every reader and two numbers to this one.
     if len(numbers) != count_words(text):
