@@ -2,14 +2,13 @@
 
 import signal
 import threading
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from types import FrameType
-from typing import Any
+from typing import Any, Self
 
 
 class HeldInterrupt:
-    """Holds the first Ctrl-C back; a second one interrupts at once.
+    """Holds the first Ctrl-C back until `release`, or the end of a `with` block; a second one interrupts at once.
 
     Parameters
     ----------
@@ -22,11 +21,15 @@ class HeldInterrupt:
         self._has_come = False
         self._usual: Any = None
 
-    def hold(self) -> None:
-        """Start to hold it back, where it would interrupt: in the main thread, and not if it is ignored."""
+    def __enter__(self) -> Self:
+        # In other threads and in the background it would not interrupt anyway.
         is_main = threading.current_thread() is threading.main_thread()
         if is_main and signal.getsignal(signal.SIGINT) is signal.default_int_handler:
             self._usual = signal.signal(signal.SIGINT, self._keep)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.release()
 
     def release(self) -> None:
         """Let Ctrl-C interrupt again.
@@ -48,20 +51,3 @@ class HeldInterrupt:
             raise KeyboardInterrupt
         self._has_come = True
         self._say("interrupted: the job is canceled as soon as the service has answered; Ctrl-C again leaves it")
-
-
-@contextmanager
-def held_interrupt(say: Callable[[str], None]) -> Iterator[HeldInterrupt]:
-    """Hold Ctrl-C back until `release` is called, or the block ends.
-
-    Raises
-    ------
-    KeyboardInterrupt
-        At the end of the block, if Ctrl-C came and was not released.
-    """
-    interrupt = HeldInterrupt(say)
-    interrupt.hold()
-    try:
-        yield interrupt
-    finally:
-        interrupt.release()

@@ -17,7 +17,7 @@ from client.errors import (
     UsageError,
     WaitTimeoutError,
 )
-from client.interruption import HeldInterrupt, held_interrupt
+from client.interruption import HeldInterrupt
 from client.options import HoleChoice, MethodChoice, make_spec
 from client.outputs import check_place, is_same_file, is_stream, shown
 from client.screen import Screen
@@ -103,7 +103,7 @@ def repair(client: Client, screen: Screen, task: Task) -> Job:
         mesh = client.upload(task.source, progress)
     screen.say(f"{task.source.name}: {_size(mesh.size_bytes)} uploaded")
     spec = make_spec(mesh.id, task.holes, task.method, mesh_name=sent_name(task.source) or None, **task.rest)
-    with held_interrupt(screen.complain) as interrupt:
+    with HeldInterrupt(screen.complain) as interrupt:
         job = client.create_job(spec) if task.again else client.create_job_once(spec)
         job = _wait(client, screen, job, task.timeout_s, interrupt)
     fetch(client, screen, _files(task), job)
