@@ -12,8 +12,6 @@ the WHERE of the UPDATE, or the row is locked while it is read (`with_for_update
 import fcntl
 import json
 import re
-import threading
-from collections import deque
 from collections.abc import Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from pathlib import Path
@@ -28,10 +26,10 @@ from sqlalchemy.exc import DBAPIError, InterfaceError, OperationalError
 from sqlalchemy.exc import TimeoutError as PoolTimeoutError
 from sqlalchemy.orm import Session
 
+from jobkit.database.write_queue import BUSY_TIMEOUT_MS, WriteQueue
 from jobkit.errors import DatabaseUnavailableError, SettingsError
 from jobkit.text import encodable
 
-BUSY_TIMEOUT_MS = 20_000
 # Any number will do, as long as all processes of this project take the same one.
 _MIGRATION_LOCK = 0x51554144
 _SUPPORTED = ("sqlite", "postgresql")
@@ -137,41 +135,6 @@ class Database:
                 finally:
                     cursor.execute("PRAGMA foreign_keys = ON")
                     cursor.close()
-
-
-class WriteQueue:
-    """Lets the threads of a process write to SQLite in the order in which they come.
-
-    SQLite's own wait for its lock is a series of pauses: of several threads that write all the time, one may find the
-    lock taken at each look until its time is over.
-    """
-
-    def __init__(self) -> None:
-        self._changed = threading.Condition()
-        self._waiting: deque[object] = deque()
-
-    def __len__(self) -> int:
-        """Return how many threads write or wait for it."""
-        return len(self._waiting)
-
-    def __enter__(self) -> None:
-        mine = object()
-        with self._changed:
-            self._waiting.append(mine)
-            is_first = False
-            try:
-                is_first = self._changed.wait_for(lambda: self._waiting[0] is mine, BUSY_TIMEOUT_MS / 1000)
-            finally:
-                if not is_first:
-                    self._waiting.remove(mine)
-                    self._changed.notify_all()
-        if not is_first:
-            raise DatabaseUnavailableError("other threads write to the database")
-
-    def __exit__(self, *_: object) -> None:
-        with self._changed:
-            self._waiting.popleft()
-            self._changed.notify_all()
 
 
 def write_json(value: Any) -> str:

@@ -2,9 +2,7 @@ import multiprocessing
 import signal
 import threading
 from collections.abc import Callable, Iterator
-from concurrent.futures import ThreadPoolExecutor
 from datetime import UTC, datetime, timedelta, timezone
-from functools import partial
 from pathlib import Path
 
 import pytest
@@ -13,13 +11,12 @@ from alembic.migration import MigrationContext
 from sqlalchemy import func, inspect, select, text
 from sqlalchemy.exc import DataError, DBAPIError, IntegrityError
 
-from jobkit.database import session as session_module
-from jobkit.database.session import Database, WriteQueue
+from jobkit.database.session import Database
 from jobkit.database.table_base import Base
 from jobkit.database.tables import JobRow, MeshRow, ModelRow
 from jobkit.errors import DatabaseUnavailableError, SettingsError
 from tests.servers import PostgresServer, fresh_database, running_postgres
-from tests.waiting import GUARD_S, let_others_run, wait_until
+from tests.waiting import GUARD_S, let_others_run
 
 NOW = datetime(2026, 11, 22, 10, 0, tzinfo=UTC)
 
@@ -140,39 +137,6 @@ def test_a_job_without_its_mesh_is_refused(database: Database) -> None:
     values = {"state": "queued", "max_attempts": 1, "spec": {}, "model": {}, "created_at": NOW, "updated_at": NOW}
     with pytest.raises(IntegrityError), database.write() as session:
         session.add(JobRow(id="job_x", mesh_id="0" * 64, queued_at=NOW, **values))
-
-
-def has_waiting(queue: WriteQueue, count: int) -> bool:
-    return len(queue) == count
-
-
-def test_threads_write_in_the_order_in_which_they_come() -> None:
-    queue, order = WriteQueue(), list[int]()
-
-    def write(number: int) -> None:
-        with queue:
-            order.append(number)
-
-    with ThreadPoolExecutor(8) as pool:
-        with queue:
-            for number in range(8):
-                turn = pool.submit(write, number)
-                wait_until(partial(has_waiting, queue, number + 2))
-        turn.result()
-    assert order == list(range(8))
-    assert len(queue) == 0
-
-
-def test_a_thread_that_is_interrupted_while_it_waits_keeps_no_other_from_writing(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    queue = WriteQueue()
-    monkeypatch.setattr(session_module, "BUSY_TIMEOUT_MS", 1)
-    with queue, pytest.raises(DatabaseUnavailableError), queue:
-        pass
-    with queue:
-        assert len(queue) == 1
-    assert len(queue) == 0
 
 
 def test_writers_that_read_first_wait_for_each_other(database: Database) -> None:
