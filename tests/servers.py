@@ -22,7 +22,7 @@ from psycopg.sql import SQL, Composable, Identifier
 
 from jobkit.database.session import Database
 from tests.waiting import GUARD_S, wait_until
-from worker.engine.parent_death import leash
+from worker.engine.parent_death import parent_death_signal
 
 # PostgreSQL refuses to run as root; this one may do nothing, and needs to do nothing.
 _UNPRIVILEGED = "nobody"
@@ -87,7 +87,7 @@ class PostgresServer:
                 stderr=log,
                 user=_user(),
                 cwd=self.folder,
-                preexec_fn=leash(os.getpid(), signal.SIGINT),  # noqa: PLW1509 - two system calls, no lock taken
+                preexec_fn=parent_death_signal(os.getpid(), signal.SIGINT),  # noqa: PLW1509 - two system calls, no lock taken
             )
         wait_until(self._answers, self._process, self.folder / "log")
 

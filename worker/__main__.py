@@ -21,7 +21,7 @@ from jobkit.storage.base import ObjectStore
 from jobkit.storage.open import open_store
 from jobkit.telemetry import open_telemetry
 from worker.context import Context, use_context, worker_name
-from worker.engine.client import Nursery, NurseryLostError
+from worker.engine.client import ForkServer, ForkServerLostError
 from worker.engine.confinement import weaknesses
 from worker.executor import execute
 from worker.folders import worker_folder
@@ -57,7 +57,7 @@ def _run(settings: Settings, store: ObjectStore) -> int:
             database=database,
             store=store,
             queue=stack.enter_context(closing(_open_queue(settings))),
-            nursery=stack.enter_context(Nursery(n_threads)),
+            fork_server=stack.enter_context(ForkServer(n_threads)),
             n_threads=n_threads,
             telemetry=stack.enter_context(open_telemetry("worker")),
         )
@@ -65,8 +65,8 @@ def _run(settings: Settings, store: ObjectStore) -> int:
         stack.enter_context(worker_folder(context.work_folder))
         stack.enter_context(use_context(context))
         try:
-            context.nursery.start()
-        except NurseryLostError as error:
+            context.fork_server.start()
+        except ForkServerLostError as error:
             # A worker that can't work takes no job: each would cost it an attempt.
             logging.critical("%s", error)
             return _EXIT_BROKEN

@@ -44,5 +44,5 @@ def _work(context: Context, analysis: Analysis, observer: Observer) -> MeshFacts
     time_limit_s = min(settings.job_time_limit_s, _TIME_LIMIT_S)
     limits = EngineLimits(time_limit_s, settings.job_memory_limit_mb, n_threads=context.n_threads)
     with folder_with_mesh(context, analysis.source) as folder:
-        run_engine(context.nursery, inspect_request(analysis.source, limits), folder, observer)
+        run_engine(context.fork_server, inspect_request(analysis.source, limits), folder, observer)
         return mesh_facts(json.loads((folder / FACTS_NAME).read_text(encoding="utf-8")))

@@ -9,7 +9,7 @@ from jobkit.errors import QueueUnavailableError, StaleAttemptError
 from worker.context import Context
 from worker.engine.supervision import Observer
 from worker.failures import OUTAGE_DELAY_S, Failure, StopReason
-from worker.heartbeat import Pulse, Vitals
+from worker.heartbeat import Heartbeat, HeartbeatCalls
 from worker.outcomes import outcome_of
 
 T = TypeVar("T")
@@ -84,18 +84,18 @@ def run_check(
 
 def _observed(context: Context, check: Check, work: Callable[[Observer], T]) -> T:
     settings = context.settings
-    vitals = Vitals(
+    heartbeat_calls = HeartbeatCalls(
         renew=lambda memory_mb: check.renew(settings.lease_s),
         is_canceled=lambda: False,
         report=lambda stage, percent: None,
         heartbeat_s=settings.heartbeat_s,
     )
-    with Pulse(vitals) as pulse:
+    with Heartbeat(heartbeat_calls) as heartbeat:
 
         def stop_reason() -> StopReason | None:
-            return StopReason.DRAINED if context.draining.is_set() else pulse.stop_reason
+            return StopReason.DRAINED if context.draining.is_set() else heartbeat.stop_reason
 
-        return work(Observer(pulse.reach, stop_reason, pulse.note_memory))
+        return work(Observer(heartbeat.reach, stop_reason, heartbeat.note_memory))
 
 
 def _settle(check: Check, outcome: Failure | StopReason) -> None:

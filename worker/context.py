@@ -23,7 +23,7 @@ from jobkit.queue import TaskQueue
 from jobkit.settings import Settings
 from jobkit.storage.base import ObjectStore
 from jobkit.telemetry import Telemetry
-from worker.engine.client import Nursery
+from worker.engine.client import ForkServer
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ class Context:
     database: Database
     store: ObjectStore
     queue: TaskQueue
-    nursery: Nursery
+    fork_server: ForkServer
     n_threads: int
     draining: threading.Event = field(default_factory=threading.Event)
     telemetry: Telemetry = field(default_factory=Telemetry)

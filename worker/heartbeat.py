@@ -22,11 +22,11 @@ _TICK_S = 0.5
 # Longer than a database takes to be restarted or to fail over.
 PATIENCE_S = 120.0
 
-_log = logging.getLogger("quadpatch.worker.pulse")
+_log = logging.getLogger("quadpatch.worker.heartbeat")
 
 
 @dataclass(frozen=True)
-class Vitals:
+class HeartbeatCalls:
     """How an attempt shows that it is alive.
 
     Attributes
@@ -50,17 +50,17 @@ class Vitals:
     patience_s: float = PATIENCE_S
 
 
-class Pulse:
+class Heartbeat:
     """Beats from entering a `with` block until leaving it."""
 
-    def __init__(self, vitals: Vitals) -> None:
-        self._vitals = vitals
+    def __init__(self, heartbeat_calls: HeartbeatCalls) -> None:
+        self._heartbeat_calls = heartbeat_calls
         self._progress = Progress()
         self._written = ("", 0.0)
         self._peak_mb = 0
         self._ended = threading.Event()
         self._renewed_at = time.monotonic()
-        self._thread = threading.Thread(target=copy_context().run, args=(self._beat,), name="pulse", daemon=True)
+        self._thread = threading.Thread(target=copy_context().run, args=(self._beat,), name="heartbeat", daemon=True)
         self.stop_reason: StopReason | None = None
 
     def reach(self, stage: str, fraction: float) -> None:
@@ -90,17 +90,17 @@ class Pulse:
                 self.stop_reason = StopReason.LOST
             except (DatabaseUnavailableError, SQLAlchemyError) as error:
                 _log.warning("a heartbeat failed: %s", error)
-                if time.monotonic() - self._renewed_at > self._vitals.patience_s:
+                if time.monotonic() - self._renewed_at > self._heartbeat_calls.patience_s:
                     self.stop_reason = StopReason.LOST
 
     def _keep_alive(self) -> None:
-        if time.monotonic() - self._renewed_at >= self._vitals.heartbeat_s:
-            self._vitals.renew(self._peak_mb)
+        if time.monotonic() - self._renewed_at >= self._heartbeat_calls.heartbeat_s:
+            self._heartbeat_calls.renew(self._peak_mb)
             self._renewed_at = time.monotonic()
-        if self._vitals.is_canceled():
+        if self._heartbeat_calls.is_canceled():
             self.stop_reason = StopReason.CANCELED
             return
         reached = (self._progress.stage, self._progress.percent)
         if reached != self._written:
-            self._vitals.report(*reached)
+            self._heartbeat_calls.report(*reached)
             self._written = reached

@@ -50,7 +50,7 @@ def _work(context: Context, proof: Proof, observer: Observer) -> None:
     request = EngineRequest(task="prove", source="", limits=limits, model=path, model_card=card)
     with request_folder(context.work_folder) as folder:
         try:
-            run_engine(context.nursery, request, folder, observer)
+            run_engine(context.fork_server, request, folder, observer)
         except EngineFailedError as error:
             # The file goes by its sha256 here, which says less to people than its name.
             message = error.failure.message.replace(f"{model.sha256}.{model.format}", proof.reference)

@@ -29,7 +29,7 @@ from worker.engine.limits import EngineLimits
 from worker.engine.request import LOG_NAME
 from worker.engine.supervision import Observer, log_last_words, run_engine
 from worker.failures import OUTAGE_DELAY_S, Failure, StopReason
-from worker.heartbeat import PATIENCE_S, Pulse, Vitals
+from worker.heartbeat import PATIENCE_S, Heartbeat, HeartbeatCalls
 from worker.models import deprecation, model_argument, network_card
 from worker.outcomes import folder_with_mesh, outcome_of
 from worker.results import (
@@ -113,11 +113,11 @@ def _drop(context: Context, started: StartedAttempt) -> None:
 
 
 def _run(context: Context, started: StartedAttempt) -> _Repaired:
-    with Pulse(_vitals(context, started)) as pulse:
-        return _work(context, started, pulse)
+    with Heartbeat(_heartbeat_calls(context, started)) as heartbeat:
+        return _work(context, started, heartbeat)
 
 
-def _work(context: Context, started: StartedAttempt, pulse: Pulse) -> _Repaired:
+def _work(context: Context, started: StartedAttempt, heartbeat: Heartbeat) -> _Repaired:
     job, began = started.job, time.monotonic()
     source = context.meshes.source(job.mesh_id)
     model = model_argument(job.model, context.registry, context.store, context.cache_folder)
@@ -129,8 +129,8 @@ def _work(context: Context, started: StartedAttempt, pulse: Pulse) -> _Repaired:
     )
     with folder_with_mesh(context, source) as folder:
         with context.telemetry.stages() as spans:
-            observer = Observer(_both(pulse, spans), _StopRule(context, pulse), pulse.note_memory)
-            failure = run_engine(context.nursery, request, folder, observer)
+            observer = Observer(_both(heartbeat, spans), _StopRule(context, heartbeat), heartbeat.note_memory)
+            failure = run_engine(context.fork_server, request, folder, observer)
         if failure is not None:
             note_lost_pictures(folder, request, failure)
         elif missing_pictures(folder, request):
@@ -141,11 +141,11 @@ def _work(context: Context, started: StartedAttempt, pulse: Pulse) -> _Repaired:
         return _Repaired(result, stage_seconds(folder, job.spec.method.method))
 
 
-def _both(pulse: Pulse, spans: StageSpans) -> Callable[[str, float], None]:
+def _both(heartbeat: Heartbeat, spans: StageSpans) -> Callable[[str, float], None]:
     """Make progress known to the database and to the trace."""
 
     def reach(stage: str, fraction: float) -> None:
-        pulse.reach(stage, fraction)
+        heartbeat.reach(stage, fraction)
         failure_of(lambda: spans.reach(stage))
 
     return reach
@@ -154,14 +154,14 @@ def _both(pulse: Pulse, spans: StageSpans) -> Callable[[str, float], None]:
 class _StopRule:
     """Tells the watch whether to end the engine."""
 
-    def __init__(self, context: Context, pulse: Pulse) -> None:
+    def __init__(self, context: Context, heartbeat: Heartbeat) -> None:
         self._draining = context.draining
-        self._pulse = pulse
+        self._heartbeat = heartbeat
         self._drained_at: float | None = None
 
     def __call__(self) -> StopReason | None:
-        if self._pulse.stop_reason is not None:
-            return self._pulse.stop_reason
+        if self._heartbeat.stop_reason is not None:
+            return self._heartbeat.stop_reason
         if not self._draining.is_set():
             return None
         now = time.monotonic()
@@ -169,9 +169,9 @@ class _StopRule:
         return StopReason.DRAINED if now - self._drained_at > _DRAIN_GRACE_S else None
 
 
-def _vitals(context: Context, started: StartedAttempt) -> Vitals:
+def _heartbeat_calls(context: Context, started: StartedAttempt) -> HeartbeatCalls:
     attempts, jobs, attempt, settings = context.attempts, context.jobs, started.attempt, context.settings
-    return Vitals(
+    return HeartbeatCalls(
         renew=lambda memory_mb: attempts.heartbeat(attempt, settings.lease_s, memory_mb),
         is_canceled=lambda: _is_canceled(jobs.get(attempt.job_id), attempt),
         report=lambda stage, percent: attempts.report_progress(attempt, stage, percent),

@@ -9,7 +9,7 @@ import pytest
 
 from tests.waiting import GUARD_S
 from tests.worker import reaching_out
-from worker.engine.client import Nursery
+from worker.engine.client import ForkServer
 from worker.engine.confinement import weaknesses
 from worker.engine.limits import EngineLimits
 from worker.engine.request import EngineRequest
@@ -33,8 +33,8 @@ def reached(tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[str, bool
     request = EngineRequest("inspect", "source.ply", LIMITS, options={"deed": "reach_out"})
     with pytest.MonkeyPatch.context() as environment:
         environment.setenv("PYTHONPATH", str(Path(reaching_out.__file__).parent))
-        with Nursery(n_threads=1, engine="rogue_engine") as nursery:
-            run_engine(nursery, request, folder, Observer(lambda stage, fraction: None, lambda: None))
+        with ForkServer(n_threads=1, engine="rogue_engine") as fork_server:
+            run_engine(fork_server, request, folder, Observer(lambda stage, fraction: None, lambda: None))
     yield json.loads((folder / "reached.json").read_text())
     assert (outside / "secret").read_text() == "hunter2"
 

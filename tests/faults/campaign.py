@@ -184,7 +184,7 @@ def _wait_until_quiet(cluster: Cluster, backend: Backend, timeout_s: float = GUA
 
 
 def _engines(cluster: Cluster) -> list[psutil.Process]:
-    """Return all processes below workers that are no nursery."""
+    """Return all processes below workers that are no fork server."""
     below = [cluster.children(name) for name in WORKERS]
     return [process for children in below for process in children if process not in children[:1]]
 

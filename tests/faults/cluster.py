@@ -19,7 +19,7 @@ from onebox.logs import log_tail
 from tests.faults.network import Network
 from tests.waiting import GUARD_S
 from worker.engine.limits import thread_environment
-from worker.engine.parent_death import leash
+from worker.engine.parent_death import parent_death_signal
 
 API_KEY = "key-of-the-fault-suite"
 APIS = ("api-1", "api-2")
@@ -132,7 +132,7 @@ class Cluster:
         return next(death for death in self.deaths if death.pid == pid)
 
     def children(self, name: str) -> list[psutil.Process]:
-        """Return the living processes below a worker: its nursery, and the engines of that."""
+        """Return the living processes below a worker: its fork server, and the engines of that."""
         pid = self.pid(name)
         try:
             below = [] if pid is None else psutil.Process(pid).children(recursive=True)
@@ -190,7 +190,7 @@ class Cluster:
                 stdout=log,
                 stderr=subprocess.STDOUT,
                 env=process.environment,
-                preexec_fn=leash(os.getpid(), signal.SIGKILL),  # noqa: PLW1509 - two system calls, no lock taken
+                preexec_fn=parent_death_signal(os.getpid(), signal.SIGKILL),  # noqa: PLW1509 - two system calls, no lock taken
                 start_new_session=True,
             )
 

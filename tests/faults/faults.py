@@ -82,22 +82,22 @@ def kill_worker(field: Field) -> Strike | None:
     return strike
 
 
-def kill_nursery(field: Field) -> Strike | None:
+def kill_fork_server(field: Field) -> Strike | None:
     """SIGKILL the process that a worker's engines are forked from, idle or with an engine at work."""
     victim = _find_victim(field) if field.rng.random() < 0.7 else None
     worker = victim.worker if victim else field.rng.choice(WORKERS)
-    nursery = next((child for child in field.cluster.children(worker) if _is_nursery(child)), None)
+    fork_server = next((child for child in field.cluster.children(worker) if _is_fork_server(child)), None)
     # One that was picked by chance has to be idle: at work it might be at the last attempt that a job has.
-    if nursery is None or (victim is None and _children(nursery)):
+    if fork_server is None or (victim is None and _children(fork_server)):
         return None
-    return _killed_child("nursery killed", nursery, victim)
+    return _killed_child("fork server killed", fork_server, victim)
 
 
 def kill_engine(field: Field) -> Strike | None:
     """SIGKILL an engine at work."""
     victim = _find_victim(field)
     below = field.cluster.children(victim.worker) if victim else []
-    engines = [child for nursery in below if _is_nursery(nursery) for child in _children(nursery)]
+    engines = [child for fork_server in below if _is_fork_server(fork_server) for child in _children(fork_server)]
     return _killed_child("engine killed", engines[0], victim) if engines else None
 
 
@@ -203,7 +203,7 @@ def cut_off(field: Field) -> Strike | None:
     return Strike(f"{kind} cut off", at, f"{name} had no link for {field.lease_s + 5:g} s{seen}", victim)
 
 
-KILLS: Sequence[Fault] = (kill_worker, kill_engine, kill_nursery, kill_api, kill_dispatcher, drain_worker)
+KILLS: Sequence[Fault] = (kill_worker, kill_engine, kill_fork_server, kill_api, kill_dispatcher, drain_worker)
 OUTAGES: Sequence[Fault] = (kill_valkey, flush_valkey, stop_database, refuse_store, fill_disk, freeze_worker)
 
 
@@ -249,9 +249,9 @@ def _find_victim(field: Field) -> Victim | None:
     return None
 
 
-def _is_nursery(process: psutil.Process) -> bool:
+def _is_fork_server(process: psutil.Process) -> bool:
     try:
-        # An engine is a fork of its nursery, and shows the same command line.
+        # An engine is a fork of its fork server, and shows the same command line.
         return "worker.engine.fork_server" in process.cmdline() and "worker.engine.fork_server" not in _cmdline(
             process.parent()
         )

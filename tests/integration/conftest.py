@@ -41,8 +41,8 @@ class RunningBox:
 
     def engines(self) -> list[psutil.Process]:
         """Living engine children of all workers."""
-        nurseries = [n for w in self.workers() for n in w.children() if "worker.engine.fork_server" in n.cmdline()]
-        return [e for n in nurseries for e in n.children() if e.status() != psutil.STATUS_ZOMBIE]
+        fork_servers = [n for w in self.workers() for n in w.children() if "worker.engine.fork_server" in n.cmdline()]
+        return [e for n in fork_servers for e in n.children() if e.status() != psutil.STATUS_ZOMBIE]
 
     def requests(self) -> list[Path]:
         """Folders of requests that lie on the disk."""

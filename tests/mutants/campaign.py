@@ -129,7 +129,7 @@ def _is_lasting(process: psutil.Process, words: list[str]) -> bool:
     if not words:
         return False
     parent = process.parent()
-    # An engine is a fork of its nursery, and so has its command line.
+    # An engine is a fork of its fork server, and so has its command line.
     return (
         parent is None
         or "worker.engine.fork_server" not in words

@@ -6,7 +6,7 @@ from sqlalchemy.exc import OperationalError
 from jobkit.errors import DatabaseUnavailableError, StaleAttemptError
 from tests.waiting import GUARD_S, wait_until
 from worker.failures import StopReason
-from worker.heartbeat import Pulse, Vitals
+from worker.heartbeat import Heartbeat, HeartbeatCalls
 
 
 class Patient:
@@ -28,36 +28,38 @@ class Patient:
         if self.renewal is not None:
             raise self.renewal
 
-    def vitals(self, patience_s: float = 30.0) -> Vitals:
-        return Vitals(self.renew, lambda: self.cancel, lambda *report: self.reports.append(report), 0.0, patience_s)
+    def heartbeat_calls(self, patience_s: float = 30.0) -> HeartbeatCalls:
+        return HeartbeatCalls(
+            self.renew, lambda: self.cancel, lambda *report: self.reports.append(report), 0.0, patience_s
+        )
 
 
 def test_the_lease_is_renewed_and_progress_written_once() -> None:
     patient = Patient()
-    with Pulse(patient.vitals()) as pulse:
-        pulse.reach("fill", 1.0)
+    with Heartbeat(patient.heartbeat_calls()) as heartbeat:
+        heartbeat.reach("fill", 1.0)
         assert patient.has_beaten.wait(GUARD_S)
-        assert pulse.stop_reason is None
+        assert heartbeat.stop_reason is None
     assert patient.reports == [("fill", 16.0)]
 
 
 def test_the_most_memory_that_was_seen_goes_out_with_the_heartbeat() -> None:
     patient = Patient()
-    with Pulse(patient.vitals()) as pulse:
+    with Heartbeat(patient.heartbeat_calls()) as heartbeat:
         for memory_mb in (100.0, 250.5, 80.0):
-            pulse.note_memory(memory_mb)
+            heartbeat.note_memory(memory_mb)
         assert patient.has_beaten.wait(GUARD_S)
     assert patient.memory_mb == 250
 
 
 def test_a_cancel_flag_is_brought_back() -> None:
-    with Pulse(Patient(is_canceled=True).vitals()) as pulse:
-        assert wait_until(lambda: pulse.stop_reason) is StopReason.CANCELED
+    with Heartbeat(Patient(is_canceled=True).heartbeat_calls()) as heartbeat:
+        assert wait_until(lambda: heartbeat.stop_reason) is StopReason.CANCELED
 
 
 def test_an_attempt_that_was_taken_away_is_lost() -> None:
-    with Pulse(Patient(renewal=StaleAttemptError("taken")).vitals()) as pulse:
-        assert wait_until(lambda: pulse.stop_reason) is StopReason.LOST
+    with Heartbeat(Patient(renewal=StaleAttemptError("taken")).heartbeat_calls()) as heartbeat:
+        assert wait_until(lambda: heartbeat.stop_reason) is StopReason.LOST
 
 
 @pytest.mark.parametrize(("patience_s", "reason"), [(0.0, StopReason.LOST), (3600.0, None)])
@@ -68,9 +70,9 @@ def test_a_database_that_is_away_is_waited_for_as_long_as_patience_lasts(
     error: Exception, patience_s: float, reason: StopReason | None
 ) -> None:
     patient = Patient(renewal=error)
-    with Pulse(patient.vitals(patience_s)) as pulse:
+    with Heartbeat(patient.heartbeat_calls(patience_s)) as heartbeat:
         if reason is None:
             assert patient.has_beaten.wait(GUARD_S)
-            assert pulse.stop_reason is None
+            assert heartbeat.stop_reason is None
         else:
-            assert wait_until(lambda: pulse.stop_reason) is reason
+            assert wait_until(lambda: heartbeat.stop_reason) is reason

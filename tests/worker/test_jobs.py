@@ -22,7 +22,7 @@ from jobkit.storage.base import ObjectStore
 from jobkit.telemetry import Telemetry
 from tests.integration.conftest import ply_bytes, punched_relief
 from worker.context import Context, use_context
-from worker.engine.client import Nursery
+from worker.engine.client import ForkServer
 from worker.jobs import run_job
 
 TRACE = "0af7651916cd43dd8448eb211c80319c"
@@ -41,8 +41,8 @@ def context(
     provider = TracerProvider()
     provider.add_span_processor(SimpleSpanProcessor(exporter))
     queue = TaskQueue(settings.redis_url.get_secret_value(), settings.queue_name, settings.job_time_limit_s)
-    with closing(queue), Nursery(1) as nursery:
-        context = Context("w-1", settings, database, store, queue, nursery, 1, telemetry=Telemetry(provider))
+    with closing(queue), ForkServer(1) as fork_server:
+        context = Context("w-1", settings, database, store, queue, fork_server, 1, telemetry=Telemetry(provider))
         context.work_folder.mkdir(parents=True)
         with use_context(context):
             yield context

@@ -24,9 +24,9 @@ from jobkit.storage.base import ObjectStore, result_key
 from jobkit.storage.open import open_store
 from tests.integration.conftest import ply_bytes, punched_relief
 from worker.context import Context, use_context
-from worker.engine.client import Nursery
+from worker.engine.client import ForkServer
 from worker.jobs import inspect_mesh, run_job
-from worker.repairs import _vitals
+from worker.repairs import _heartbeat_calls
 
 
 class Forgetful(Database):
@@ -69,8 +69,8 @@ def working(
     settings: Settings, database: Database, store: ObjectStore, engine: str = "worker.engine.main"
 ) -> Iterator[Context]:
     queue = TaskQueue(settings.redis_url.get_secret_value(), settings.queue_name, settings.job_time_limit_s)
-    with closing(queue), closing(database), Nursery(1, engine) as nursery:
-        context = Context("w-1", settings, database, store, queue, nursery, 1)
+    with closing(queue), closing(database), ForkServer(1, engine) as fork_server:
+        context = Context("w-1", settings, database, store, queue, fork_server, 1)
         context.work_folder.mkdir(parents=True)
         with use_context(context):
             yield context
@@ -174,10 +174,10 @@ def test_an_attempt_that_was_ended_by_somebody_else_is_noticed_before_its_next_h
     with working(settings, Database(settings.effective_database_url), store) as context:
         job = new_job(context)
         started = Attempts(database).start(job.id, "w-1", 30)
-        vitals = _vitals(context, started)
-        assert not vitals.is_canceled()
+        heartbeat_calls = _heartbeat_calls(context, started)
+        assert not heartbeat_calls.is_canceled()
         context.jobs.request_cancel(job.id)
-        assert vitals.is_canceled()
+        assert heartbeat_calls.is_canceled()
         Attempts(database).acknowledge_cancel(started.attempt)
         with pytest.raises(StaleAttemptError):
-            vitals.is_canceled()
+            heartbeat_calls.is_canceled()

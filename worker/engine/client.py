@@ -1,4 +1,4 @@
-"""The worker's end of the nursery: start an engine child, listen to it, end it."""
+"""The worker's end of the fork server: start an engine child, listen to it, end it."""
 
 import json
 import os
@@ -34,8 +34,8 @@ _KEPT_PREFIXES = (
 )
 
 
-class NurseryLostError(Exception):
-    """The nursery ended; the next child needs a new one."""
+class ForkServerLostError(Exception):
+    """The fork server ended; the next child needs a new one."""
 
 
 @dataclass(frozen=True)
@@ -46,10 +46,10 @@ class EngineChild:
     reports: int
 
 
-class Nursery:
-    """A lazily started nursery process; started anew when it is found dead.
+class ForkServer:
+    """A lazily started fork server process; started anew when it is found dead.
 
-    Start children from the main thread: the nursery is tied to the thread that starts it.
+    Start children from the main thread: the fork server is tied to the thread that starts it.
 
     Parameters
     ----------
@@ -67,11 +67,11 @@ class Nursery:
         self._buffer = b""
 
     def start(self) -> None:
-        """Start the nursery and wait until it has loaded the method.
+        """Start the fork server and wait until it has loaded the method.
 
         Raises
         ------
-        NurseryLostError
+        ForkServerLostError
             If it can't: the installation is broken, and its words about that went to stderr.
         """
         if self._connection is None:
@@ -82,24 +82,24 @@ class Nursery:
 
         Raises
         ------
-        NurseryLostError
+        ForkServerLostError
             If no child could be started, twice in a row.
         """
         reports, write_end = os.pipe()
         try:
             try:
                 return EngineChild(self._ask(folder, write_end), reports)
-            except NurseryLostError:
+            except ForkServerLostError:
                 self.close()
                 return EngineChild(self._ask(folder, write_end), reports)
-        except NurseryLostError:
+        except ForkServerLostError:
             os.close(reports)
             raise
         finally:
             os.close(write_end)
 
     def wait_child(self, child: EngineChild, timeout_s: float) -> int | None:
-        """Return how the child ended, negative for a signal; None if it is still there, or the nursery is not.
+        """Return how the child ended, negative for a signal; None if it is still there, or the fork server is not.
 
         Parameters
         ----------
@@ -109,12 +109,12 @@ class Nursery:
         """
         try:
             answer = self._read_answer(timeout_s)
-        except (NurseryLostError, TimeoutError):
+        except (ForkServerLostError, TimeoutError):
             return None
         return int(answer["status"]) if answer.get("pid") == child.pid else None
 
     def close(self) -> None:
-        """End the nursery, and with it whatever child is left."""
+        """End the fork server, and with it whatever child is left."""
         if self._connection is not None:
             self._connection.close()
         if self._process is not None:
@@ -136,7 +136,7 @@ class Nursery:
             socket.send_fds(connection, [json.dumps({"folder": str(folder)}).encode()], [write_end])
             return int(self._read_answer(_START_TIMEOUT_S)["pid"])
         except (OSError, TimeoutError) as error:
-            raise NurseryLostError("the nursery does not answer") from error
+            raise ForkServerLostError("the fork server does not answer") from error
 
     def _start(self) -> socket.socket:
         here, there = socket.socketpair(socket.AF_UNIX, socket.SOCK_STREAM)
@@ -158,15 +158,15 @@ class Nursery:
         self._connection = here
         try:
             self._read_answer(_START_TIMEOUT_S)
-        except (NurseryLostError, OSError) as error:
+        except (ForkServerLostError, OSError) as error:
             self.close()
-            raise NurseryLostError("no engine can be started here") from error
+            raise ForkServerLostError("no engine can be started here") from error
         return here
 
     def _read_answer(self, timeout_s: float) -> dict[str, Any]:
         connection = self._connection
         if connection is None:
-            raise NurseryLostError("there is no nursery")
+            raise ForkServerLostError("there is no fork server")
         connection.settimeout(timeout_s)
         while b"\n" not in self._buffer:
             try:
@@ -174,7 +174,7 @@ class Nursery:
             except ConnectionError:
                 chunk = b""
             if not chunk:
-                raise NurseryLostError("the nursery has ended")
+                raise ForkServerLostError("the fork server has ended")
             self._buffer += chunk
         line, _, self._buffer = self._buffer.partition(b"\n")
         answer: dict[str, Any] = json.loads(line)

@@ -20,7 +20,7 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
-from worker.engine.parent_death import leash
+from worker.engine.parent_death import parent_death_signal
 
 MESSAGE_BYTES = 65536
 # Called with the folder of the request and the write end of the pipe for reports.
@@ -35,12 +35,12 @@ def main(arguments: list[str]) -> int:
     arguments : list of str
         Descriptor of the socket, process id of the worker, dotted name of the engine's module.
     """
-    leash(int(arguments[1]), signal.SIGKILL)()
+    parent_death_signal(int(arguments[1]), signal.SIGKILL)()
     # Ctrl-C and the like are for the worker to handle; it ends this process when it is done.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, signal.SIG_IGN)
     engine: Engine = importlib.import_module(arguments[2]).run_request
-    tie = leash(os.getpid(), signal.SIGKILL)
+    tie = parent_death_signal(os.getpid(), signal.SIGKILL)
     # What is loaded by now lives for ever: the collector would only unshare its pages.
     gc.collect()
     gc.freeze()

@@ -13,7 +13,7 @@ from collections.abc import Callable
 _PR_SET_PDEATHSIG = 1
 
 
-def leash(parent: int, death_signal: signal.Signals = signal.SIGTERM) -> Callable[[], None]:
+def parent_death_signal(parent: int, death_signal: signal.Signals = signal.SIGTERM) -> Callable[[], None]:
     """Make a function that ties the process it is called in to its parent.
 
     It is fit to be a `preexec_fn`: the C library is loaded here, before the fork, and nothing but two system calls

@@ -15,7 +15,7 @@ from typing import Any
 import psutil
 
 from jobkit.text import printable
-from worker.engine.client import EngineChild, Nursery, NurseryLostError
+from worker.engine.client import EngineChild, ForkServer, ForkServerLostError
 from worker.engine.limits import EngineLimits
 from worker.engine.request import LOG_NAME, EngineRequest
 from worker.failures import EngineFailedError, EngineStoppedError, Failure, StopReason, crashed, over_memory, over_time
@@ -54,7 +54,7 @@ class Observer:
 
 
 def run_engine(
-    nursery: Nursery,
+    fork_server: ForkServer,
     request: EngineRequest,
     folder: Path,
     observer: Observer,
@@ -64,7 +64,7 @@ def run_engine(
 
     Parameters
     ----------
-    nursery : Nursery
+    fork_server : ForkServer
     request : EngineRequest
     folder : Path
     observer : Observer
@@ -85,11 +85,11 @@ def run_engine(
     """
     request.save(folder)
     try:
-        child = nursery.start_child(folder)
-    except NurseryLostError as error:
+        child = fork_server.start_child(folder)
+    except ForkServerLostError as error:
         _log.error("no engine could be started: %s", error)
         raise EngineFailedError(crashed(None, None)) from error
-    watch = _Watch(nursery, child, request.limits, observer, clock)
+    watch = _Watch(fork_server, child, request.limits, observer, clock)
     try:
         watch.listen()
     finally:
@@ -109,13 +109,13 @@ def run_engine(
 class _Watch:
     def __init__(
         self,
-        nursery: Nursery,
+        fork_server: ForkServer,
         child: EngineChild,
         limits: EngineLimits,
         observer: Observer,
         clock: Callable[[], float],
     ) -> None:
-        self._nursery = nursery
+        self._fork_server = fork_server
         self._child = child
         self._limits = limits
         self._observer = observer
@@ -145,11 +145,11 @@ class _Watch:
         os.close(self._child.reports)
         if not self.is_done:
             self._kill()
-        status = self._nursery.wait_child(self._child, _EXIT_TIMEOUT_S)
+        status = self._fork_server.wait_child(self._child, _EXIT_TIMEOUT_S)
         if status is None:
-            # Without an answer the nursery itself is gone or stuck; its end is the end of its children.
+            # Without an answer the fork server itself is gone or stuck; its end is the end of its children.
             self._kill()
-            self._nursery.close()
+            self._fork_server.close()
         return status
 
     def _kill(self) -> None:

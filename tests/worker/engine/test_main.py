@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from tests.quadpatch.shapes import bumpy_plate, punched, write_ply
-from worker.engine.client import Nursery
+from worker.engine.client import ForkServer
 from worker.engine.limits import EngineLimits
 from worker.engine.request import MESH_FOLDER, REPORT_NAME, EngineRequest
 from worker.engine.supervision import Observer, run_engine
@@ -15,13 +15,13 @@ LIMITS = EngineLimits(time_s=300.0, memory_mb=4096, n_threads=1)
 
 
 @pytest.fixture(scope="module")
-def nursery(unlearned_models: Path) -> Iterator[Nursery]:
+def fork_server(unlearned_models: Path) -> Iterator[ForkServer]:
     """Of a worker that was installed without torch."""
     with pytest.MonkeyPatch.context() as environment:
         # What it names is a library, which engines may read.
         environment.setenv("PYTHONPATH", f"{Path(__file__).parents[1]}:{unlearned_models}")
-        with Nursery(n_threads=1, engine="engine_without_torch") as nursery:
-            yield nursery
+        with ForkServer(n_threads=1, engine="engine_without_torch") as fork_server:
+            yield fork_server
 
 
 def repair_request(folder: Path, model: str) -> EngineRequest:
@@ -34,12 +34,12 @@ def repair_request(folder: Path, model: str) -> EngineRequest:
 
 
 def test_a_worker_without_torch_fails_a_job_that_needs_it_for_good_and_says_how_to_install_it(
-    nursery: Nursery, tmp_path: Path
+    fork_server: ForkServer, tmp_path: Path
 ) -> None:
     heard: list[str] = []
     observer = Observer(lambda stage, fraction: heard.append(stage), lambda: None)
     with pytest.raises(EngineFailedError) as caught:
-        run_engine(nursery, repair_request(tmp_path, "self-network"), tmp_path, observer)
+        run_engine(fork_server, repair_request(tmp_path, "self-network"), tmp_path, observer)
     failure = caught.value.failure
     assert (failure.code, failure.retryable) == ("torch_missing", False)
     assert "install the extra 'networks'" in failure.message
@@ -48,8 +48,8 @@ def test_a_worker_without_torch_fails_a_job_that_needs_it_for_good_and_says_how_
     assert not (tmp_path / "repaired.ply").exists()
 
 
-def test_a_worker_without_torch_runs_networks_that_are_ready(nursery: Nursery, tmp_path: Path) -> None:
+def test_a_worker_without_torch_runs_networks_that_are_ready(fork_server: ForkServer, tmp_path: Path) -> None:
     request = repair_request(tmp_path, "general-residual@1")
-    run_engine(nursery, request, tmp_path, Observer(lambda stage, fraction: None, lambda: None))
+    run_engine(fork_server, request, tmp_path, Observer(lambda stage, fraction: None, lambda: None))
     assert json.loads((tmp_path / REPORT_NAME).read_text())["model"]["kind"] == "autoencoder"
     assert (tmp_path / "repaired.ply").is_file()
