@@ -43,7 +43,7 @@ class Dispatch:
     leadership : Leadership
     renew_s : float
         Seconds between two renewals of the lead.
-    duties : sequence of Duty
+    tasks : sequence of PeriodicTask
     """
 
     def __init__(self, leadership: Leadership, renew_s: float, tasks: Sequence[PeriodicTask]) -> None:

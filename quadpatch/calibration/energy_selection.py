@@ -1,4 +1,4 @@
-"""Which energy fills which hole: what practice says of the whole surface, and what its own rim says of a hole.
+"""Which energy fills which hole: what calibration says of the whole surface, and what its own rim says of a hole.
 
 Practice ranks the energies on average. Which of them is best differs from hole to hole: a groove that runs into a hole
 wants another than the flat beside it. So every hole is opened once more, one ring wider, and closed by each
@@ -76,7 +76,7 @@ def learn_energy_blend(
 
     Returns
     -------
-    FillRule
+    EnergyBlend
     FilledMesh
         The calibration holes, filled by it.
     """

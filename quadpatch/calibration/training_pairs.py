@@ -21,7 +21,7 @@ from quadpatch.patches.scale import PatchScale, outline_iterations
 from quadpatch.patches.seeds import Seeds
 from quadpatch.types import FloatArray, TriangleMesh
 
-# Surface left between the holes of one round, in mean edge lengths: closer than in practice, for the sake of many.
+# Surface left between the holes of one round, in mean edge lengths: closer than in calibration, for the sake of many.
 _MARGIN_EDGES = 2.0
 # Holes are cut from this much narrower to this much wider than those that are asked for.
 WIDTHS = (0.8, 1.15)
@@ -38,7 +38,7 @@ class TrainingSurface:
     seeds : Seeds
         Where patches may lie.
     scale : PatchScale
-    rule : FillRule
+    rule : EnergyBlend
         That the holes are filled by.
     diameters : (k,) float64
         Of the holes to prepare for, in mesh units.
@@ -92,7 +92,7 @@ def make_training_pairs(training_surface: TrainingSurface, rng: np.random.Genera
 
     Parameters
     ----------
-    ground : Ground
+    training_surface : TrainingSurface
     rng : numpy.random.Generator
 
     Yields

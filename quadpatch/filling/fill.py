@@ -30,10 +30,10 @@ class ClosedMesh:
     near : Surroundings
     plate : Refined
         The thin plate, in local vertices and coordinates.
-    gap : (n_holes,) float64
+    disagreement : (n_holes,) float64
         Mean distance between the plate and a slightly smoother surface, in mesh units: how far two sensible answers lie
         apart says how uncertain a hole is.
-    rim_turn : (n_holes,) float64
+    rim_variation : (n_holes,) float64
         Mean length of the difference between the unit normals of neighbouring rim vertices: how rough or bent the
         surface is there.
     unfilled : list of int
@@ -90,7 +90,7 @@ def close_flat(mesh: TriangleMesh, loops: list[IntArray]) -> FilledMesh:
     Returns
     -------
     FilledMesh
-        Its gap and rim turn are NaN: nothing is known of its error.
+        Its disagreement and rim variation are NaN: nothing is known of its error.
     """
     near = Surroundings.of(mesh, loops)
     patch, unfilled = near.triangulate()

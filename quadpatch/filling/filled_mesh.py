@@ -18,7 +18,7 @@ class FilledMesh:
     triangle_hole : (n_invented_triangles,) int64
         Position in the list of loops of every invented triangle's hole.
     vertex_hole : (n_invented_vertices,) int64
-    gap, rim_turn : (n_loops,) float64
+    disagreement, rim_variation : (n_loops,) float64
         See `quadpatch.filling.fill.ClosedMesh`.
     unfilled : list of int
         Positions of loops that could not be closed without giving an edge a third face.

@@ -101,7 +101,7 @@ class Surroundings:
         disagreement: FloatArray | None = None,
         rim_variation: FloatArray | None = None,
     ) -> FilledMesh:
-        """Put a fill in local vertices behind the mesh's own; without gap and rim turn, they are NaN."""
+        """Put a fill in local vertices behind the mesh's own; without disagreement and variation, they are NaN."""
         mesh, n_local = self.mesh, len(self.used)
         n_input = len(mesh.vertices)
         unknown = np.full(len(self.loops), np.nan)

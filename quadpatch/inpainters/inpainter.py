@@ -16,7 +16,7 @@ class Surroundings:
     patches : Patches
         Calibration holes count as unknown.
     outline : (n_patches, N, N) float64
-    ground : Ground
+    training_surface : TrainingSurface
         The same surface to cut training pairs from; calibration holes are open.
     """
 

@@ -1,4 +1,4 @@
-"""Fitting the network `residual` to one mesh: it practises on that mesh's own undamaged surface."""
+"""Fitting the network `residual` to one mesh: it is trained on that mesh's own undamaged surface."""
 
 import time
 from collections.abc import Callable

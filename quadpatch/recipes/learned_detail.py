@@ -37,13 +37,13 @@ class CompletionInput:
     Attributes
     ----------
     filled : FilledMesh
-    rule : FillRule
+    rule : EnergyBlend
         That it was faired by.
     diameters : list of float
         Of the filled holes, in mesh units.
     edge_length : float
         Mean edge length, in mesh units.
-    practice : Practice or None
+    calibration : CalibrationSet or None
     calibration_filled : FilledMesh or None
         The calibration holes, filled like the real ones.
     """
@@ -116,7 +116,7 @@ def complete(
             return None
         blend_factor, error_model = _calibrate(problem, _Model(inpainter, seeds, scale))
     with stages.stage("inpaint"):
-        # What practice does not believe need not be said.
+        # A model with a blend factor of 0 need not be asked.
         predicted = inpainter.predict(sampled.patches, sampled.outline) if blend_factor else None
     with stages.stage("reconstruct"):
         evidence, trust = None, np.zeros(len(filled.disagreement), bool)

@@ -2,7 +2,7 @@
 
 K. Sarkar, K. Varanasi, D. Stricker, "Learning Quadrangulated Patches For 3D Shape Processing", 2019. The stages stand
 here in the paper's order. What the default recipe adds has no place here: no fairing, no outline under the heights, no
-practice, no share, no joining at the rim, no judgement.
+calibration, no share, no joining at the rim, no judgement.
 
 One thing differs. The paper places all vertices anew; here measured ones keep their bits, and only new ones are placed.
 """

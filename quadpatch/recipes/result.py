@@ -69,13 +69,13 @@ class Completion:
     Attributes
     ----------
     filled : FilledMesh
-    evidence : Evidence or None
-        None where practice believed nothing of what the model says, and it was not asked.
+    evidence : PatchAgreement or None
+        None where the blend factor is 0, and the model was not asked.
     trust : (n_holes,) bool
         Holes that were displaced.
-    believed : float
-        Share of the displacement that was applied, 0..1, as practice on this mesh advised.
-    expectation : Expectation or None
+    blend_factor : float
+        Share of the displacement that was applied, 0..1, as calibration on this mesh sets it.
+    error_model : ErrorModel or None
         How large an error to expect, as calibration holes taught; None without calibration.
     scale : PatchScale
     n_patches : int
@@ -108,7 +108,7 @@ class Repair:
         In the order of the filled loops.
     results : list of HoleResult
         One per hole, by id.
-    rule : FillRule
+    rule : EnergyBlend
         What the fill was faired by.
     completion : Completion or None
         None where geometry alone filled the holes.
