@@ -1,4 +1,4 @@
-"""Seconds per stage from outline to connectivity, on a mesh of a chosen size.
+"""Seconds per stage from base surface to connectivity, on a mesh of a chosen size.
 
 Run ``python -m benchmarks.stages`` for a generated relief, or with the paths of meshes. Prints one table per mesh;
 times are wall-clock and mean something only on an idle machine.
@@ -62,9 +62,9 @@ def measure(name: str, mesh: TriangleMesh, arguments: argparse.Namespace) -> Tab
     """Time every stage on one mesh."""
     watch = Stopwatch(f"{name}: {len(mesh.vertices):,} vertices, {len(mesh.triangles):,} triangles")
     length, resolution = arguments.length * diagonal(mesh), arguments.resolution
-    outline = watch.time("smooth", lambda: laplacian_smooth(mesh, 30), lambda _: "")
+    base_surface = watch.time("smooth", lambda: laplacian_smooth(mesh, 30), lambda _: "")
     quads = watch.time(
-        "quadrangulate", lambda: quadrangulate(outline, length), lambda made: f"{len(made.quads):,} quads"
+        "quadrangulate", lambda: quadrangulate(base_surface, length), lambda made: f"{len(made.quads):,} quads"
     )
     frames = watch.time("frames", lambda: quad_frames(quads), lambda _: "")
     seeds = seed_points(quads, frames, arguments.overlap)

@@ -21,7 +21,7 @@ from quadpatch.inpainters.paper_dictionary import HeightsInpainter
 from quadpatch.mesh.holes import find_holes, select_holes
 from quadpatch.mesh.measures import diagonal
 from quadpatch.mesh.near_vertices import Tolerance
-from quadpatch.mesh.orientation import triangles_facing_turned
+from quadpatch.mesh.orientation import triangles_facing_flipped
 from quadpatch.mesh.weld import Weld, weld
 from quadpatch.options import DictionaryOptions, NetworkOptions, RepairOptions, check_weld_tolerance
 from quadpatch.recipes.default import inpaint
@@ -271,18 +271,18 @@ def _check_recipe(model: Model, options: RepairOptions) -> None:
 def _fill(scan: Scan, welded: Weld, repair: Repair) -> Fill:
     """Put the invented part of a repair into the file's own vertex numbers, and its holes behind those marked there.
 
-    A hole whose rim was turned over for the repair is turned back with it.
+    A hole whose rim was flipped for the repair is turned back with it.
     """
     filled = repair.filled
     new = filled.mesh.triangles[filled.n_measured_triangles :]
-    turned = triangles_facing_turned(new, filled.triangle_hole, welded.mesh.triangles[welded.is_turned])
+    flipped = triangles_facing_flipped(new, filled.triangle_hole, welded.mesh.triangles[welded.is_flipped])
     ids = np.array([hole.id for hole in repair.chosen], np.int64)
     confidence = np.array([repair.results[i].confidence or 0.0 for i in ids.tolist()])
     n_new = len(filled.vertex_hole)
     to_file = np.concatenate([welded.to_file, len(scan.vertices) + np.arange(n_new)])
     return Fill(
         filled.mesh.vertices[filled.n_measured_vertices :],
-        to_file[np.where(turned[:, np.newaxis], new[:, ::-1], new)],
+        to_file[np.where(flipped[:, np.newaxis], new[:, ::-1], new)],
         scan.next_hole_id + ids[filled.vertex_hole],
         confidence[filled.vertex_hole],
         scan.next_hole_id + ids[filled.triangle_hole],

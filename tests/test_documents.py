@@ -150,8 +150,8 @@ def test_the_numbers_of_the_method_are_those_of_the_code() -> None:
         f"{100 * assessment.LEAST_COVERAGE:g} % of its new vertices",
         f"differ by no more than {assessment.MOST_DISAGREEMENT} times",
         f"over {triangulation.MAX_TABLE_SIZE} vertices",
-        f"2 ({scale.OUTLINE_SHARE} r / e)² uniform Laplacian iterations, "
-        f"between {scale.OUTLINE_ITERATIONS_RANGE[0]} and {scale.OUTLINE_ITERATIONS_RANGE[1]}",
+        f"2 ({scale.BASE_SURFACE_SHARE} r / e)² uniform Laplacian iterations, "
+        f"between {scale.BASE_SURFACE_ITERATIONS_RANGE[0]} and {scale.BASE_SURFACE_ITERATIONS_RANGE[1]}",
         f"{paper.SMOOTHING_ITERATIONS} uniform Laplacian iterations",
         f"normal · z > {ray_visibility.LEAST_FACING}",
         f"at the rim over {hole_kinds.OUTWARD}",

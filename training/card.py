@@ -17,7 +17,7 @@ INTENDED_USE = (
 )
 
 _SIGNALS = {
-    NORMALISATION: "heights over the outline (smooth as patches are wide), mean removed, divided by their spread",
+    NORMALISATION: "heights over the base surface (smoothed as patches are wide), mean removed, over their deviation",
     HEIGHTS: "heights over the plane of the patch, mean removed: the paper's own recipe",
 }
 
@@ -50,10 +50,10 @@ WORDING = PageWording(
     (
         "Patches of these scans (`scan_`) and of procedural reliefs from another seed (`relief_`), none of them",
         "learned from. A disk in the middle of each patch is hidden (its width in percent of the patch's side stands",
-        "in the name) and completed. `error`: root mean square error in the disk, in units of the patch's own spread;",
+        "in the name) and completed. `error`: root mean square error in the disk, in the patch's own deviation;",
         "`to_plate`, `to_membrane`: divided by that of a thin plate or a membrane over the same hole; `to_unhidden`:",
         "divided by that of coding the whole patch. Below 1 the dictionary is the better one. One patch at a time,",
-        "over the outline of the undamaged mesh: these figures rank dictionaries, they do not foretell the error of",
+        "over the base surface of the undamaged mesh: these figures rank dictionaries; they are not the error of",
         "a repair.",
     ),
 )

@@ -1,6 +1,6 @@
 """Training patches: the detail of measured surface, cut out by the method's own stages.
 
-The detail of a patch is its heights minus those of the smoothed outline over the same bins; for the paper's own recipe
+The detail of a patch is its heights minus those of the base surface over the same bins; for the paper's own recipe
 it is the heights themselves. Repairing codes the same quantity, made by the same functions, so a dictionary meets in a
 repair what it has seen here.
 """
@@ -19,7 +19,7 @@ from quadpatch.mesh.weld import weld
 from quadpatch.patches.folding import is_height_map
 from quadpatch.patches.height_map import sample_height_maps
 from quadpatch.patches.normalisation import HEIGHTS, NORMALISATION, to_signals
-from quadpatch.patches.scale import EDGES_PER_BIN, outline_iterations
+from quadpatch.patches.scale import EDGES_PER_BIN, base_surface_iterations
 from quadpatch.patches.seeds import Seeds, seed_points
 from quadpatch.quads.frames import quad_frames
 from quadpatch.quads.mesher import quadrangulate
@@ -61,8 +61,8 @@ class PatchRecipe:
     normalisation: str = NORMALISATION
 
     @property
-    def with_outline(self) -> bool:
-        """Whether detail is over the outline; the paper's own recipe codes heights over the plane of the patch."""
+    def over_base_surface(self) -> bool:
+        """Whether detail is over the base surface; the paper's own recipe codes heights over the plane of the patch."""
         return self.normalisation != HEIGHTS
 
 
@@ -73,7 +73,7 @@ class TrainingPatches:
     Attributes
     ----------
     detail : (n, N, N) float64
-        Over the outline, or over the plane of the patch; in mesh units, 0 in unknown bins.
+        Over the base surface, or over the plane of the patch; in mesh units, 0 in unknown bins.
     known : (n, N, N) bool
     """
 
@@ -124,8 +124,8 @@ def cut_patches(mesh: TriangleMesh, recipe: PatchRecipe, rng: np.random.Generato
     edge_length = mean_edge_length(mesh)
     length = recipe.length or EDGES_PER_BIN * recipe.resolution * edge_length
     try:
-        outline = laplacian_smooth(mesh, outline_iterations(length, edge_length))
-        quad_mesh = quadrangulate(outline, length / QUADS_PER_LENGTH)
+        base_surface = laplacian_smooth(mesh, base_surface_iterations(length, edge_length))
+        quad_mesh = quadrangulate(base_surface, length / QUADS_PER_LENGTH)
     except NoQuadsError:
         return TrainingPatches.joined([], recipe.resolution)
     seeds = seed_points(quad_mesh, quad_frames(quad_mesh), recipe.overlap)
@@ -135,12 +135,12 @@ def cut_patches(mesh: TriangleMesh, recipe: PatchRecipe, rng: np.random.Generato
     cut = []
     nothing_invented = np.zeros(len(mesh.triangles), dtype=np.bool_)
     for side in (scale * length for scale in recipe.scales):
-        # As in a repair, wider patches lie over a smoother outline.
-        under = outline if side == length else laplacian_smooth(mesh, outline_iterations(side, edge_length))
+        # As in a repair, wider patches lie over a smoother base surface.
+        under = base_surface if side == length else laplacian_smooth(mesh, base_surface_iterations(side, edge_length))
         surface, smooth = (
             sample_height_maps(RayScene(m), m, nothing_invented, seeds, side, recipe.resolution) for m in (mesh, under)
         )
-        cut.append(_worth_learning(surface, smooth if recipe.with_outline else None))
+        cut.append(_worth_learning(surface, smooth if recipe.over_base_surface else None))
     return TrainingPatches.joined(cut, recipe.resolution)
 
 
@@ -151,7 +151,7 @@ def _worth_learning(surface: Patches, smooth: Patches | None) -> TrainingPatches
     detail = np.where(known, surface.heights - base, 0.0)
     _, scaling = to_signals(detail, known)
     keep = is_height_map(surface) & (known.mean(axis=(1, 2)) >= LEAST_KNOWN)
-    keep &= scaling.spread > LEAST_RELIEF * surface.length
+    keep &= scaling.deviation > LEAST_RELIEF * surface.length
     return TrainingPatches(detail[keep], known[keep])
 
 

@@ -63,11 +63,11 @@ def turn(patches: Tensor, turns: IntArray) -> Tensor:
     turns : (n,) int64
         0 to 7: quarter turns, and from 4 on mirrored before.
     """
-    turned = patches.clone()
+    rotated = patches.clone()
     for way in range(1, N_TURNS):
         # Without a wait for the device: the rows are known here.
         rows = torch.from_numpy(np.flatnonzero(turns == way)).to(patches.device)
         if len(rows):
             chosen = patches[rows].transpose(1, 2) if way >= 4 else patches[rows]
-            turned[rows] = torch.rot90(chosen, way % 4, (1, 2))
-    return turned
+            rotated[rows] = torch.rot90(chosen, way % 4, (1, 2))
+    return rotated

@@ -42,7 +42,7 @@ def evaluate_residual(path: Path, corpus: Corpus) -> dict[str, float]:
 def _measure(inpainter: AutoencoderInpainter, patches: PatchSet) -> dict[str, float]:
     arrays = patches.gather(spread_rows(len(patches), MAX_PATCHES))
     answers = inpainter.answer(arrays["channels"].astype(np.float32))
-    correction, asked = arrays["correction"].astype(np.float64), arrays["asked"]
-    fill = np.abs(correction[asked]).mean()
-    network = np.abs((answers - correction)[asked]).mean()
+    correction, loss_mask = arrays["correction"].astype(np.float64), arrays["asked"]
+    fill = np.abs(correction[loss_mask]).mean()
+    network = np.abs((answers - correction)[loss_mask]).mean()
     return {"n_patches": float(len(answers)), "to_fill": round(float(network / fill), 5)}

@@ -8,7 +8,7 @@ import numpy as np
 import torch
 from torch import Tensor, nn
 
-from quadpatch.networks.residual import errors, turned
+from quadpatch.networks.residual import errors, rotated
 from quadpatch.types import IntArray
 from training.architectures import Architecture
 from training.paper_task import spread_rows
@@ -51,7 +51,7 @@ class ResidualTask:
         """See `Task`; pairs are drawn with repeats, each batch turned in its own way."""
         rows = rng.integers(0, len(self.train), size)
         turn = int(rng.integers(0, 8))
-        return turned(self._make(self.train, rows[share], device), turn % 4, mirrored=turn >= 4)
+        return rotated(self._make(self.train, rows[share], device), turn % 4, mirrored=turn >= 4)
 
     def validation(self, size: int, device: torch.device) -> Iterator[Batch]:
         """See `Task`; pairs evenly from all held-out meshes, not turned."""
@@ -61,14 +61,14 @@ class ResidualTask:
 
     def loss(self, module: nn.Module, batch: Batch) -> Tensor:
         """See `Task`: the error in shares of the fill's, with its slopes."""
-        channels, correction, asked = batch
+        channels, correction, loss_mask = batch
         inputs = channels.contiguous(memory_format=torch.channels_last)
-        return errors(module(inputs).float(), correction, asked).relative_loss
+        return errors(module(inputs).float(), correction, loss_mask).relative_loss
 
     def _make(self, patches: PatchSet, rows: IntArray, device: torch.device) -> Batch:
         arrays = patches.gather(rows)
-        channels, correction, asked = (torch.from_numpy(arrays[name]).to(device, torch.float32) for name in _ARRAYS)
-        return channels, correction[:, None], asked[:, None]
+        channels, correction, loss_mask = (torch.from_numpy(arrays[name]).to(device, torch.float32) for name in _ARRAYS)
+        return channels, correction[:, None], loss_mask[:, None]
 
 
 def open_residual_task(architecture: Architecture, corpus: Corpus) -> ResidualTask:

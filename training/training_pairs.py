@@ -2,8 +2,8 @@
 
 See `quadpatch.calibration.training_pairs`.
 
-Arrays: `channels` and `correction`, float16 (both in spreads of the patch, where its steps of a thousandth are less
-than any scanner's noise), and `asked`, bool.
+Arrays: `channels` and `correction`, float16 (both in standard deviations of the patch, where its steps of a thousandth
+are less than any scanner's noise), and `asked`, bool: the loss mask.
 """
 
 from itertools import islice
@@ -18,7 +18,7 @@ from quadpatch.mesh.smoothing import laplacian_smooth
 from quadpatch.options import PatchOptions
 from quadpatch.patches.layout import lay_out
 from quadpatch.patches.residual_input import RESOLUTION
-from quadpatch.patches.scale import choose_scale, outline_iterations
+from quadpatch.patches.scale import base_surface_iterations, choose_scale
 from quadpatch.recipes.default import suitable_rule
 from quadpatch.types import TriangleMesh
 from training.shards import Arrays
@@ -50,7 +50,7 @@ def cut_training_pairs(mesh: TriangleMesh, most: int, rng: np.random.Generator) 
     return {
         "channels": pairs.channels.astype(np.float16),
         "correction": pairs.correction.astype(np.float16),
-        "asked": pairs.asked > 0,
+        "asked": pairs.loss_mask > 0,
     }
 
 
@@ -59,7 +59,7 @@ def _of_diameter(mesh: TriangleMesh, diameter: float, most: int, rng: np.random.
     scale = choose_scale([diameter], edge_length, PatchOptions(), RESOLUTION)
     rule, _ = suitable_rule(cut_calibration_set(mesh, diameter, edge_length, rng))
     try:
-        seeds = lay_out(laplacian_smooth(mesh, outline_iterations(scale.length, edge_length)), scale)
+        seeds = lay_out(laplacian_smooth(mesh, base_surface_iterations(scale.length, edge_length)), scale)
     except NoQuadsError:
         return TrainingPairs.joined([], RESOLUTION)
     training_surface = TrainingSurface(mesh, seeds, scale, rule, np.array([diameter]), edge_length)
@@ -70,4 +70,4 @@ def _of_diameter(mesh: TriangleMesh, diameter: float, most: int, rng: np.random.
             break
     pairs = TrainingPairs.joined(parts, RESOLUTION)
     chosen = np.sort(rng.permutation(len(pairs))[:most])
-    return TrainingPairs(pairs.channels[chosen], pairs.correction[chosen], pairs.asked[chosen])
+    return TrainingPairs(pairs.channels[chosen], pairs.correction[chosen], pairs.loss_mask[chosen])

@@ -16,8 +16,8 @@ from quadpatch.mesh.smoothing import laplacian_smooth
 from quadpatch.patches.folding import is_unfolded
 from quadpatch.patches.height_map import sample_height_maps
 from quadpatch.patches.layout import patchify, pick, seeds_near, take
-from quadpatch.patches.residual_input import in_spreads, network_input
-from quadpatch.patches.scale import PatchScale, outline_iterations
+from quadpatch.patches.residual_input import network_input, standardise
+from quadpatch.patches.scale import PatchScale, base_surface_iterations
 from quadpatch.patches.seeds import Seeds
 from quadpatch.types import FloatArray, TriangleMesh
 
@@ -63,14 +63,14 @@ class TrainingPairs:
     channels : (n, 2, N, N)
         As `network_input` gives them.
     correction : (n, N, N)
-        How much higher the true surface lies, in spreads of the patch; 0 where `asked` is 0.
-    asked : (n, N, N)
+        How much higher the true surface lies, in standard deviations of the patch; 0 where `loss_mask` is 0.
+    loss_mask : (n, N, N)
         1 for invented bins whose truth is known.
     """
 
     channels: "np.ndarray[tuple[int, ...], np.dtype[np.float32]]"
     correction: "np.ndarray[tuple[int, ...], np.dtype[np.float32]]"
-    asked: "np.ndarray[tuple[int, ...], np.dtype[np.float32]]"
+    loss_mask: "np.ndarray[tuple[int, ...], np.dtype[np.float32]]"
 
     def __len__(self) -> int:
         """Count of pairs."""
@@ -83,7 +83,7 @@ class TrainingPairs:
         return TrainingPairs(
             np.concatenate([np.zeros((0, 2, resolution, resolution), np.float32), *(p.channels for p in parts)]),
             np.concatenate([none, *(part.correction for part in parts)]),
-            np.concatenate([none, *(part.asked for part in parts)]),
+            np.concatenate([none, *(part.loss_mask for part in parts)]),
         )
 
 
@@ -110,10 +110,10 @@ def _round(training_surface: TrainingSurface, diameter: float, rng: np.random.Ge
     spacing = Spacing(training_surface.edge_length, _MARGIN_EDGES * training_surface.edge_length)
     punched = cut_holes(training_surface.mesh, diameter, spacing, rng)
     filled = training_surface.rule.fill(punched.mesh, punched.loops)
-    outline = laplacian_smooth(filled.mesh, outline_iterations(scale.length, training_surface.edge_length))
+    base_surface = laplacian_smooth(filled.mesh, base_surface_iterations(scale.length, training_surface.edge_length))
     invented = filled.mesh.vertices[filled.n_measured_vertices :]
     near = take(training_surface.seeds, seeds_near(training_surface.seeds, invented, scale.length))
-    sampled = patchify(filled, outline, near, scale)
+    sampled = patchify(filled, base_surface, near, scale)
     sampled = pick(sampled, is_unfolded(sampled.patches))
     patches = sampled.patches
     places = Seeds(patches.origins, patches.frames, np.zeros(len(patches), np.int64))
@@ -121,7 +121,7 @@ def _round(training_surface: TrainingSurface, diameter: float, rng: np.random.Ge
     truth = sample_height_maps(
         RayScene(training_surface.mesh), training_surface.mesh, nothing, places, scale.length, scale.resolution
     )
-    asked = truth.seen & patches.seen & ~patches.known
-    seen = network_input(patches, sampled.outline)
-    correction = in_spreads(np.where(asked, truth.heights - patches.heights, 0.0), seen.spread)
-    return TrainingPairs(seen.channels, correction.astype(np.float32), asked.astype(np.float32))
+    loss_mask = truth.seen & patches.seen & ~patches.known
+    seen = network_input(patches, sampled.base_heights)
+    correction = standardise(np.where(loss_mask, truth.heights - patches.heights, 0.0), seen.deviation)
+    return TrainingPairs(seen.channels, correction.astype(np.float32), loss_mask.astype(np.float32))

@@ -50,16 +50,16 @@ class DictionaryInpainter:
 
         That makes a covariance of the bins, and its principal directions take the place of the atoms.
         """
-        signals, known = _usable_signals(surroundings.patches, surroundings.outline)
+        signals, known = _usable_signals(surroundings.patches, surroundings.base_heights)
         if len(signals) < MIN_TRAINING_PATCHES:
             return self
         codes = masked_omp(signals, known, self.dictionary.atoms, self.dictionary.n_nonzero)
         used = self.dictionary.atoms * np.sqrt((codes**2).mean(axis=0))
         return _principal(used @ used.T, self.resolution)
 
-    def predict(self, patches: Patches, outline: FloatArray) -> FloatArray:
+    def predict(self, patches: Patches, base_heights: FloatArray) -> FloatArray:
         """See `Inpainter`."""
-        signals, scaling = to_signals(patches.heights - outline, patches.known)
+        signals, scaling = to_signals(patches.heights - base_heights, patches.known)
         known = patches.known.reshape(signals.shape)
         atoms = self.dictionary.atoms
         if self.deviations is None:
@@ -67,23 +67,23 @@ class DictionaryInpainter:
         else:
             scaled = atoms * self.deviations
             completed = gaussian_codes(signals, known, scaled) @ scaled.T
-        return outline + from_signals(completed, scaling)
+        return base_heights + from_signals(completed, scaling)
 
 
-def learn_from_patches(patches: Patches, outline: FloatArray) -> DictionaryInpainter | None:
+def learn_from_patches(patches: Patches, base_heights: FloatArray) -> DictionaryInpainter | None:
     """Learn a dictionary from the known bins of a mesh's own patches.
 
     Parameters
     ----------
     patches : Patches
-    outline : (n_patches, N, N) float64
+    base_heights : (n_patches, N, N) float64
 
     Returns
     -------
     DictionaryInpainter or None
         None where too few patches show enough surface to learn anything.
     """
-    signals, known = _usable_signals(patches, outline)
+    signals, known = _usable_signals(patches, base_heights)
     if len(signals) < MIN_TRAINING_PATCHES:
         return None
     return _principal(known_covariance(signals, known), patches.resolution)
@@ -94,9 +94,9 @@ def _principal(covariance: FloatArray, resolution: int) -> DictionaryInpainter:
     return DictionaryInpainter(Dictionary(atoms, resolution, len(deviations)), deviations)
 
 
-def _usable_signals(patches: Patches, outline: FloatArray) -> tuple[FloatArray, BoolArray]:
+def _usable_signals(patches: Patches, base_heights: FloatArray) -> tuple[FloatArray, BoolArray]:
     """Signals of the patches that show enough surface, and some texture; and their known bins."""
     usable = patches.known.mean(axis=(1, 2)) >= LEAST_KNOWN
-    signals, scaling = to_signals(patches.heights[usable] - outline[usable], patches.known[usable])
-    textured = scaling.spread > 0
+    signals, scaling = to_signals(patches.heights[usable] - base_heights[usable], patches.known[usable])
+    textured = scaling.deviation > 0
     return signals[textured], patches.known[usable].reshape(signals.shape)[textured]

@@ -15,13 +15,13 @@ class Surroundings:
     ----------
     patches : Patches
         Calibration holes count as unknown.
-    outline : (n_patches, N, N) float64
+    base_heights : (n_patches, N, N) float64
     training_surface : TrainingSurface
         The same surface to cut training pairs from; calibration holes are open.
     """
 
     patches: Patches
-    outline: FloatArray
+    base_heights: FloatArray
     training_surface: TrainingSurface
 
 
@@ -37,14 +37,14 @@ class Inpainter(Protocol):
         """Fit the model to the mesh at hand; itself where there is nothing to fit."""
         ...
 
-    def predict(self, patches: Patches, outline: FloatArray) -> FloatArray:
+    def predict(self, patches: Patches, base_heights: FloatArray) -> FloatArray:
         """Predict every bin, the known ones too: how well it does there says how far to trust it elsewhere.
 
         Parameters
         ----------
         patches : Patches
             Heights in unknown bins are those of the geometric fill.
-        outline : (n_patches, N, N) float64
+        base_heights : (n_patches, N, N) float64
             Heights of the smoothed surface in the same patches.
 
         Returns

@@ -90,12 +90,12 @@ class AutoencoderInpainter:
         """See `Inpainter`; a network stays as it was trained."""
         return self
 
-    def predict(self, patches: Patches, outline: FloatArray) -> FloatArray:
+    def predict(self, patches: Patches, base_heights: FloatArray) -> FloatArray:
         """See `Inpainter`."""
         if self.scale is not None:
             return self._predict_heights(patches, self.scale)
-        seen = network_input(patches, outline)
-        return corrected(patches, seen.spread, self.answer(seen.channels))
+        seen = network_input(patches, base_heights)
+        return corrected(patches, seen.deviation, self.answer(seen.channels))
 
     def _predict_heights(self, patches: Patches, scale: PaperScale) -> FloatArray:
         mean = _mean_of_known(patches.heights, patches.known)[:, None, None]

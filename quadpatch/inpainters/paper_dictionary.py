@@ -47,9 +47,9 @@ class HeightsInpainter:
         """See `Inpainter`; the paper fits nothing."""
         return self
 
-    def predict(self, patches: Patches, outline: FloatArray | None = None) -> FloatArray:
-        """Predict every bin from the known ones of its patch; see `Inpainter`. The outline is not looked at."""
-        del outline
+    def predict(self, patches: Patches, base_heights: FloatArray | None = None) -> FloatArray:
+        """Predict every bin from the known ones of its patch; see `Inpainter`. The base surface is not looked at."""
+        del base_heights
         signals, scaling = mean_free(patches.heights, patches.known)
         known = patches.known.reshape(signals.shape)
         codes = masked_omp(signals, known, self.dictionary.atoms, self.dictionary.n_nonzero)

@@ -1,8 +1,8 @@
-"""Laplacian smoothing: the low-resolution outline of a mesh.
+"""Laplacian smoothing: the low-resolution base surface of a mesh.
 
 Uniform weights, all vertices at once (Jacobi), as one sparse matrix applied again and again. A boundary vertex is
 averaged with its neighbours along the boundary only: the rim of an open scan gets smooth as a curve and is not
-pulled into the surface, and the outline still reaches (nearly) to where the scan ends. Vertices that no triangle
+pulled into the surface, and the base surface still reaches (nearly) to where the scan ends. Vertices that no triangle
 uses stay where they are.
 """
 

@@ -4,7 +4,7 @@ STL repeats every vertex for every triangle, and exporters repeat vertices along
 boundaries. Only vertices on boundary edges are joined: where their coordinates are the same bits (0.0 and -0.0 are one
 number), and on demand where they are closer than a tolerance. What lies inside a surface is left as measured.
 
-Faces that repeat others, and fins, are left out, and faces that are turned over against their neighbours are turned
+Faces that repeat others, and fins, are left out, and faces that are flipped against their neighbours are turned
 back: holes are found, measured and filled on the surface that remains. The file keeps all of them.
 """
 
@@ -16,7 +16,7 @@ from quadpatch.mesh.duplicate_faces import repeated_triangles
 from quadpatch.mesh.edge_groups import EdgeSurvey, survey_edges
 from quadpatch.mesh.fins import fin_triangles
 from quadpatch.mesh.near_vertices import Tolerance, join_near
-from quadpatch.mesh.orientation import turned_triangles
+from quadpatch.mesh.orientation import flipped_triangles
 from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Triangles, Vertices
 
 
@@ -62,7 +62,7 @@ class Weld:
         Welded vertex of each file vertex.
     ignored_triangles : (k, 3) int64
         Repeated triangles and fins, in welded vertices.
-    is_turned : (n_triangles,) bool
+    is_flipped : (n_triangles,) bool
         Triangles of `mesh` whose direction is not that of the file.
     counts : WeldCounts
     """
@@ -71,7 +71,7 @@ class Weld:
     to_file: IntArray
     from_file: IntArray
     ignored_triangles: Triangles
-    is_turned: BoolArray
+    is_flipped: BoolArray
     counts: WeldCounts
 
 
@@ -117,17 +117,17 @@ def weld(scan_vertices: Vertices, scan_triangles: Triangles, tolerance: Toleranc
     if survey.is_crowded:
         is_fin = fin_triangles(scan_vertices[to_file], triangles)
         fins, triangles = triangles[is_fin], triangles[~is_fin]
-    is_turned = np.zeros(len(triangles), dtype=bool)
+    is_flipped = np.zeros(len(triangles), dtype=bool)
     if survey.is_divided:
-        is_turned = turned_triangles(triangles, len(to_file))
-        triangles = np.where(is_turned[:, np.newaxis], triangles[:, ::-1], triangles)
+        is_flipped = flipped_triangles(triangles, len(to_file))
+        triangles = np.where(is_flipped[:, np.newaxis], triangles[:, ::-1], triangles)
     return Weld(
         TriangleMesh(scan_vertices[to_file], triangles),
         to_file,
         from_file,
         np.concatenate([copies, fins]),
-        is_turned,
-        WeldCounts(n_equal, n_near, tolerance, len(proper), len(copies), len(fins), int(is_turned.sum())),
+        is_flipped,
+        WeldCounts(n_equal, n_near, tolerance, len(proper), len(copies), len(fins), int(is_flipped.sum())),
     )
 
 

@@ -12,7 +12,7 @@ from torch import Tensor
 from quadpatch.calibration.training_pairs import TrainingPairs, make_training_pairs
 from quadpatch.inpainters.inpainter import Surroundings
 from quadpatch.networks.precision import has_fast_bfloat16
-from quadpatch.networks.residual import Residual, errors, turned
+from quadpatch.networks.residual import Residual, errors, rotated
 from quadpatch.options import NetworkOptions
 from quadpatch.patches.residual_input import RESOLUTION, corrected, network_input
 from quadpatch.types import FloatArray, Patches, Progress, no_progress
@@ -75,15 +75,15 @@ class FittingInpainter:
     def _second_part(self, stage: str, fraction: float) -> None:
         self.progress(stage, CUTTING_SHARE + (1.0 - CUTTING_SHARE) * fraction)
 
-    def predict(self, patches: Patches, outline: FloatArray) -> FloatArray:
+    def predict(self, patches: Patches, base_heights: FloatArray) -> FloatArray:
         """See `Inpainter`."""
-        seen = network_input(patches, outline)
+        seen = network_input(patches, base_heights)
         answers = [np.zeros((0, RESOLUTION, RESOLUTION), np.float32)]
         with torch.inference_mode():
             for start in range(0, len(patches), _RUN):
                 part = torch.from_numpy(seen.channels[start : start + _RUN])
                 answers.append(self.network(part)[:, 0].numpy())
-        return corrected(patches, seen.spread, np.concatenate(answers).astype(np.float64))
+        return corrected(patches, seen.deviation, np.concatenate(answers).astype(np.float64))
 
 
 def collect_training_pairs(
@@ -132,7 +132,7 @@ def fit(
         Steps done.
     """
     random = torch.Generator().manual_seed(seed)
-    arrays = pairs.channels, pairs.correction[:, None], pairs.asked[:, None]
+    arrays = pairs.channels, pairs.correction[:, None], pairs.loss_mask[:, None]
     tensors = tuple(torch.from_numpy(array) for array in arrays)
     network.to(memory_format=torch.channels_last)  # type: ignore[call-overload]  # torch's own stubs lack it
     optimiser = torch.optim.AdamW(network.parameters(), RATE, weight_decay=1e-2)
@@ -156,14 +156,14 @@ def _share_done(of_steps: float, one_step: float, of_time: float) -> float:
 def _batch(tensors: tuple[Tensor, ...], random: torch.Generator) -> tuple[Tensor, ...]:
     chosen = torch.randint(0, len(tensors[0]), (BATCH,), generator=random)
     turn = int(torch.randint(0, 8, (1,), generator=random).item())
-    return turned(tuple(tensor[chosen] for tensor in tensors), turn % 4, mirrored=turn >= 4)
+    return rotated(tuple(tensor[chosen] for tensor in tensors), turn % 4, mirrored=turn >= 4)
 
 
 def _step(network: Residual, optimiser: torch.optim.Optimizer, batch: tuple[Tensor, ...]) -> None:
-    channels, correction, asked = batch
+    channels, correction, loss_mask = batch
     with torch.autocast("cpu", torch.bfloat16, enabled=has_fast_bfloat16()):
         answer = network(channels.contiguous(memory_format=torch.channels_last))
-    loss = errors(answer.float(), correction, asked).loss
+    loss = errors(answer.float(), correction, loss_mask).loss
     optimiser.zero_grad()
     loss.backward()  # type: ignore[no-untyped-call]
     torch.nn.utils.clip_grad_norm_(network.parameters(), _LONGEST_GRADIENT)

@@ -22,9 +22,9 @@ WIDTHS = (32, 64, 96)
 # Weight of the error's slopes beside the error itself. The error is zero on measured bins, so its slopes also tell how
 # well the rim is met.
 SLOPES = 0.5
-# Added to the fill's error, in spreads, before a loss is divided by it.
+# Added to the fill's error, in standard deviations, before a loss is divided by it.
 LEAST_ERROR = 0.3
-# Errors up to about this, in spreads, count by their square, larger ones by their size.
+# Errors up to about this, in standard deviations, count by their square, larger ones by their size.
 ROUNDING = 0.3
 
 # Dimensions of one patch in (n, 1, N, N).
@@ -53,7 +53,7 @@ class Residual(nn.Module):
         self.last = nn.Sequential(last, nn.PixelShuffle(2))
 
     def forward(self, channels: Tensor) -> Tensor:
-        """Answer corrections, in spreads."""
+        """Answer corrections, in standard deviations."""
         levels = [self.stem(channels)]
         for down in self.down:
             levels.append(down(levels[-1]))
@@ -95,9 +95,9 @@ class Errors:
     Attributes
     ----------
     network, fill : Tensor
-        Mean absolute error with the network's corrections, and without, in spreads.
+        Mean absolute error with the network's corrections, and without, in standard deviations.
     loss : Tensor
-        Errors and their slopes, in spreads: to be made small on one mesh.
+        Errors and their slopes, in standard deviations: to be made small on one mesh.
     relative_loss : Tensor
         The same with large errors in charge, and divided by the fill's error, patch by patch, so that a smooth mesh
         among many counts for something. Plain shares would not do: errors of smooth surfaces are next to unpredictable,
@@ -110,11 +110,11 @@ class Errors:
     relative_loss: Tensor
 
 
-def errors(answer: Tensor, correction: Tensor, asked: Tensor) -> Errors:
+def errors(answer: Tensor, correction: Tensor, loss_mask: Tensor) -> Errors:
     """Compare answers (n, 1, N, N) with true corrections (n, 1, N, N) in the bins asked for."""
-    count = asked.sum(dim=_PATCH).clamp(min=1.0)
-    wrong = (answer - correction) * asked
-    network, fill = wrong.abs().sum(dim=_PATCH) / count, (correction * asked).abs().sum(dim=_PATCH) / count
+    count = loss_mask.sum(dim=_PATCH).clamp(min=1.0)
+    wrong = (answer - correction) * loss_mask
+    network, fill = wrong.abs().sum(dim=_PATCH) / count, (correction * loss_mask).abs().sum(dim=_PATCH) / count
     plain = _with_slopes(wrong, torch.abs) / count
     rounded = _with_slopes(wrong, _rounded) / count
     return Errors(network.mean(), fill.mean(), plain.mean(), (rounded / (fill + LEAST_ERROR)).mean())
@@ -130,7 +130,7 @@ def _rounded(values: Tensor) -> Tensor:
     return torch.sqrt(values**2 + ROUNDING**2) - ROUNDING
 
 
-def turned(tensors: tuple[Tensor, ...], turns: int, *, mirrored: bool) -> tuple[Tensor, ...]:
+def rotated(tensors: tuple[Tensor, ...], turns: int, *, mirrored: bool) -> tuple[Tensor, ...]:
     """Turn tensors (..., N, N) by quarter turns, and mirror them or not: the frame of a patch may point anywhere."""
     rotated = (torch.rot90(tensor, turns, (-2, -1)) for tensor in tensors)
     return tuple(tensor.transpose(-2, -1) if mirrored else tensor for tensor in rotated)

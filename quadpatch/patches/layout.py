@@ -1,4 +1,4 @@
-"""From a filled mesh to its patches: outline, quad mesh, frames, seeds, height maps (section 3 of the paper)."""
+"""From a filled mesh to its patches: base surface, quad mesh, frames, seeds, height maps (section 3 of the paper)."""
 
 from dataclasses import dataclass
 
@@ -22,36 +22,41 @@ class Sampled:
     Attributes
     ----------
     patches : Patches
-    outline : (n_patches, N, N) float64
-        Heights of the outline, in mesh units.
+    base_heights : (n_patches, N, N) float64
+        Heights of the base surface, in mesh units.
     """
 
     patches: Patches
-    outline: FloatArray
+    base_heights: FloatArray
 
 
-def lay_out(outline: TriangleMesh, scale: PatchScale) -> Seeds:
-    """Quadrangulate the outline with quads of the patch length, and give every quad its seeds.
+def lay_out(base_surface: TriangleMesh, scale: PatchScale) -> Seeds:
+    """Quadrangulate the base surface with quads of the patch length, and give every quad its seeds.
 
     Raises
     ------
     NoQuadsError
-        If the outline is too small or too thin to carry one quad.
+        If the base surface is too small or too thin to carry one quad.
     """
-    quad_mesh = quadrangulate(outline, scale.length)
+    quad_mesh = quadrangulate(base_surface, scale.length)
     return seed_points(quad_mesh, quad_frames(quad_mesh), scale.overlap)
 
 
-def patchify(filled: FilledMesh, outline: TriangleMesh, seeds: Seeds, scale: PatchScale) -> Sampled:
-    """Sample the filled mesh and its outline in the patches at some seeds.
+def patchify(filled: FilledMesh, base_surface: TriangleMesh, seeds: Seeds, scale: PatchScale) -> Sampled:
+    """Sample the filled mesh and its base surface in the patches at some seeds.
 
-    A bin where the outline can't be seen is not known: there is no detail to be coded.
+    A bin where the base surface can't be seen is not known: there is no detail to be coded.
     """
     surface = sample_height_maps(
         RayScene(filled.mesh), filled.mesh, filled.invented_triangles, seeds, scale.length, scale.resolution
     )
     smooth = sample_height_maps(
-        RayScene(outline), outline, np.zeros(len(outline.triangles), bool), seeds, scale.length, scale.resolution
+        RayScene(base_surface),
+        base_surface,
+        np.zeros(len(base_surface.triangles), bool),
+        seeds,
+        scale.length,
+        scale.resolution,
     )
     both = Patches(
         surface.origins,
@@ -80,12 +85,12 @@ def take(seeds: Seeds, which: BoolArray | IntArray) -> Seeds:
 
 
 def pick(sampled: Sampled, which: BoolArray) -> Sampled:
-    """Pick some of the patches, with their part of the outline."""
-    return Sampled(pick_patches(sampled.patches, which), sampled.outline[which])
+    """Pick some of the patches, with their part of the base surface."""
+    return Sampled(pick_patches(sampled.patches, which), sampled.base_heights[which])
 
 
 def pick_patches(patches: Patches, which: BoolArray) -> Patches:
-    """Pick some of the patches (n_patches,), without an outline."""
+    """Pick some of the patches (n_patches,), without a base surface."""
     return Patches(
         patches.origins[which],
         patches.frames[which],

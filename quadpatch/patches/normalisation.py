@@ -1,8 +1,8 @@
 """From the heights of a patch to the signals that a dictionary codes, and back.
 
 A signal is the detail of a patch (its heights over a smooth surface) shifted by the mean of its known bins and
-divided by their spread, so that a shallow and a deep relief of the same shape give the same signal. Training and
-inpainting both call this module: a dictionary only fits signals made the way its own were.
+divided by their standard deviation, so that a shallow and a deep relief of the same shape give the same signal.
+Training and inpainting both call this module: a dictionary only fits signals made the way its own were.
 """
 
 from collections.abc import Callable
@@ -18,27 +18,27 @@ NORMALISATION = "detail-mean-spread"
 # The same for dictionaries of the paper's own recipe: heights over the plane of the patch, less their mean.
 HEIGHTS = "heights-mean"
 
-# A spread this small against the heights themselves is rounding, not relief.
+# A standard deviation this small against the heights themselves is rounding, not relief.
 FLAT = 1e-9
 
 
 @dataclass(frozen=True)
 class Scaling:
-    """What was taken out of every patch: ``detail = mean + spread * signal``.
+    """What was taken out of every patch: ``detail = mean + deviation * signal``.
 
     Attributes
     ----------
     mean : (n_patches,) float64
         Mean detail of the known bins, in mesh units; 0 where none is known.
-    spread : (n_patches,) float64
+    deviation : (n_patches,) float64
         Standard deviation of the known bins' detail, in mesh units; 0 where the patch is flat or has no known bin.
     """
 
     mean: FloatArray
-    spread: FloatArray
+    deviation: FloatArray
 
 
-def to_signals(detail: FloatArray, known: BoolArray, least_spread: float = 0.0) -> tuple[FloatArray, Scaling]:
+def to_signals(detail: FloatArray, known: BoolArray, least_deviation: float = 0.0) -> tuple[FloatArray, Scaling]:
     """Bring patches to mean 0 and standard deviation 1 over their known bins.
 
     Parameters
@@ -47,7 +47,7 @@ def to_signals(detail: FloatArray, known: BoolArray, least_spread: float = 0.0) 
         Height over the smooth surface, in mesh units; unknown bins may hold anything.
     known : (n_patches, N, N) bool
         True = measured bin.
-    least_spread : float
+    least_deviation : float
         In mesh units. Patches that vary less are divided by this instead, so that noise stays small.
 
     Returns
@@ -64,11 +64,11 @@ def to_signals(detail: FloatArray, known: BoolArray, least_spread: float = 0.0) 
     count = np.maximum(flat_known.sum(axis=1), 1)
     mean = values.sum(axis=1) / count
     centred = np.where(flat_known, values - mean[:, None], 0.0)
-    spread = np.sqrt((centred**2).sum(axis=1) / count)
-    spread = np.where(spread > FLAT * np.abs(values).max(axis=1, initial=0.0), spread, 0.0)
-    spread = np.where(spread > 0.0, np.maximum(spread, least_spread), 0.0)
-    signals = np.divide(centred, spread[:, None], out=np.zeros_like(centred), where=spread[:, None] > 0.0)
-    return signals, Scaling(mean, spread)
+    deviation = np.sqrt((centred**2).sum(axis=1) / count)
+    deviation = np.where(deviation > FLAT * np.abs(values).max(axis=1, initial=0.0), deviation, 0.0)
+    deviation = np.where(deviation > 0.0, np.maximum(deviation, least_deviation), 0.0)
+    signals = np.divide(centred, deviation[:, None], out=np.zeros_like(centred), where=deviation[:, None] > 0.0)
+    return signals, Scaling(mean, deviation)
 
 
 def from_signals(signals: FloatArray, scaling: Scaling) -> FloatArray:
@@ -88,7 +88,7 @@ def from_signals(signals: FloatArray, scaling: Scaling) -> FloatArray:
     """
     n_patches, n_bins = signals.shape
     resolution = int(np.sqrt(n_bins))
-    detail = scaling.mean[:, None] + scaling.spread[:, None] * signals
+    detail = scaling.mean[:, None] + scaling.deviation[:, None] * signals
     return detail.reshape(n_patches, resolution, resolution)
 
 
@@ -107,7 +107,7 @@ def mean_free(heights: FloatArray, known: BoolArray) -> tuple[FloatArray, Scalin
     signals : (n_patches, N * N) float64
         In mesh units; 0 in unknown bins.
     scaling : Scaling
-        For `from_signals`; its spread is 1, a pure number.
+        For `from_signals`; its deviation is 1, a pure number.
     """
     shape = len(heights), heights.shape[1] * heights.shape[2]
     flat_known = known.reshape(shape)

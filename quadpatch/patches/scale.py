@@ -18,10 +18,10 @@ RESOLUTION_RANGE = (16, 32)
 OVERLAP = 2
 
 
-# The outline carries what is too wide for a patch to show: each of its points is a mean over about this share of the
-# patch length (one standard deviation).
-OUTLINE_SHARE = 0.37
-OUTLINE_ITERATIONS_RANGE = (30, 300)
+# The base surface carries what is too wide for a patch to show: each of its points is a mean over about this share of
+# the patch length (one standard deviation).
+BASE_SURFACE_SHARE = 0.37
+BASE_SURFACE_ITERATIONS_RANGE = (30, 300)
 
 
 @dataclass(frozen=True)
@@ -59,8 +59,8 @@ def choose_scale(
     return PatchScale(float(length), int(resolution), overlap)
 
 
-def outline_iterations(length: float, edge_length: float) -> int:
-    """Laplacian iterations for the outline under patches of a length; one spreads a point by an edge over sqrt(2)."""
-    wanted = round(2 * (OUTLINE_SHARE * length / edge_length) ** 2)
-    low, high = OUTLINE_ITERATIONS_RANGE
+def base_surface_iterations(length: float, edge_length: float) -> int:
+    """Count the iterations under patches of a length; one of them moves a point by an edge over sqrt(2)."""
+    wanted = round(2 * (BASE_SURFACE_SHARE * length / edge_length) ** 2)
+    low, high = BASE_SURFACE_ITERATIONS_RANGE
     return min(max(wanted, low), high)

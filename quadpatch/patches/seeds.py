@@ -73,7 +73,7 @@ def project_seeds(scene: RayScene, mesh: TriangleMesh, seeds: Seeds, reach: floa
     scene : RayScene
         Of `mesh`.
     mesh : TriangleMesh
-        The outline.
+        The base surface.
     seeds : Seeds
     reach : float
         In mesh units; a seed that sees no surface within it stays where it is.

@@ -70,7 +70,7 @@ def _along_the_normal(pair: Pair, rim: Vertices) -> Camera:
     normal = mean_normal(rim)
     if not normal.any():
         normal = UP
-    towards = -normal if pair.is_turned else normal
+    towards = -normal if pair.is_flipped else normal
     tight = view_of(rim, towards, 1.0)
     clearance = _SURROUNDINGS * float(np.linalg.norm(np.ptp(rim, axis=0)))
     return Camera(tight.centre, tight.right, tight.up, towards, tight.width * _SURROUNDINGS, clearance)

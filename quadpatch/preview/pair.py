@@ -27,7 +27,7 @@ class Pair:
         Of the mesh afterwards.
     after : TriangleMesh
         Turned so that its outside is seen from outside.
-    is_turned : bool
+    is_flipped : bool
         Whether that took turning it inside out.
     old, new : Clay
         The mesh before and afterwards.
@@ -35,7 +35,7 @@ class Pair:
 
     scene: RayScene
     after: TriangleMesh
-    is_turned: bool
+    is_flipped: bool
     old: Clay
     new: Clay
 
@@ -61,14 +61,14 @@ def prepare(
     if not area_vectors(after.vertices, after.triangles).any():
         raise EmptyMeshError("there is no surface to draw")
     scene = RayScene(after)
-    is_turned = is_inside_out(scene, part_of(after, main_pieces(after)))
-    if is_turned:
-        before, after = _turned(before), _turned(after)
+    is_flipped = is_inside_out(scene, part_of(after, main_pieces(after)))
+    if is_flipped:
+        before, after = _flipped(before), _flipped(after)
     old = Clay(before, RayScene(before), np.tile(CLAY, (len(before.triangles), 1)))
-    return Pair(scene, after, is_turned, old, Clay(after, scene, _colours(invented, confidence)))
+    return Pair(scene, after, is_flipped, old, Clay(after, scene, _colours(invented, confidence)))
 
 
-def _turned(mesh: TriangleMesh) -> TriangleMesh:
+def _flipped(mesh: TriangleMesh) -> TriangleMesh:
     return TriangleMesh(mesh.vertices, mesh.triangles[:, ::-1])
 
 

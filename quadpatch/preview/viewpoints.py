@@ -25,7 +25,7 @@ _INSIDE_OUT = 1.5
 def overview(scene: RayScene, whole: Part, invented: Part | None, aspect: float) -> Camera:
     """Look at the whole mesh from where most of the invented surface shows, and more of its outside than inside."""
     directions = spread_directions(_N_DIRECTIONS)
-    outside, inside = visible_areas(scene, whole, directions), visible_areas(scene, _turned(whole), directions)
+    outside, inside = visible_areas(scene, whole, directions), visible_areas(scene, _flipped(whole), directions)
     score = _OUTSIDE * _relative(outside) + _INSIDE * inside / max(outside.max(), inside.max(), _tiny())
     score += _STEEP * (directions @ UP) ** 2
     if invented is not None:
@@ -63,7 +63,7 @@ def _close_up(scene: RayScene, hole: Part, like: Camera) -> tuple[Camera, float]
 def is_inside_out(scene: RayScene, whole: Part) -> bool:
     """Whether someone outside mostly sees the inside of the surface."""
     directions = spread_directions(_N_DIRECTIONS // 4)
-    outside, inside = (visible_areas(scene, part, directions).sum() for part in (whole, _turned(whole)))
+    outside, inside = (visible_areas(scene, part, directions).sum() for part in (whole, _flipped(whole)))
     return bool(inside > _INSIDE_OUT * outside)
 
 
@@ -106,7 +106,7 @@ def spread_directions(count: int) -> FloatArray:
     return np.stack([radius * np.sin(around), height, radius * np.cos(around)], axis=1)
 
 
-def _turned(part: Part) -> Part:
+def _flipped(part: Part) -> Part:
     return Part(part.corners, part.centres, -part.area_vectors)
 
 

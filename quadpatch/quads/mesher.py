@@ -1,7 +1,7 @@
-"""Quad mesh of the outline; the one place that talks to Instant Meshes.
+"""Quad mesh of the base surface; the one place that talks to Instant Meshes.
 
-The outline is smooth, so it is thinned to a few vertices per quad before it is meshed: Instant Meshes takes 1.5 s
-for 64,000 vertices and minutes for a million, the thinned outline 0.2 s and a few seconds, for quads as good.
+The base surface is smooth, so it is thinned to a few vertices per quad before it is meshed: Instant Meshes takes 1.5 s
+for 64,000 vertices and minutes for a million, the clustered base surface 0.2 s and a few seconds, for quads as good.
 
 It is also cut where it is not a manifold. There Instant Meshes colours its vertices wrongly, updates neighbours at the
 same time, and gives other quads on every run, whatever its `deterministic` says; vertices without a sound fan of
@@ -27,8 +27,8 @@ from quadpatch.quads.frames import quad_normals
 from quadpatch.quads.vertex_clustering import cluster_vertices
 from quadpatch.types import BoolArray, FloatArray, IntArray, QuadMesh, Quads, TriangleMesh, Vertices
 
-# Cells of the thinned outline along one side of a quad. Four to eight give the edge lengths, covered area and normals
-# of the full outline on a dozen scans; two already break the topology of quads.
+# Cells of the clustered base surface along one side of a quad. Four to eight give the edge lengths, covered area and
+# normals of the full base surface on a dozen scans; two already break the topology of quads.
 _CELLS_PER_SIDE = 5.0
 # The output is subdivided once: four quads for one of the field.
 _SUBDIVISION = 4.0
@@ -50,7 +50,7 @@ def quadrangulate(mesh: TriangleMesh, edge_length: float) -> QuadMesh:
     Parameters
     ----------
     mesh : TriangleMesh
-        Smooth outline of the scan; finite.
+        Base surface of the scan; finite.
     edge_length : float
         Wanted side of the quads, in mesh units.
 
@@ -140,13 +140,13 @@ def _is_proper(quad_mesh: QuadMesh, side: float) -> BoolArray:
     return np.asarray(has_own_corners & (double_area > 2 * _SMALLEST_AREA * side**2))
 
 
-def _turn_outwards(vertices: Vertices, quads: Quads, outline: TriangleMesh) -> Quads:
-    """Flip whole pieces of the quad mesh whose normals disagree with those of the outline.
+def _turn_outwards(vertices: Vertices, quads: Quads, base_surface: TriangleMesh) -> Quads:
+    """Flip whole pieces of the quad mesh whose normals disagree with those of the base surface.
 
     Instant Meshes keeps the orientation of its input within a piece, so the area of a piece takes the vote:
     single quads at a fold or on a thin wall could be misled by the triangle next to them.
     """
-    a, b, c = (outline.vertices[outline.triangles[:, corner]] for corner in range(3))
+    a, b, c = (base_surface.vertices[base_surface.triangles[:, corner]] for corner in range(3))
     tree = cKDTree((a + b + c) / 3)
     _, nearest = tree.query(vertices[quads].mean(axis=1), k=min(_NEIGHBOURS, len(a)))
     outward = np.cross(b - a, c - a)[nearest.reshape(len(quads), -1)].sum(axis=1)

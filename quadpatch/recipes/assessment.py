@@ -5,8 +5,6 @@ of what was measured: a fill off by 0.03 % of the diagonal has 0.90, one off by 
 size, not the hole's, so that it tells which holes of a part to distrust.
 """
 
-from dataclasses import fields
-
 import numpy as np
 
 from quadpatch.calibration.error_model import ErrorModel
@@ -36,7 +34,7 @@ def measure_agreement(
     covered = (inside.overlap > 0).astype(np.float64)
     return PatchAgreement(
         mean_by(hole, covered, n_holes),
-        mean_by(hole, inside.spread, n_holes),
+        mean_by(hole, inside.deviation, n_holes),
         mean_by(hole, np.linalg.norm(joined, axis=1), n_holes),
         mean_by(rim_hole, np.linalg.norm(at_rim.mean, axis=1), n_holes),
     )
@@ -44,7 +42,7 @@ def measure_agreement(
 
 def trusted_holes(evidence: PatchAgreement) -> BoolArray:
     """Which holes (n_holes,) the model may complete."""
-    disagreement = evidence.spread / np.maximum(evidence.departure + evidence.rim_misfit, 1e-300)
+    disagreement = evidence.deviation / np.maximum(evidence.departure + evidence.rim_misfit, 1e-300)
     trust: BoolArray = (evidence.coverage >= LEAST_COVERAGE) & (disagreement <= MOST_DISAGREEMENT)
     return trust
 
@@ -120,7 +118,13 @@ def evidence_of(i: int, completion: Completion | None) -> dict[str, float]:
     """Name what the patches said about one hole; nothing where none were asked."""
     if completion is None or completion.evidence is None:
         return {}
-    return {sign.name: float(getattr(completion.evidence, sign.name)[i]) for sign in fields(PatchAgreement)}
+    agreement = completion.evidence
+    return {
+        "coverage": float(agreement.coverage[i]),
+        "spread": float(agreement.deviation[i]),
+        "departure": float(agreement.departure[i]),
+        "rim_misfit": float(agreement.rim_misfit[i]),
+    }
 
 
 def _verdict(i: int, n_new_vertices: int, completion: Completion | None) -> tuple[str, str, str]:

@@ -1,7 +1,7 @@
 """The method: a mesh with holes in, a mesh without them out.
 
 The stages are those of Sarkar, Varanasi and Stricker, "Learning Quadrangulated Patches For 3D Shape Processing": holes,
-geometric fill, outline, quads, patches, learning, completion, reconstruction, verdicts.
+geometric fill, base surface, quads, patches, learning, completion, reconstruction, verdicts.
 """
 
 import numpy as np

@@ -15,7 +15,7 @@ from quadpatch.mesh.smoothing import laplacian_smooth
 from quadpatch.options import RepairOptions
 from quadpatch.patches.folding import is_unfolded
 from quadpatch.patches.layout import lay_out, patchify, pick, seeds_near, take
-from quadpatch.patches.scale import PatchScale, choose_scale, outline_iterations
+from quadpatch.patches.scale import PatchScale, base_surface_iterations, choose_scale
 from quadpatch.patches.seeds import Seeds
 from quadpatch.recipes.assessment import measure_agreement, trusted_holes
 from quadpatch.recipes.result import Completion, PatchAgreement
@@ -91,33 +91,33 @@ def complete(
     Raises
     ------
     NoQuadsError
-        If the outline can't carry one quad.
+        If the base surface can't carry one quad.
     """
     filled = problem.filled
     model_resolution = inpainter.resolution if inpainter else None
     scale = choose_scale(problem.diameters, problem.edge_length, options.patches, model_resolution)
     with stages.stage("smooth"):
-        outline = _outline(filled, scale, problem.edge_length)
+        base_surface = _base_surface(filled, scale, problem.edge_length)
     with stages.stage("quadrangulate"):
-        seeds = lay_out(outline, scale)
+        seeds = lay_out(base_surface, scale)
     with stages.stage("patchify"):
         near = seeds_near(seeds, filled.mesh.vertices[filled.n_measured_vertices :], scale.length)
         wanted = near | _some(len(near), rng)
-        everywhere = patchify(filled, outline, take(seeds, wanted), scale)
+        everywhere = patchify(filled, base_surface, take(seeds, wanted), scale)
         sampled = pick(everywhere, near[wanted] & is_unfolded(everywhere.patches))
     with stages.stage("learn"):
         known_patches = _without_calibration_holes(everywhere.patches, problem)
         if inpainter is None:
-            inpainter = learn_from_patches(known_patches, everywhere.outline)
+            inpainter = learn_from_patches(known_patches, everywhere.base_heights)
         else:
             training_surface = _training_surface(problem, seeds, scale)
-            inpainter = inpainter.fitted_to(Surroundings(known_patches, everywhere.outline, training_surface))
+            inpainter = inpainter.fitted_to(Surroundings(known_patches, everywhere.base_heights, training_surface))
         if inpainter is None:
             return None
         blend_factor, error_model = _calibrate(problem, _Model(inpainter, seeds, scale))
     with stages.stage("inpaint"):
         # A model with a blend factor of 0 need not be asked.
-        predicted = inpainter.predict(sampled.patches, sampled.outline) if blend_factor else None
+        predicted = inpainter.predict(sampled.patches, sampled.base_heights) if blend_factor else None
     with stages.stage("reconstruct"):
         evidence, trust = None, np.zeros(len(filled.disagreement), bool)
         if predicted is not None:
@@ -131,8 +131,8 @@ def _moved(filled: FilledMesh, displacement: FloatArray) -> FilledMesh:
     return filled.with_vertices(filled.mesh.vertices[filled.n_measured_vertices :] + displacement)
 
 
-def _outline(filled: FilledMesh, scale: PatchScale, edge_length: float) -> TriangleMesh:
-    return laplacian_smooth(filled.mesh, outline_iterations(scale.length, edge_length))
+def _base_surface(filled: FilledMesh, scale: PatchScale, edge_length: float) -> TriangleMesh:
+    return laplacian_smooth(filled.mesh, base_surface_iterations(scale.length, edge_length))
 
 
 def _without_calibration_holes(patches: Patches, problem: CompletionInput) -> Patches:
@@ -166,12 +166,12 @@ def _calibrate(problem: CompletionInput, model: _Model) -> tuple[float, ErrorMod
     filled = problem.calibration_filled
     if problem.calibration is None or filled is None:
         return PRIOR_BLEND_FACTOR, None
-    outline = _outline(filled, model.scale, problem.edge_length)
+    base_surface = _base_surface(filled, model.scale, problem.edge_length)
     new = filled.mesh.vertices[filled.n_measured_vertices :]
     near = take(model.seeds, seeds_near(model.seeds, new, model.scale.length))
-    sampled = patchify(filled, outline, near, model.scale)
+    sampled = patchify(filled, base_surface, near, model.scale)
     sampled = pick(sampled, is_unfolded(sampled.patches))
-    predicted = model.inpainter.predict(sampled.patches, sampled.outline)
+    predicted = model.inpainter.predict(sampled.patches, sampled.base_heights)
     joined, evidence = _displacements(filled, sampled.patches, predicted)
     joined = np.where(trusted_holes(evidence)[filled.vertex_hole][:, None], joined, 0.0)
     share = blend_factor(problem.calibration, filled, joined)

@@ -1,8 +1,8 @@
 """The method exactly as in the paper: `--recipe paper`, the reference that the default recipe is measured against.
 
 K. Sarkar, K. Varanasi, D. Stricker, "Learning Quadrangulated Patches For 3D Shape Processing", 2019. The stages stand
-here in the paper's order. What the default recipe adds has no place here: no fairing, no outline under the heights, no
-calibration, no share, no joining at the rim, no judgement.
+here in the paper's order. What the default recipe adds has no place here: no fairing, no base surface under the
+heights, no calibration, no share, no joining at the rim, no judgement.
 
 One thing differs. The paper places all vertices anew; here measured ones keep their bits, and only new ones are placed.
 """
@@ -56,7 +56,7 @@ NO_FAIRING = EnergyBlend.of_one(Energy())
 
 @dataclass(frozen=True)
 class _Laid:
-    """Seeds over the whole outline of a closed mesh."""
+    """Seeds over the whole base surface of a closed mesh."""
 
     filled: FilledMesh
     seeds: Seeds
@@ -196,9 +196,9 @@ def cut_heights(mesh: TriangleMesh, scale: PatchScale) -> Patches:
 def _lay_out(filled: FilledMesh, scale: PatchScale, stages: Stages) -> _Laid:
     """Smooth, quadrangulate, and give every quad its seeds (section 3.1 of the paper)."""
     with stages.stage("smooth"):
-        outline = laplacian_smooth(filled.mesh, SMOOTHING_ITERATIONS)
+        base_surface = laplacian_smooth(filled.mesh, SMOOTHING_ITERATIONS)
     with stages.stage("quadrangulate"):
-        return _Laid(filled, lay_out(outline, scale), scale)
+        return _Laid(filled, lay_out(base_surface, scale), scale)
 
 
 def _complete(

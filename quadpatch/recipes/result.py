@@ -51,13 +51,13 @@ class PatchAgreement:
     Attributes
     ----------
     coverage : share of the hole's new vertices that a patch sees
-    spread : mean standard deviation between patches, mesh units
+    deviation : mean standard deviation between patches, mesh units
     departure : mean length of the displacement, mesh units
     rim_misfit : mean error of the model at the rim, where the truth is known, mesh units
     """
 
     coverage: FloatArray
-    spread: FloatArray
+    deviation: FloatArray
     departure: FloatArray
     rim_misfit: FloatArray
 

@@ -27,14 +27,14 @@ class Displacement:
     ----------
     mean : (n, 3) float64
         Weighted mean displacement, in mesh units; zero where no patch sees the vertex.
-    spread : (n,) float64
+    deviation : (n,) float64
         Weighted standard deviation between patches, in mesh units.
     overlap : (n,) int64
         Count of patches that see the vertex.
     """
 
     mean: FloatArray
-    spread: FloatArray
+    deviation: FloatArray
     overlap: IntArray
 
 
@@ -64,8 +64,8 @@ def displace(filled: FilledMesh, vertices: IntArray, patches: Patches, predicted
         [np.bincount(seen.vertex, weight * vectors[:, k], minlength=len(vertices)) / safe for k in range(3)], axis=1
     )
     apart = ((vectors - mean[seen.vertex]) ** 2).sum(axis=1)
-    spread = np.sqrt(np.bincount(seen.vertex, weight * apart, minlength=len(vertices)) / safe)
-    return Displacement(mean, spread, np.bincount(seen.vertex, minlength=len(vertices)))
+    deviation = np.sqrt(np.bincount(seen.vertex, weight * apart, minlength=len(vertices)) / safe)
+    return Displacement(mean, deviation, np.bincount(seen.vertex, minlength=len(vertices)))
 
 
 def _window(patches: Patches, row: FloatArray, column: FloatArray) -> FloatArray:

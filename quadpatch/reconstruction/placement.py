@@ -42,5 +42,5 @@ def place(filled: FilledMesh, vertices: IntArray, patches: Patches, predicted: F
     count = np.maximum(overlap, 1)
     mean = np.stack([np.bincount(seen.vertex, moves[:, k], minlength=len(vertices)) / count for k in range(3)], axis=1)
     apart = ((moves - mean[seen.vertex]) ** 2).sum(axis=1)
-    spread = np.sqrt(np.bincount(seen.vertex, apart, minlength=len(vertices)) / count)
-    return Displacement(mean, spread, overlap)
+    deviation = np.sqrt(np.bincount(seen.vertex, apart, minlength=len(vertices)) / count)
+    return Displacement(mean, deviation, overlap)

@@ -46,12 +46,12 @@ def test_changed_measured_rows_are_seen(change: str) -> None:
 
 
 @pytest.mark.parametrize(("height", "n_folds"), [(0.1, 1), (-0.1, 1), (3.0, 0)])
-@pytest.mark.parametrize("is_turned", [False, True])
+@pytest.mark.parametrize("is_flipped", [False, True])
 def test_a_flap_folded_back_over_its_rim_is_a_fold_in_either_direction(
-    height: float, n_folds: int, is_turned: bool
+    height: float, n_folds: int, is_flipped: bool
 ) -> None:
     # The rim edge from vertex 0 to vertex 1 runs along x; the sheet lies at greater y.
-    flap = [[0, 1, -1] if is_turned else [1, 0, -1]]
+    flap = [[0, 1, -1] if is_flipped else [1, 0, -1]]
     after = grown(SHEET, [SHEET.vertices[0] + [0.5, 0.8, height]], flap)
     assert find_faults(SHEET, after).n_folds == n_folds
 

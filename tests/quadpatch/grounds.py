@@ -11,7 +11,7 @@ from quadpatch.mesh.smoothing import laplacian_smooth
 from quadpatch.options import PatchOptions
 from quadpatch.patches.layout import lay_out
 from quadpatch.patches.residual_input import RESOLUTION
-from quadpatch.patches.scale import choose_scale, outline_iterations
+from quadpatch.patches.scale import base_surface_iterations, choose_scale
 from quadpatch.patches.seeds import Seeds
 from quadpatch.types import Patches, TriangleMesh
 
@@ -20,7 +20,7 @@ def ground_of(mesh: TriangleMesh, diameter: float, overlap: int | None = None) -
     """Prepare a whole mesh for holes of one diameter, as a repair would."""
     edge_length = mean_edge_length(mesh)
     scale = choose_scale([diameter], edge_length, PatchOptions(overlap=overlap), RESOLUTION)
-    seeds = lay_out(laplacian_smooth(mesh, outline_iterations(scale.length, edge_length)), scale)
+    seeds = lay_out(laplacian_smooth(mesh, base_surface_iterations(scale.length, edge_length)), scale)
     return TrainingSurface(mesh, seeds, scale, EnergyBlend.of_one(THIN_PLATE), np.array([diameter]), edge_length)
 
 

@@ -27,8 +27,8 @@ def test_patches_show_the_relief_and_are_known_almost_everywhere(relief: Triangl
     assert patches.is_clean.any()
 
 
-def test_detail_is_measured_from_the_outline_and_not_from_the_plane_of_the_patch(relief: TriangleMesh) -> None:
-    """Bending a sheet with the same relief leaves its detail nearly alone: the outline bends with it."""
+def test_detail_is_measured_from_the_base_surface_and_not_from_the_plane_of_the_patch(relief: TriangleMesh) -> None:
+    """Bending a sheet with the same relief leaves its detail nearly alone: the base surface bends with it."""
     x, y, z = relief.vertices.T
     bent = TriangleMesh(np.stack([x, y, z + 0.01 * x**2], axis=1), relief.triangles)
     plain, lifted = (cut_patches(mesh, RECIPE, np.random.default_rng(1)) for mesh in (relief, bent))
@@ -66,10 +66,10 @@ def test_same_generator_same_patches(relief: TriangleMesh) -> None:
 def test_turning_moves_known_bins_with_their_detail_and_reaches_all_eight_turns() -> None:
     grid = np.arange(9.0).reshape(3, 3)
     patches = TrainingPatches(np.repeat(grid[None], 200, axis=0), np.repeat(grid[None] > 2.0, 200, axis=0))
-    turned = turn_at_random(patches, np.random.default_rng(0))
-    assert len(np.unique(turned.detail.reshape(200, 9), axis=0)) == 8
-    np.testing.assert_array_equal(turned.known, turned.detail > 2.0)
-    np.testing.assert_array_equal(np.sort(turned.detail.reshape(200, 9)), np.tile(np.arange(9.0), (200, 1)))
+    rotated = turn_at_random(patches, np.random.default_rng(0))
+    assert len(np.unique(rotated.detail.reshape(200, 9), axis=0)) == 8
+    np.testing.assert_array_equal(rotated.known, rotated.detail > 2.0)
+    np.testing.assert_array_equal(np.sort(rotated.detail.reshape(200, 9)), np.tile(np.arange(9.0), (200, 1)))
 
 
 def test_patches_of_a_size_are_the_same_whichever_other_sizes_are_cut_with_them(relief: TriangleMesh) -> None:

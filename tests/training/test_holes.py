@@ -50,7 +50,7 @@ def test_holes_are_as_often_square_as_round_and_of_every_size_and_place() -> Non
 
 def test_the_eight_turns_are_the_eight_symmetries_of_a_square() -> None:
     grid = np.arange(9).reshape(3, 3)
-    turned = turn(torch.from_numpy(np.repeat(grid[None], N_TURNS, 0)), np.arange(N_TURNS)).numpy()
+    rotated = turn(torch.from_numpy(np.repeat(grid[None], N_TURNS, 0)), np.arange(N_TURNS)).numpy()
     symmetries = [np.rot90(g, k) for g in (grid, grid.T) for k in range(4)]
-    np.testing.assert_array_equal(turned, symmetries)
-    assert len(np.unique(turned.reshape(8, 9), axis=0)) == 8
+    np.testing.assert_array_equal(rotated, symmetries)
+    assert len(np.unique(rotated.reshape(8, 9), axis=0)) == 8

@@ -34,11 +34,11 @@ CPU = torch.device("cpu")
 def lesson_set(n: int, seed: int) -> PatchSet:
     """Patches that say nothing, but for a number that tells each of them from the others."""
     rng = np.random.default_rng(seed)
-    asked = rng.random((n, N, N)) > 0.7
-    known = ~asked
+    loss_mask = rng.random((n, N, N)) > 0.7
+    known = ~loss_mask
     channels = np.stack([rng.normal(size=(n, N, N)), known], axis=1).astype(np.float16)
-    correction = np.where(asked, rng.normal(size=(n, N, N)), 0.0).astype(np.float16)
-    return PatchSet([{"channels": channels, "correction": correction, "asked": asked}])
+    correction = np.where(loss_mask, rng.normal(size=(n, N, N)), 0.0).astype(np.float16)
+    return PatchSet([{"channels": channels, "correction": correction, "asked": loss_mask}])
 
 
 @pytest.fixture(scope="module")
@@ -51,12 +51,12 @@ def batch_of(task: ResidualTask, seed: int, share: slice = slice(0, 8)) -> tuple
 
 
 def test_a_batch_is_made_of_lessons_turned_alike(task: ResidualTask) -> None:
-    channels, correction, asked = batch_of(task, 0)
-    assert (channels.shape, correction.shape, asked.shape) == ((8, 2, N, N), (8, 1, N, N), (8, 1, N, N))
-    assert {tensor.dtype for tensor in (channels, correction, asked)} == {torch.float32}
+    channels, correction, loss_mask = batch_of(task, 0)
+    assert (channels.shape, correction.shape, loss_mask.shape) == ((8, 2, N, N), (8, 1, N, N), (8, 1, N, N))
+    assert {tensor.dtype for tensor in (channels, correction, loss_mask)} == {torch.float32}
     # Whatever the turn, what is asked is not known, and what is known needs no correction.
-    assert (channels[:, 1:] + asked == 1).all()
-    assert (correction[asked == 0] == 0).all()
+    assert (channels[:, 1:] + loss_mask == 1).all()
+    assert (correction[loss_mask == 0] == 0).all()
 
 
 def test_batches_follow_from_the_generator_and_shares_of_one_make_it_up(task: ResidualTask) -> None:
@@ -77,9 +77,11 @@ def test_validation_shows_every_held_out_lesson_once_as_it_is(task: ResidualTask
 def test_the_loss_is_that_of_the_fill_until_something_is_learned(task: ResidualTask) -> None:
     module, batch = task.build(), batch_of(task, 3)
     assert isinstance(module, Residual)
-    _, correction, asked = batch
+    _, correction, loss_mask = batch
     found = task.loss(module, batch)
-    assert found.item() == pytest.approx(errors(torch.zeros_like(correction), correction, asked).relative_loss.item())
+    assert found.item() == pytest.approx(
+        errors(torch.zeros_like(correction), correction, loss_mask).relative_loss.item()
+    )
 
     class Right(nn.Module):
         def forward(self, channels: Tensor) -> Tensor:

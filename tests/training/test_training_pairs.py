@@ -21,14 +21,14 @@ def cut(relief: TriangleMesh) -> Arrays:
 
 
 def test_lessons_are_small_on_disk_and_ask_in_invented_bins_only(cut: Arrays) -> None:
-    channels, correction, asked = cut["channels"], cut["correction"], cut["asked"]
-    assert [array.dtype.name for array in (channels, correction, asked)] == ["float16", "float16", "bool"]
+    channels, correction, loss_mask = cut["channels"], cut["correction"], cut["asked"]
+    assert [array.dtype.name for array in (channels, correction, loss_mask)] == ["float16", "float16", "bool"]
     assert channels.shape == (len(channels), 2, RESOLUTION, RESOLUTION)
-    assert correction.shape == asked.shape == (len(channels), RESOLUTION, RESOLUTION)
-    assert (channels[:, 1][asked] == 0).all()
-    assert (correction[~asked] == 0).all()
-    assert np.abs(correction[asked].astype(float)).max() <= LARGEST
-    assert np.abs(correction[asked].astype(float)).mean() > 0.01
+    assert correction.shape == loss_mask.shape == (len(channels), RESOLUTION, RESOLUTION)
+    assert (channels[:, 1][loss_mask] == 0).all()
+    assert (correction[~loss_mask] == 0).all()
+    assert np.abs(correction[loss_mask].astype(float)).max() <= LARGEST
+    assert np.abs(correction[loss_mask].astype(float)).mean() > 0.01
 
 
 def test_holes_of_every_width_give_as_much_as_they_may(cut: Arrays) -> None:

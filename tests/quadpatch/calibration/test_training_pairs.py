@@ -16,7 +16,7 @@ from tests.quadpatch.shapes import open_grid, punched, relief, sphere
 
 DIAMETER = 0.3
 RELIEF = relief(110, 2.0, 0.04, 6)
-# Three waves across a patch: the outline, a mean over a third of it, shows none of them.
+# Three waves across a patch: the base surface, a mean over a third of it, shows none of them.
 LENGTH = 1.0
 
 
@@ -31,7 +31,7 @@ def height_of_relief(x: FloatArray, y: FloatArray) -> FloatArray:
 
 
 def left_over(signal: FloatArray, truth: FloatArray, where: BoolArray, known: BoolArray) -> float:
-    """Mean distance in some bins, in spreads, once scale, shift and tilt are as the known bins say."""
+    """Mean distance in some bins, in standard deviations, once scale, shift and tilt are as the known bins say."""
     tick = (np.arange(RESOLUTION) + 0.5) / RESOLUTION
     columns = np.stack([truth, np.ones_like(truth), *np.meshgrid(tick, tick)], axis=-1)
     solution, *_ = np.linalg.lstsq(columns[known], signal[known], rcond=None)
@@ -57,13 +57,13 @@ def test_the_fill_with_its_correction_is_the_surface_that_was_there(training_sur
     assert len(given) == len(places)
     tick = ((np.arange(RESOLUTION) + 0.5) / RESOLUTION - 0.5) * LENGTH
     offset_x, offset_y = np.meshgrid(tick, tick)
-    for (x, y, _), channels, correction, asked in zip(
-        places, given.channels.astype(float), given.correction.astype(float), given.asked > 0, strict=True
+    for (x, y, _), channels, correction, loss_mask in zip(
+        places, given.channels.astype(float), given.correction.astype(float), given.loss_mask > 0, strict=True
     ):
         truth = height_of_relief(x + offset_x, y + offset_y)
         known = channels[1] > 0
-        in_the_fill = left_over(channels[0], truth, asked, known)
-        in_the_lesson = left_over(channels[0] + correction, truth, asked, known)
+        in_the_fill = left_over(channels[0], truth, loss_mask, known)
+        in_the_lesson = left_over(channels[0] + correction, truth, loss_mask, known)
         in_the_mesh = left_over(channels[0], truth, known, known)
         assert in_the_fill > 0.25
         assert in_the_lesson < 0.1
@@ -73,31 +73,31 @@ def test_the_fill_with_its_correction_is_the_surface_that_was_there(training_sur
 def test_a_fill_without_error_leaves_nothing_to_correct() -> None:
     flat = ground_of(open_grid(80, 2.0), DIAMETER)
     (given,) = rounds(flat, 1)
-    assert given.asked.sum() > 1000
+    assert given.loss_mask.sum() > 1000
     assert (given.correction == 0).all()
 
 
 def test_the_true_surface_of_a_ball_lies_above_a_fill_that_is_drawn_tight() -> None:
     ball = ground_of(sphere(5), 0.4)
     (given,) = rounds(replace(ball, rule=EnergyBlend.of_one(Energy(membrane=1.0))), 1)
-    corrections = given.correction[given.asked > 0]
+    corrections = given.correction[given.loss_mask > 0]
     assert np.mean(corrections > 0) > 0.97
     assert np.median(corrections) > 0.5
 
 
 def test_nothing_is_asked_but_in_invented_bins(pairs: TrainingPairs) -> None:
-    asked = pairs.asked > 0
-    assert set(np.unique(pairs.asked)) == {0.0, 1.0}
-    assert asked.any(axis=(1, 2)).mean() > 0.9
-    assert (pairs.channels[:, 1][asked] == 0).all()
-    assert (pairs.correction[~asked] == 0).all()
+    loss_mask = pairs.loss_mask > 0
+    assert set(np.unique(pairs.loss_mask)) == {0.0, 1.0}
+    assert loss_mask.any(axis=(1, 2)).mean() > 0.9
+    assert (pairs.channels[:, 1][loss_mask] == 0).all()
+    assert (pairs.correction[~loss_mask] == 0).all()
 
 
 def test_lessons_are_bounded_and_of_the_shape_that_networks_read(pairs: TrainingPairs) -> None:
     assert len(pairs) > 50
     assert pairs.channels.shape == (len(pairs), 2, RESOLUTION, RESOLUTION)
-    assert pairs.correction.shape == pairs.asked.shape == (len(pairs), RESOLUTION, RESOLUTION)
-    for array in (pairs.channels, pairs.correction, pairs.asked):
+    assert pairs.correction.shape == pairs.loss_mask.shape == (len(pairs), RESOLUTION, RESOLUTION)
+    for array in (pairs.channels, pairs.correction, pairs.loss_mask):
         assert array.dtype == np.float32
         assert np.isfinite(array).all()
         assert np.abs(array).max() <= LARGEST
@@ -109,9 +109,9 @@ def test_the_same_generator_gives_the_same_lessons_and_another_round_or_generato
     (same,), (other,) = rounds(training_surface, 1), rounds(training_surface, 1, seed=1)
     assert one.channels.tobytes() == same.channels.tobytes()
     assert one.correction.tobytes() == same.correction.tobytes()
-    assert one.asked.tobytes() == same.asked.tobytes()
+    assert one.loss_mask.tobytes() == same.loss_mask.tobytes()
     for another in (next_one, other):
-        assert one.asked.tobytes() != another.asked.tobytes()
+        assert one.loss_mask.tobytes() != another.loss_mask.tobytes()
 
 
 def test_surface_that_is_missing_already_is_never_asked_for() -> None:
@@ -121,7 +121,7 @@ def test_surface_that_is_missing_already_is_never_asked_for() -> None:
     seeds = looking_down((0.0, 0.0, 0.0))
     scale = PatchScale(0.28, RESOLUTION, 0)
     for given in rounds(replace(whole, mesh=mesh, seeds=seeds, scale=scale), 2):
-        assert given.asked.sum() == 0
+        assert given.loss_mask.sum() == 0
 
 
 def test_where_there_is_no_room_for_a_hole_there_is_no_lesson() -> None:
@@ -146,4 +146,4 @@ def test_joined_lessons_stand_one_after_the_other(pairs: TrainingPairs) -> None:
     np.testing.assert_array_equal(joined.channels[len(pairs) :], pairs.channels)
     np.testing.assert_array_equal(joined.correction[: len(pairs)], pairs.correction)
     none = TrainingPairs.joined([], RESOLUTION)
-    assert (len(none), none.channels.shape, none.asked.shape) == (0, (0, 2, 32, 32), (0, 32, 32))
+    assert (len(none), none.channels.shape, none.loss_mask.shape) == (0, (0, 2, 32, 32), (0, 32, 32))

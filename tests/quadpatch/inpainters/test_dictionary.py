@@ -30,7 +30,7 @@ def as_patches(heights: FloatArray, known: BoolArray | None = None) -> Patches:
 
 
 def surroundings(patches: Patches) -> Surroundings:
-    """Surface over a flat outline; dictionaries don't look at the ground."""
+    """Surface over a flat base surface; dictionaries don't look at the ground."""
     flat = TriangleMesh(np.zeros((0, 3)), np.zeros((0, 3), np.int64))
     nowhere = Seeds(np.zeros((0, 3)), np.zeros((0, 3, 3)), np.zeros(0, np.int64))
     training_surface = TrainingSurface(
@@ -79,12 +79,12 @@ def test_what_stands_in_unknown_bins_is_not_looked_at(learned: DictionaryInpaint
     assert (one == other).all()
 
 
-def test_the_outline_is_carried_and_only_the_detail_is_coded(learned: DictionaryInpainter) -> None:
+def test_the_base_heights_are_carried_and_only_the_detail_is_coded(learned: DictionaryInpainter) -> None:
     truth, known = waves(20, seed=5), with_hole(20)
-    outline = np.random.default_rng(2).normal(0, 5, truth.shape)
+    base_heights = np.random.default_rng(2).normal(0, 5, truth.shape)
     plain = learned.predict(as_patches(truth, known), 0 * truth)
-    carried = learned.predict(as_patches(truth + outline, known), outline)
-    np.testing.assert_allclose(carried, plain + outline, atol=1e-9)
+    carried = learned.predict(as_patches(truth + base_heights, known), base_heights)
+    np.testing.assert_allclose(carried, plain + base_heights, atol=1e-9)
 
 
 def test_predictions_grow_and_shift_with_the_heights(learned: DictionaryInpainter) -> None:
@@ -94,17 +94,17 @@ def test_predictions_grow_and_shift_with_the_heights(learned: DictionaryInpainte
     np.testing.assert_allclose(changed, 1000 * plain + 7, rtol=1e-9, atol=1e-6)
 
 
-def test_a_patch_without_any_known_bin_gets_its_outline(learned: DictionaryInpainter) -> None:
+def test_a_patch_without_any_known_bin_gets_its_base_heights(learned: DictionaryInpainter) -> None:
     truth = waves(2)
     known = np.zeros(truth.shape, bool)
-    outline = np.full(truth.shape, 3.0)
-    assert (learned.predict(as_patches(truth, known), outline) == outline).all()
+    base_heights = np.full(truth.shape, 3.0)
+    assert (learned.predict(as_patches(truth, known), base_heights) == base_heights).all()
 
 
 def test_a_flat_patch_stays_flat(learned: DictionaryInpainter) -> None:
-    outline = waves(3)
-    predicted = learned.predict(as_patches(outline + 0.25, with_hole(3)), outline)
-    np.testing.assert_allclose(predicted, outline + 0.25, atol=1e-12)
+    base_heights = waves(3)
+    predicted = learned.predict(as_patches(base_heights + 0.25, with_hole(3)), base_heights)
+    np.testing.assert_allclose(predicted, base_heights + 0.25, atol=1e-12)
 
 
 def test_the_same_patches_give_the_same_dictionary() -> None:

@@ -64,8 +64,8 @@ def test_paper_network_sees_one_in_every_unknown_bin(tmp_path: Path) -> None:
 def test_residual_network_of_zeros_changes_nothing(tmp_path: Path) -> None:
     inpainter = AutoencoderInpainter.load(write_network(tmp_path / "zero.onnx", RESIDUAL, 2, gain=0.0))
     patches = waves(3)
-    outline = 0.5 * patches.heights
-    np.testing.assert_allclose(inpainter.predict(patches, outline), patches.heights, atol=1e-12)
+    base_heights = 0.5 * patches.heights
+    np.testing.assert_allclose(inpainter.predict(patches, base_heights), patches.heights, atol=1e-12)
 
 
 def test_batches_of_any_count_give_the_same_numbers(tmp_path: Path) -> None:

@@ -55,12 +55,12 @@ def test_a_relief_that_was_learned_is_continued_into_the_unknown(learned: Height
     assert error < 0.1 * floor
 
 
-def test_neither_unknown_bins_nor_the_outline_are_looked_at(learned: HeightsInpainter) -> None:
+def test_neither_unknown_bins_nor_the_base_heights_are_looked_at(learned: HeightsInpainter) -> None:
     truth, known = waves(20, seed=5), with_hole(20)
     noise = np.random.default_rng(0).normal(size=truth.shape)
     one, other = (
-        learned.predict(as_patches(np.where(known, truth, junk), known), outline)
-        for junk, outline in ((0.0, None), (100 * noise, noise))
+        learned.predict(as_patches(np.where(known, truth, junk), known), base_heights)
+        for junk, base_heights in ((0.0, None), (100 * noise, noise))
     )
     assert (one == other).all()
 
@@ -78,7 +78,7 @@ def test_the_completed_patch_is_few_atoms_plus_the_mean_of_the_known_bins() -> N
 
 
 def test_deep_patches_weigh_more_than_shallow_ones() -> None:
-    """Heights are not divided by their spread: what is deep decides what is learned."""
+    """Heights are not divided by their standard deviation: what is deep decides what is learned."""
     row, column = np.mgrid[:N, :N] / N
     rng = np.random.default_rng(3)
     deep = rng.normal(1, 0.2, (60, 1, 1)) * np.sin(9 * row)

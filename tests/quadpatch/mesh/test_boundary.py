@@ -146,7 +146,7 @@ def test_duplicate_faces_flag_the_rim_that_they_touch() -> None:
 
 
 def test_a_chain_that_can_not_close_keeps_its_order() -> None:
-    # A fan around vertex 0 with one face turned over: chains along its rim, not sorted heaps of vertices.
+    # A fan around vertex 0 with one face flipped: chains along its rim, not sorted heaps of vertices.
     order = [9, 3, 8, 2, 7, 1, 6]
     rows = [(0, a, b) for a, b in itertools.pairwise(order)]
     rows[2] = rows[2][::-1]
@@ -159,7 +159,7 @@ def test_a_chain_that_can_not_close_keeps_its_order() -> None:
 
 @st.composite
 def broken_meshes(draw: st.DrawFn) -> Triangles:
-    """Two meshes with random faces missing, and some faces turned over or repeated."""
+    """Two meshes with random faces missing, and some faces flipped or repeated."""
     rng = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
     mesh = joined(sphere(1), open_grid(6))
     faces = mesh.triangles[rng.random(len(mesh.triangles)) > draw(st.sampled_from([0.05, 0.2, 0.5]))]
@@ -189,8 +189,8 @@ def test_every_boundary_edge_lies_on_exactly_one_loop_or_its_chain_is_flagged(fa
 @given(faces=broken_meshes(), seed=st.integers(0, 2**32 - 1))
 def test_the_order_of_triangles_does_not_matter(faces: Triangles, seed: int) -> None:
     rng = np.random.default_rng(seed)
-    turned = np.take_along_axis(faces, (np.arange(3) + rng.integers(0, 3, (len(faces), 1))) % 3, axis=1)
-    shuffled = boundary_loops(rng.permutation(turned))
+    flipped = np.take_along_axis(faces, (np.arange(3) + rng.integers(0, 3, (len(faces), 1))) % 3, axis=1)
+    shuffled = boundary_loops(rng.permutation(flipped))
     expected = boundary_loops(faces)
     assert [loop.tolist() for loop in shuffled.loops] == [loop.tolist() for loop in expected.loops]
     assert shuffled.is_manifold == expected.is_manifold

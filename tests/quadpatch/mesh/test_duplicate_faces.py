@@ -34,7 +34,7 @@ def soup(mesh: TriangleMesh) -> TriangleMesh:
     return TriangleMesh(mesh.vertices[mesh.triangles.ravel()], np.arange(mesh.triangles.size).reshape(-1, 3))
 
 
-def turned(triangles: Triangles, *, chosen: IntArray | slice = slice(None)) -> Triangles:
+def flipped(triangles: Triangles, *, chosen: IntArray | slice = slice(None)) -> Triangles:
     result = triangles.copy()
     result[chosen] = result[chosen][:, ::-1]
     return result
@@ -77,7 +77,7 @@ def test_any_part_may_be_doubled_in_any_order(seed: int, share: float, own: bool
 def test_single_faces_repeated_at_a_rim_leave_its_hole_sound(as_soup: bool) -> None:
     loops = boundary_loops(BALL.triangles).loops
     at_rim = np.flatnonzero(np.isin(BALL.triangles, loops[0]).sum(axis=1) == 2)[:3]
-    faces = np.concatenate([BALL.triangles, turned(BALL.triangles[at_rim], chosen=np.array([1]))])
+    faces = np.concatenate([BALL.triangles, flipped(BALL.triangles[at_rim], chosen=np.array([1]))])
     mesh = TriangleMesh(BALL.vertices, faces)
     welded = weld(*vars(soup(mesh) if as_soup else mesh).values())
     assert same_surface(welded, BALL)

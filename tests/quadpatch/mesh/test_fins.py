@@ -34,10 +34,10 @@ def inner_edge_at_rim() -> tuple[int, int]:
 
 
 @pytest.mark.parametrize("depth", [1, 2, 5])
-@pytest.mark.parametrize("is_turned", [False, True])
-def test_a_chain_of_fins_at_a_rim_is_left_out_whole(depth: int, is_turned: bool) -> None:
+@pytest.mark.parametrize("is_flipped", [False, True])
+def test_a_chain_of_fins_at_a_rim_is_left_out_whole(depth: int, is_flipped: bool) -> None:
     start, end = inner_edge_at_rim()
-    mesh = with_fin(BALL, *((end, start) if is_turned else (start, end)), depth)
+    mesh = with_fin(BALL, *((end, start) if is_flipped else (start, end)), depth)
     assert not any(boundary_loops(mesh.triangles).is_manifold)
     welded = weld(mesh.vertices, mesh.triangles)
     assert (welded.mesh.triangles == BALL.triangles).all()
@@ -104,8 +104,8 @@ def test_three_sheets_that_meet_are_no_fins() -> None:
     along = np.arange(7)
     vertices, triangles = [page.vertices], [page.triangles]
     for angle in (2.0, 4.0):
-        turned = page.vertices - page.vertices[0]
-        x, y, _ = turned.T
+        flipped = page.vertices - page.vertices[0]
+        x, y, _ = flipped.T
         vertices.append(page.vertices[0] + np.stack([x, np.cos(angle) * y, np.sin(angle) * y], axis=1))
         numbers = np.arange(49) + len(vertices) * 49 - 49
         numbers[along] = along

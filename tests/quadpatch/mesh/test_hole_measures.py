@@ -174,5 +174,5 @@ def test_a_loop_of_80_000_extreme_vertices_is_measured_closely(shape: str) -> No
     if shape == "oval":
         # An oval whose longest way lies between the directions that are tried.
         points = points * [1.0, 0.9, 1.0]
-    turned = points @ random_rotation(np.random.default_rng(5))
-    assert width * 0.998 <= loop_diameter(turned) <= width * (1 + 1e-12)
+    flipped = points @ random_rotation(np.random.default_rng(5))
+    assert width * 0.998 <= loop_diameter(flipped) <= width * (1 + 1e-12)

@@ -103,8 +103,8 @@ def test_noise_in_the_last_bit_makes_no_crossing(seed: int, size: float) -> None
     # Two plates that meet in a seam whose vertices are not joined, at places that differ by one unit in the last place.
     rng = np.random.default_rng(seed)
     plate = open_grid(5)
-    turned = joined(plate, moved(plate, (4.0, 0, 0))).vertices @ random_rotation(rng) + [100.0, -50.0, 30.0]
-    noisy = size * turned
+    flipped = joined(plate, moved(plate, (4.0, 0, 0))).vertices @ random_rotation(rng) + [100.0, -50.0, 30.0]
+    noisy = size * flipped
     noisy = np.nextafter(noisy, rng.choice([-np.inf, np.inf], noisy.shape))
     mesh = TriangleMesh(noisy, joined(plate, plate).triangles)
     assert len(crossing_pairs(mesh)) == 0

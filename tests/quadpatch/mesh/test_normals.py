@@ -45,9 +45,9 @@ def test_without_area_or_triangles_there_is_no_normal() -> None:
 def test_normals_turn_with_the_mesh_and_have_unit_length(seed: int) -> None:
     rng = np.random.default_rng(seed)
     mesh, rotation = bumpy_plate(8, 1.0, seed=seed), random_rotation(rng)
-    turned = mesh.vertices @ rotation.T + rng.normal(0, 5, 3)
+    flipped = mesh.vertices @ rotation.T + rng.normal(0, 5, 3)
     for normals_of in (triangle_normals, vertex_normals):
-        here, there = (normals_of(vertices, mesh.triangles) for vertices in (mesh.vertices, turned))
+        here, there = (normals_of(vertices, mesh.triangles) for vertices in (mesh.vertices, flipped))
         np.testing.assert_allclose(np.linalg.norm(here, axis=1), 1, rtol=1e-14)
         np.testing.assert_allclose(there, here @ rotation.T, atol=1e-10)
 

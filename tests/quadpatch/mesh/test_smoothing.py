@@ -44,7 +44,7 @@ def test_one_iteration_moves_each_vertex_to_the_mean_of_its_neighbours() -> None
 
 @given(seed=st.integers(0, 100), n_iterations=st.integers(0, 30))
 @settings(max_examples=20)
-def test_a_moved_mesh_smooths_to_the_moved_outline(seed: int, n_iterations: int) -> None:
+def test_a_moved_mesh_smooths_to_the_moved_base_surface(seed: int, n_iterations: int) -> None:
     rng = np.random.default_rng(seed)
     mesh = bumpy_grid(4, seed)
     rotation = np.linalg.qr(rng.normal(size=(3, 3)))[0]

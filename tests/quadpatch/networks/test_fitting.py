@@ -42,9 +42,9 @@ def small_ground() -> TrainingSurface:
 
 
 def measured(network: Residual, pairs: TrainingPairs) -> Errors:
-    channels, correction, asked = map(torch.from_numpy, (pairs.channels, pairs.correction, pairs.asked))
+    channels, correction, loss_mask = map(torch.from_numpy, (pairs.channels, pairs.correction, pairs.loss_mask))
     with torch.inference_mode():
-        return errors(network(channels), correction[:, None], asked[:, None])
+        return errors(network(channels), correction[:, None], loss_mask[:, None])
 
 
 def weights(network: Residual) -> bytes:
@@ -151,15 +151,15 @@ def test_fitting_makes_another_network_and_tells_how_far_it_is(small_ground: Tra
 def test_predictions_are_the_fill_with_what_the_network_answers() -> None:
     rng = np.random.default_rng(0)
     shape = (300, RESOLUTION, RESOLUTION)
-    heights, outline, known = rng.normal(size=shape), 0.1 * rng.normal(size=shape), rng.random(shape) > 0.3
+    heights, base_heights, known = rng.normal(size=shape), 0.1 * rng.normal(size=shape), rng.random(shape) > 0.3
     frames = np.tile(np.eye(3), (300, 1, 1))
     patches = Patches(np.zeros((300, 3)), frames, 1.0, heights, known, np.ones_like(known), np.zeros(shape, np.int64))
     network = stirred(fresh())
-    predicted = FittingInpainter(network, NetworkOptions()).predict(patches, outline)
-    seen = network_input(patches, outline)
+    predicted = FittingInpainter(network, NetworkOptions()).predict(patches, base_heights)
+    seen = network_input(patches, base_heights)
     with torch.inference_mode():
         answers = network(torch.from_numpy(seen.channels))[:, 0].numpy().astype(np.float64)
-    np.testing.assert_allclose(predicted, corrected(patches, seen.spread, answers), atol=1e-5)
+    np.testing.assert_allclose(predicted, corrected(patches, seen.deviation, answers), atol=1e-5)
     assert predicted[known].tobytes() == heights[known].tobytes()
-    untouched = FittingInpainter(fresh(), NetworkOptions()).predict(patches, outline)
+    untouched = FittingInpainter(fresh(), NetworkOptions()).predict(patches, base_heights)
     np.testing.assert_array_equal(untouched, heights)

@@ -4,7 +4,7 @@ import torch
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from quadpatch.networks.residual import LEAST_ERROR, ROUNDING, SLOPES, Residual, errors, turned
+from quadpatch.networks.residual import LEAST_ERROR, ROUNDING, SLOPES, Residual, errors, rotated
 from quadpatch.patches.residual_input import CHANNELS
 from tests.quadpatch.networks.made import random_tensor, stirred
 
@@ -40,8 +40,8 @@ def test_errors_are_those_computed_by_hand() -> None:
     """One patch of 2 x 2 bins of which three are asked; the network is wrong by 1, 0 and -2 there."""
     correction = torch.tensor([[[[1.0, 2.0], [3.0, 50.0]]]])
     answer = torch.tensor([[[[2.0, 2.0], [1.0, -7.0]]]])
-    asked = torch.tensor([[[[1.0, 1.0], [1.0, 0.0]]]])
-    found = errors(answer, correction, asked)
+    loss_mask = torch.tensor([[[[1.0, 1.0], [1.0, 0.0]]]])
+    found = errors(answer, correction, loss_mask)
     assert found.network.item() == pytest.approx((1 + 0 + 2) / 3)
     assert found.fill.item() == pytest.approx((1 + 2 + 3) / 3)
     slopes = (abs(0 - 1) + abs(0 + 2)) + (abs(-2 - 1) + abs(0 - 0))
@@ -54,9 +54,9 @@ def test_errors_are_those_computed_by_hand() -> None:
 
 
 def test_a_right_answer_costs_nothing_whatever_it_says_elsewhere() -> None:
-    correction, asked = random_tensor(0, 4, 1, 8, 8), (random_tensor(1, 4, 1, 8, 8) > 0).float()
-    answer = torch.where(asked > 0, correction, 100.0)
-    found = errors(answer, correction, asked)
+    correction, loss_mask = random_tensor(0, 4, 1, 8, 8), (random_tensor(1, 4, 1, 8, 8) > 0).float()
+    answer = torch.where(loss_mask > 0, correction, 100.0)
+    found = errors(answer, correction, loss_mask)
     assert found.network.item() == found.loss.item() == found.relative_loss.item() == 0
     assert found.fill.item() > 0.5
 
@@ -68,9 +68,9 @@ def test_patches_that_nothing_is_asked_of_cost_nothing() -> None:
 
 
 def test_rough_patches_are_in_charge_where_meshes_are_many_but_not_alone() -> None:
-    correction, asked = random_tensor(0, 1, 1, 8, 8), torch.ones(1, 1, 8, 8)
+    correction, loss_mask = random_tensor(0, 1, 1, 8, 8), torch.ones(1, 1, 8, 8)
     sizes = (10 * correction, 1000 * correction, 0.1 * correction)
-    rough, rougher, smooth = (errors(0.5 * c, c, asked).relative_loss for c in sizes)
+    rough, rougher, smooth = (errors(0.5 * c, c, loss_mask).relative_loss for c in sizes)
     assert rougher.item() == pytest.approx(rough.item(), rel=0.15)
     assert 0.01 * rough.item() < smooth.item() < 0.3 * rough.item()
 
@@ -79,7 +79,7 @@ def test_rough_patches_are_in_charge_where_meshes_are_many_but_not_alone() -> No
 @given(turns=st.integers(0, 3), mirrored=st.booleans(), seed=st.integers(0, 100))
 def test_turns_are_undone_by_their_inverse(turns: int, mirrored: bool, seed: int) -> None:
     tensors = random_tensor(seed, 2, 2, 6, 6), random_tensor(seed + 1, 2, 1, 6, 6)
-    back = turned(turned(turned(tensors, turns, mirrored=mirrored), 0, mirrored=mirrored), -turns, mirrored=False)
+    back = rotated(rotated(rotated(tensors, turns, mirrored=mirrored), 0, mirrored=mirrored), -turns, mirrored=False)
     assert all(torch.equal(one, other) for one, other in zip(back, tensors, strict=True))
 
 
@@ -88,7 +88,7 @@ def test_there_are_eight_turns_and_all_tensors_take_the_same() -> None:
     seen = set()
     for turns in range(4):
         for mirrored in (False, True):
-            one, other = turned((square, torch.cat([square, square], dim=1)), turns, mirrored=mirrored)
+            one, other = rotated((square, torch.cat([square, square], dim=1)), turns, mirrored=mirrored)
             assert torch.equal(other[:, :1], one)
             assert torch.equal(other[:, 1:], one)
             seen.add(tuple(one.flatten().tolist()))

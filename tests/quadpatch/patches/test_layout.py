@@ -24,12 +24,12 @@ def filled() -> FilledMesh:
 
 
 @pytest.fixture(scope="module")
-def outline(filled: FilledMesh) -> TriangleMesh:
+def base_surface(filled: FilledMesh) -> TriangleMesh:
     return laplacian_smooth(filled.mesh, 10)
 
 
-def test_every_quad_of_the_patch_length_carries_its_seeds(outline: TriangleMesh) -> None:
-    seeds = lay_out(outline, SCALE)
+def test_every_quad_of_the_patch_length_carries_its_seeds(base_surface: TriangleMesh) -> None:
+    seeds = lay_out(base_surface, SCALE)
     n_quads = len(np.unique(seeds.quad))
     assert len(seeds) == 5 * n_quads
     assert 0.6 * 4 / 0.4**2 < n_quads < 1.5 * 4 / 0.4**2
@@ -41,23 +41,23 @@ def test_a_surface_smaller_than_a_quad_has_no_layout() -> None:
         lay_out(open_grid(4, 0.1), PatchScale(1.0, 16, 1))
 
 
-def test_patches_hold_the_surface_and_its_outline_and_know_what_was_measured(
-    filled: FilledMesh, outline: TriangleMesh
+def test_patches_hold_the_surface_and_its_base_surface_and_know_what_was_measured(
+    filled: FilledMesh, base_surface: TriangleMesh
 ) -> None:
     places = np.array([[0.2, 0.1, 0.0], [-0.5, -0.5, 0.0]])
-    sampled = patchify(filled, outline, Seeds(places, np.tile(np.eye(3), (2, 1, 1)), np.arange(2)), SCALE)
+    sampled = patchify(filled, base_surface, Seeds(places, np.tile(np.eye(3), (2, 1, 1)), np.arange(2)), SCALE)
     over_hole, elsewhere = sampled.patches.known
     assert elsewhere.all()
     assert not over_hole[6:10, 6:10].any()
     assert over_hole[[0, 0, -1, -1], [0, -1, 0, -1]].all()
-    # The detail over the outline is small, and is there.
-    detail = np.abs(sampled.patches.heights - sampled.outline)
+    # The detail over the base surface is small, and is there.
+    detail = np.abs(sampled.patches.heights - sampled.base_heights)
     assert 0 < detail.mean() < 0.1 * np.ptp(sampled.patches.heights)
 
 
-def test_bins_outside_of_the_scan_are_unknown(filled: FilledMesh, outline: TriangleMesh) -> None:
+def test_bins_outside_of_the_scan_are_unknown(filled: FilledMesh, base_surface: TriangleMesh) -> None:
     corner = Seeds(np.array([[1.0, 0.0, 0.0]]), np.eye(3)[None], np.zeros(1, np.int64))
-    (known,) = patchify(filled, outline, corner, SCALE).patches.known
+    (known,) = patchify(filled, base_surface, corner, SCALE).patches.known
     assert known[:, :7].all()
     assert not known[:, 9:].any()
 
@@ -72,12 +72,12 @@ def test_seeds_are_near_if_a_point_lies_within_the_circle_around_their_patch() -
     assert (some.origins == places[[3, 1]]).all()
 
 
-def test_picked_patches_keep_what_belongs_to_them(filled: FilledMesh, outline: TriangleMesh) -> None:
-    sampled = patchify(filled, outline, lay_out(outline, SCALE), SCALE)
+def test_picked_patches_keep_what_belongs_to_them(filled: FilledMesh, base_surface: TriangleMesh) -> None:
+    sampled = patchify(filled, base_surface, lay_out(base_surface, SCALE), SCALE)
     which = np.arange(len(sampled.patches)) % 3 == 1
     some = pick(sampled, which)
     assert len(some.patches) == which.sum()
-    assert (some.outline == sampled.outline[which]).all()
+    assert (some.base_heights == sampled.base_heights[which]).all()
     for picked in (some.patches, pick_patches(sampled.patches, which)):
         for name in ("origins", "frames", "heights", "known", "seen", "triangle"):
             np.testing.assert_array_equal(getattr(picked, name), getattr(sampled.patches, name)[which])

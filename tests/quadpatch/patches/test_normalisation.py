@@ -27,7 +27,7 @@ def test_depth_and_offset_of_a_relief_do_not_change_its_signal(seed: int, scale:
     signals, scaling = to_signals(detail, known)
     others, other_scaling = to_signals((detail + shift) * scale, known)
     np.testing.assert_allclose(others, signals, atol=1e-7)
-    np.testing.assert_allclose(other_scaling.spread, scaling.spread * scale, rtol=1e-7)
+    np.testing.assert_allclose(other_scaling.deviation, scaling.deviation * scale, rtol=1e-7)
 
 
 def test_known_bins_come_back_from_their_signals() -> None:
@@ -55,8 +55,8 @@ def test_flat_and_empty_patches_give_zeros_and_come_back_flat() -> None:
 
 def test_patches_flatter_than_the_least_spread_stay_small() -> None:
     detail, known = some_patches(4)
-    signals, scaling = to_signals(detail, known, least_spread=1.0)
-    assert (scaling.spread == 1.0).all()
+    signals, scaling = to_signals(detail, known, least_deviation=1.0)
+    assert (scaling.deviation == 1.0).all()
     assert np.abs(signals).max() < 0.1
 
 

@@ -96,7 +96,7 @@ def test_a_surface_turned_inside_out_is_seen_from_outside(tmp_path: Path) -> Non
     after = TriangleMesh(pair.after.vertices, pair.after.triangles[:, ::-1])
     invented = np.arange(len(after.triangles)) >= len(before.triangles)
     inside_out = prepare(turned, after, invented)
-    assert inside_out.is_turned
+    assert inside_out.is_flipped
     (tmp_path / "turned.png").write_bytes(draw_hole(inside_out, NumberedHole(7, hole.rim[::-1])))
     assert share_of_hue(picture(tmp_path / "turned.png"), SURE) > 0.04
 

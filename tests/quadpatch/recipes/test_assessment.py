@@ -36,7 +36,7 @@ class Says:
     """What evidence says of three holes."""
 
     coverage: tuple[float, float, float] = (1.0, 1.0, 1.0)
-    spread: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    deviation: tuple[float, float, float] = (0.0, 0.0, 0.0)
     departure: tuple[float, float, float] = (0.01, 0.01, 0.01)
     rim_misfit: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
@@ -60,8 +60,8 @@ def completion(says: Says, blend_factor: float = 1.0, error_model: ErrorModel | 
     [
         (Says(), [True, True, True]),
         (Says(coverage=(LEAST_COVERAGE, LEAST_COVERAGE - 0.01, 0.0)), [True, False, False]),
-        (Says(spread=(0.01 * MOST_DISAGREEMENT, 0.0101 * MOST_DISAGREEMENT, 1.0)), [True, False, False]),
-        (Says(spread=(0.02, 0.02, 0.02), rim_misfit=(0.0, 0.01, 1.0)), [False, True, True]),
+        (Says(deviation=(0.01 * MOST_DISAGREEMENT, 0.0101 * MOST_DISAGREEMENT, 1.0)), [True, False, False]),
+        (Says(deviation=(0.02, 0.02, 0.02), rim_misfit=(0.0, 0.01, 1.0)), [False, True, True]),
         (Says(departure=(0.0, 0.0, 0.0)), [True, True, True]),
     ],
 )
@@ -77,7 +77,7 @@ def test_a_model_may_complete_what_its_patches_cover_and_agree_about(says: Says,
         (completion(Says(), blend_factor=0.0), ["no_gain"] * 3),
         (completion(Says(), blend_factor=0.0, error_model=None), ["no_practice"] * 3),
         (completion(Says(coverage=(1.0, 0.2, 1.0))), ["", "no_height_map", ""]),
-        (completion(Says(spread=(1.0, 0.0, 0.0))), ["patches_disagree", "", ""]),
+        (completion(Says(deviation=(1.0, 0.0, 0.0))), ["patches_disagree", "", ""]),
     ],
 )
 def test_every_hole_says_why_it_was_not_filled_by_the_model(done: Completion | None, expected: list[str]) -> None:
@@ -200,7 +200,7 @@ def test_evidence_is_averaged_over_the_vertices_of_each_hole() -> None:
         here: BoolArray = FILLED.vertex_hole == hole
         expected: dict[str, FloatArray] = {
             "coverage": (overlap[here] > 0).astype(np.float64),
-            "spread": inside.spread[here],
+            "spread": inside.deviation[here],
             "departure": np.linalg.norm(joined[here], axis=1),
             "rim_misfit": np.linalg.norm(at_rim.mean[rim_hole == hole], axis=1),
         }

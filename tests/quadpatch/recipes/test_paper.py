@@ -40,7 +40,7 @@ class Truth:
         self.whole = whole
         self.resolution = resolution
 
-    def predict(self, patches: Patches, outline: FloatArray) -> FloatArray:
+    def predict(self, patches: Patches, base_heights: FloatArray) -> FloatArray:
         seeds = Seeds(patches.origins, patches.frames, np.zeros(len(patches), np.int64))
         nothing = np.zeros(len(self.whole.triangles), bool)
         scene = RayScene(self.whole)

@@ -43,7 +43,7 @@ def test_patches_that_say_what_is_there_displace_nothing_at_all(filled: FilledMe
     rim, _ = rim_vertices(filled)
     at_rim = displace(filled, rim, patches, patches.heights)
     assert (found.mean == 0).all()
-    assert (found.spread == 0).all()
+    assert (found.deviation == 0).all()
     assert (found.overlap > 0).all()
     assert (join_at_rim(filled, found.mean, rim, at_rim.mean) == 0).all()
 
@@ -52,7 +52,7 @@ def test_patches_that_agree_displace_by_exactly_what_they_say(filled: FilledMesh
     patches = patches_over(filled, places())
     found = displace(filled, new_vertices(filled), patches, patches.heights + 0.03)
     np.testing.assert_allclose(found.mean, np.tile([0, 0, 0.03], (len(found.mean), 1)), rtol=1e-12, atol=1e-15)
-    np.testing.assert_allclose(found.spread, 0, atol=1e-15)
+    np.testing.assert_allclose(found.deviation, 0, atol=1e-15)
 
 
 def test_a_displacement_that_is_the_same_everywhere_is_all_misfit_at_the_rim(filled: FilledMesh) -> None:
@@ -110,7 +110,7 @@ def test_two_patches_that_differ_are_averaged_and_their_spread_is_told(filled: F
     seen = found.overlap > 0
     assert set(found.overlap[seen].tolist()) == {2}
     np.testing.assert_allclose(found.mean[seen], np.tile([0, 0, 0.05], (int(seen.sum()), 1)), atol=1e-14)
-    np.testing.assert_allclose(found.spread[seen], 0.05, atol=1e-14)
+    np.testing.assert_allclose(found.deviation[seen], 0.05, atol=1e-14)
     assert (found.mean[~seen] == 0).all()
 
 
@@ -144,7 +144,7 @@ def test_displacements_turn_with_the_mesh() -> None:
     other = displace(there, new_vertices(there), moved, moved.heights + offset)
     assert (one.overlap == other.overlap).all()
     np.testing.assert_allclose(other.mean, one.mean @ rotation.T, atol=1e-9)
-    np.testing.assert_allclose(other.spread, one.spread, atol=1e-9)
+    np.testing.assert_allclose(other.deviation, one.deviation, atol=1e-9)
 
 
 def test_no_new_vertex_needs_no_join() -> None:

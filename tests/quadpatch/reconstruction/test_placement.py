@@ -64,7 +64,7 @@ def test_patches_count_alike_wherever_the_vertex_lies_in_them(filled: FilledMesh
     both = (found.overlap == 2) & (np.linalg.norm(filled.mesh.vertices[vertices], axis=1) < 0.3)
     assert both.any()
     np.testing.assert_allclose(found.mean[both], np.tile([0, 0, 0.02], (both.sum(), 1)), atol=1e-15)
-    np.testing.assert_allclose(found.spread[both], 0.02, atol=1e-15)
+    np.testing.assert_allclose(found.deviation[both], 0.02, atol=1e-15)
 
 
 def test_tilted_patches_move_vertices_along_their_own_normal(filled: FilledMesh) -> None:
