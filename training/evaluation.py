@@ -12,7 +12,7 @@ from quadpatch.patches.normalisation import NORMALISATION, NORMALISATIONS, from_
 from quadpatch.sparse.dictionary import Dictionary
 from quadpatch.sparse.omp import masked_omp
 from quadpatch.types import BoolArray, FloatArray
-from training.spreading import disk, spread
+from training.smooth_fills import disk, smooth_fill
 
 HOLE_SHARES = (0.25, 0.5)
 
@@ -44,8 +44,8 @@ def evaluate(dictionary: Dictionary, patches: FloatArray, normalisation: str = N
         known = disk(dictionary.resolution, share)
         hidden = np.where(known, patches, 0.0)
         fills = {
-            "plate": spread(hidden, known, 2),
-            "membrane": spread(hidden, known, 1),
+            "plate": smooth_fill(hidden, known, 2),
+            "membrane": smooth_fill(hidden, known, 1),
             "unhidden": whole,
         }
         name = f"hole_{round(100 * share)}"
@@ -69,7 +69,7 @@ def complete(
 
 def join(completed: FloatArray, patches: FloatArray, known: BoolArray) -> FloatArray:
     """Meet the known bins exactly: spread what the codes miss there into the hole, as a membrane."""
-    return completed + spread(patches - completed, known, 1)
+    return completed + smooth_fill(patches - completed, known, 1)
 
 
 def _error(filled: FloatArray, truth: FloatArray, spreads: FloatArray, hidden: BoolArray) -> float:

@@ -12,7 +12,7 @@ from quadpatch.types import BoolArray, FloatArray, Patches
 from training.evaluation import HOLE_SHARES
 from training.paper_task import spread_rows
 from training.shards import Corpus, PatchSet
-from training.spreading import disk, spread
+from training.smooth_fills import disk, smooth_fill
 
 # Of scans, and of procedural reliefs; enough for three digits.
 MAX_PATCHES = 600
@@ -72,7 +72,7 @@ def _measure(inpainter: AutoencoderInpainter, heights: FloatArray) -> dict[str, 
         measures[f"{name}_error"] = error
         if inpainter.resolution <= MAX_PLATE_RESOLUTION:
             for other, order in (("plate", 2), ("membrane", 1)):
-                measures[f"{name}_to_{other}"] = error / _error(spread(hidden, known, order), heights, known)
+                measures[f"{name}_to_{other}"] = error / _error(smooth_fill(hidden, known, order), heights, known)
     return {key: round(value, 5) for key, value in measures.items()}
 
 

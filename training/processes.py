@@ -52,7 +52,7 @@ class Place:
         """Return this process's part of a batch of that size."""
         return slice(self.rank * size // self.n_processes, (self.rank + 1) * size // self.n_processes)
 
-    def spread(self, module: nn.Module) -> nn.Module:
+    def distributed(self, module: nn.Module) -> nn.Module:
         """Wrap a module so that its gradients are averaged over the processes."""
         return DistributedDataParallel(module) if self.n_processes > 1 else module
 

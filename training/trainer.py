@@ -120,7 +120,7 @@ class Trainer:
         torch.manual_seed(options.seed)
         module = task.build().to(place.device)
         self.module = module.to(memory_format=torch.channels_last)  # type: ignore[call-overload]
-        self.spread_module = place.spread(self.module)
+        self.distributed_module = place.distributed(self.module)
         self.optimizer = torch.optim.AdamW(self.module.parameters(), lr=options.rate, weight_decay=options.weight_decay)
         self.state = TrainingState()
         wants_bfloat16 = options.precision == "bfloat16" or (options.precision == "auto" and place.has_bfloat16)
@@ -212,9 +212,9 @@ class Trainer:
             group["lr"] = self._rate()
         rng = np.random.default_rng([options.seed, self.state.step])
         batch = self.task.batch(rng, options.batch, place.share(options.batch), place.device)
-        self.spread_module.train()
+        self.distributed_module.train()
         with self._autocast():
-            loss = self.task.loss(self.spread_module, batch)
+            loss = self.task.loss(self.distributed_module, batch)
         self.optimizer.zero_grad(set_to_none=True)
         loss.backward()  # type: ignore[no-untyped-call]
         self.optimizer.step()

@@ -11,7 +11,7 @@ from quadpatch.inpainters.onnx_network import AutoencoderInpainter
 from quadpatch.types import BoolArray, FloatArray, Patches
 from training.paper_task import spread_rows
 from training.shards import Arrays
-from training.spreading import disk
+from training.smooth_fills import disk
 
 _TILE = 1.5
 _MASK = "tab:orange"

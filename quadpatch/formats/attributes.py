@@ -1,6 +1,6 @@
 """Attributes of invented vertices and triangles, taken from the measured ones around the hole.
 
-Continuous attributes (colours, texture coordinates, qualities) are spread harmonically from the rim; labels (flags,
+Continuous attributes (colours, texture coordinates, qualities) are extended harmonically from the rim; labels (flags,
 materials, texture numbers) are those of the nearest rim vertex or rim triangle; normals are those of the new surface.
 """
 
@@ -17,8 +17,8 @@ def triangle_edges(triangles: Triangles) -> IntArray:
     return np.stack([triangles.ravel(), triangles[:, [1, 2, 0]].ravel()], axis=1)
 
 
-def spread_over_vertices(fill: Fill, values: FloatArray) -> FloatArray:
-    """Spread values of measured vertices over the new ones.
+def extend_over_vertices(fill: Fill, values: FloatArray) -> FloatArray:
+    """Extend values of measured vertices over the new ones.
 
     Parameters
     ----------
@@ -39,14 +39,14 @@ def spread_over_vertices(fill: Fill, values: FloatArray) -> FloatArray:
     table[measured] = values[used[measured]]
     edges = triangle_edges(local.reshape(-1, 3))
     known = np.isfinite(table)
-    spread = np.zeros_like(table)
+    extended = np.zeros_like(table)
     # Columns that are known at the same vertices, usually all of them, share one factorisation.
     patterns, pattern = np.unique(known, axis=1, return_inverse=True)
     for number in range(patterns.shape[1]):
         columns = np.flatnonzero(pattern.reshape(-1) == number)
-        spread[:, columns] = extend_harmonically(edges, patterns[:, number], table[:, columns])
+        extended[:, columns] = extend_harmonically(edges, patterns[:, number], table[:, columns])
     result = np.zeros((n_new, values.shape[1]))
-    result[used[~measured] - n_measured] = np.nan_to_num(spread[~measured])
+    result[used[~measured] - n_measured] = np.nan_to_num(extended[~measured])
     return result
 
 

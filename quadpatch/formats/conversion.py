@@ -9,10 +9,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from quadpatch.formats.merged_scene import MergedScene
 from quadpatch.formats.obj_source import GROUP, face_lines
 from quadpatch.formats.stl import encode_stl
 from quadpatch.formats.text import to_lines
-from quadpatch.formats.whole import Whole
 from quadpatch.mesh.weld import first_of_equal
 from quadpatch.types import FloatArray, IntArray
 
@@ -24,23 +24,23 @@ class _Column(NamedTuple):
     values: NDArray[Any]
 
 
-def encode_as_ply(whole: Whole) -> bytes:
+def encode_as_ply(scene: MergedScene) -> bytes:
     """Encode as binary little-endian PLY with the marks `filled`, `hole_id` and `confidence`."""
-    looks = whole.appearance
-    single = whole.vertices.astype("<f4")
-    exact = bool((single == whole.vertices).all())
-    columns = _columns("float" if exact else "double", "x y z", single if exact else whole.vertices.astype("<f8"))
-    if looks.normals is not None:
-        columns += _columns("float", "nx ny nz", looks.normals.astype("<f4"))
-    if looks.colours is not None:
-        columns += _columns("uchar", "red green blue alpha", np.rint(looks.colours).astype("u1"))
-    columns += _marks(whole.vertex_hole, whole.vertex_confidence)
-    faces = [_Column("list uchar int vertex_indices", whole.triangles.astype("<i4"))]
-    if looks.texture is not None:
-        flat = np.nan_to_num(looks.texture).reshape(-1, 6)
+    attributes = scene.vertex_attributes
+    single = scene.vertices.astype("<f4")
+    exact = bool((single == scene.vertices).all())
+    columns = _columns("float" if exact else "double", "x y z", single if exact else scene.vertices.astype("<f8"))
+    if attributes.normals is not None:
+        columns += _columns("float", "nx ny nz", attributes.normals.astype("<f4"))
+    if attributes.colours is not None:
+        columns += _columns("uchar", "red green blue alpha", np.rint(attributes.colours).astype("u1"))
+    columns += _marks(scene.vertex_hole, scene.vertex_confidence)
+    faces = [_Column("list uchar int vertex_indices", scene.triangles.astype("<i4"))]
+    if attributes.texture is not None:
+        flat = np.nan_to_num(attributes.texture).reshape(-1, 6)
         faces.append(_Column("list uchar float texcoord", flat.astype("<f4")))
-    faces += _marks(whole.triangle_hole, whole.triangle_confidence)
-    lines = ["ply", "format binary_little_endian 1.0", *([f"comment unit {whole.unit}"] if whole.unit else [])]
+    faces += _marks(scene.triangle_hole, scene.triangle_confidence)
+    lines = ["ply", "format binary_little_endian 1.0", *([f"comment unit {scene.unit}"] if scene.unit else [])]
     for name, element in (("vertex", columns), ("face", faces)):
         lines.append(f"element {name} {len(element[0].values)}")
         lines += [f"property {column.words}" for column in element]
@@ -73,42 +73,42 @@ def _rows(columns: list[_Column]) -> bytes:
     return rows.tobytes()
 
 
-def encode_as_stl(whole: Whole) -> bytes:
+def encode_as_stl(scene: MergedScene) -> bytes:
     """Encode as binary STL; invented facets have the attribute 1."""
-    return encode_stl(whole.vertices[whole.triangles], whole.facet_normals, whole.invented)
+    return encode_stl(scene.vertices[scene.triangles], scene.facet_normals, scene.invented)
 
 
-def encode_as_obj(whole: Whole) -> bytes:
+def encode_as_obj(scene: MergedScene) -> bytes:
     """Encode as OBJ; invented faces stand in a group of their own."""
-    looks = whole.appearance
-    vertices = whole.vertices
-    if looks.colours is not None:
-        vertices = np.concatenate([vertices, np.round(looks.colours[:, :3] / 255, 6)], axis=1)
+    attributes = scene.vertex_attributes
+    vertices = scene.vertices
+    if attributes.colours is not None:
+        vertices = np.concatenate([vertices, np.round(attributes.colours[:, :3] / 255, 6)], axis=1)
     text = [to_lines("v", vertices, "\n")]
-    texture = np.zeros(whole.triangles.shape, dtype=np.int64)
-    if looks.texture is not None:
-        textured = np.isfinite(looks.texture).all(axis=(1, 2))
-        points = looks.texture[textured].reshape(-1, 2)
+    texture = np.zeros(scene.triangles.shape, dtype=np.int64)
+    if attributes.texture is not None:
+        textured = np.isfinite(attributes.texture).all(axis=(1, 2))
+        points = attributes.texture[textured].reshape(-1, 2)
         corner, index = np.unique(first_of_equal(np.pad(points, ((0, 0), (0, 1)))), return_inverse=True)
         texture[textured] = 1 + index.reshape(-1, 3)
         text.append(to_lines("vt", points[corner], "\n"))
     normal = np.zeros_like(texture)
-    if looks.normals is not None:
-        normal = whole.triangles + 1
-        text.append(to_lines("vn", looks.normals, "\n"))
-    lines = face_lines(whole.triangles + 1, texture, normal, "\n")
-    text += [*lines[: whole.n_measured], f"g {GROUP}\n", *lines[whole.n_measured :]]
+    if attributes.normals is not None:
+        normal = scene.triangles + 1
+        text.append(to_lines("vn", attributes.normals, "\n"))
+    lines = face_lines(scene.triangles + 1, texture, normal, "\n")
+    text += [*lines[: scene.n_measured], f"g {GROUP}\n", *lines[scene.n_measured :]]
     return "".join(text).encode()
 
 
-def encode_as_off(whole: Whole) -> bytes:
+def encode_as_off(scene: MergedScene) -> bytes:
     """Encode as OFF, or as COFF where there are colours."""
-    colours = whole.appearance.colours
-    counts = f"{len(whole.vertices)} {len(whole.triangles)} 0\n"
-    faces = to_lines("3", whole.triangles, "\n")
+    colours = scene.vertex_attributes.colours
+    counts = f"{len(scene.vertices)} {len(scene.triangles)} 0\n"
+    faces = to_lines("3", scene.triangles, "\n")
     if colours is None:
-        return ("OFF\n" + counts + to_lines("", whole.vertices, "\n") + faces).encode()
-    positions = to_lines("", whole.vertices, "\n").splitlines()
+        return ("OFF\n" + counts + to_lines("", scene.vertices, "\n") + faces).encode()
+    positions = to_lines("", scene.vertices, "\n").splitlines()
     tints = to_lines("", np.rint(colours).astype(np.int64), "\n").splitlines()
     rows = "".join(f"{position} {tint}\n" for position, tint in zip(positions, tints, strict=True))
     return ("COFF\n" + counts + rows + faces).encode()

@@ -1,4 +1,4 @@
-"""Harmonic extension: known values of some nodes of a graph, spread over the others.
+"""Harmonic extension: known values of some nodes of a graph, extended over the others.
 
 The unknown values solve the uniform graph Laplace equation, that is, every unknown node holds the mean of its
 neighbours. Hence no value leaves the range of the known ones (discrete maximum principle), and one sparse solve
@@ -43,11 +43,11 @@ def extend_harmonically(edges: IntArray, known: BoolArray, values: FloatArray) -
     np.minimum.at(low, component[known], values[known])
     np.maximum.at(high, component[known], values[known])
     low, high = low[component[solved]], high[component[solved]]
-    spread = _solution(adjacency, known, solved, values)
+    extended = _solution(adjacency, known, solved, values)
     # Numbers near the largest float64 overflow in the sums, and take the middle of their range.
-    spread = np.where(np.isfinite(spread), spread, 0.5 * low + 0.5 * high)
+    extended = np.where(np.isfinite(extended), extended, 0.5 * low + 0.5 * high)
     # Rounding may step over the range of a component by a few units in the last place.
-    result[solved] = np.clip(spread, low, high)
+    result[solved] = np.clip(extended, low, high)
     return result
 
 

@@ -9,10 +9,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from quadpatch.formats.attributes import nearest_rim_triangle, normals_at, spread_over_vertices
-from quadpatch.formats.scan import Appearance, Fill, Scan
+from quadpatch.formats.attributes import extend_over_vertices, nearest_rim_triangle, normals_at
+from quadpatch.formats.scan import Fill, Scan, VertexAttributes
 from quadpatch.formats.text import decode_text, line_end_of, to_lines
-from quadpatch.formats.texture import spread_over_corners
+from quadpatch.formats.texture import extend_over_corners
 from quadpatch.types import FloatArray, IntArray
 
 GROUP = "quadpatch_filled"
@@ -50,7 +50,7 @@ class ObjSource:
     materials: list[bytes]
     triangle_material: IntArray
 
-    def appearance(self, scan: Scan) -> Appearance:
+    def vertex_attributes(self, scan: Scan) -> VertexAttributes:
         """Colours, normals of the first corner that names each vertex, and texture coordinates."""
         colours = None
         if self.colours is not None:
@@ -62,7 +62,7 @@ class ObjSource:
         if (self.corner_normal >= 0).any():
             first = self._first_normal(scan, len(scan.vertices))
             normals = np.where(first[:, np.newaxis] >= 0, self.normals[first], 0.0)
-        return Appearance(colours, normals, texture)
+        return VertexAttributes(colours, normals, texture)
 
     def _texture_of_corners(self) -> FloatArray:
         has = self.corner_texture >= 0
@@ -107,7 +107,7 @@ class ObjSource:
     def _vertex_lines(self, fill: Fill, line_end: str) -> str:
         if self.colours is None:
             return to_lines("v", fill.vertices, line_end)
-        colours = np.round(spread_over_vertices(fill, self.colours), 6)
+        colours = np.round(extend_over_vertices(fill, self.colours), 6)
         return to_lines("v", np.concatenate([fill.vertices, colours], axis=1), line_end)
 
     def _texture(self, scan: Scan, fill: Fill, line_end: str) -> tuple[str, IntArray]:
@@ -115,9 +115,9 @@ class ObjSource:
         index = np.zeros(fill.triangles.shape, dtype=np.int64)
         if not (self.corner_texture >= 0).any():
             return "", index
-        spread = spread_over_corners(scan, fill, self._texture_of_corners())
-        has = np.asarray(np.isfinite(spread).all(axis=2))
-        keys = np.column_stack([fill.triangles[has].astype(np.float64), spread[has]])
+        extended = extend_over_corners(scan, fill, self._texture_of_corners())
+        has = np.asarray(np.isfinite(extended).all(axis=2))
+        keys = np.column_stack([fill.triangles[has].astype(np.float64), extended[has]])
         points, inverse = np.unique(keys, axis=0, return_inverse=True)
         index[has] = len(self.texture) + 1 + inverse.reshape(-1)
         # A face has texture at all corners or at none.

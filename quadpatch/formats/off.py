@@ -3,7 +3,7 @@
 Read are OFF, COFF, NOFF, CNOFF and STOFF text files, with or without the keyword, with comments, and with colours
 behind vertices and faces whether the keyword announces them or not. Every line of the file comes back as it was but
 the counts. Invented vertices and faces are those behind the measured ones; the format has no place for another mark.
-New vertices get spread colours, normals and texture coordinates, new faces the colour of the nearest measured face.
+New vertices get extended colours, normals and texture coordinates, new faces the colour of the nearest measured face.
 """
 
 import re
@@ -12,11 +12,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from quadpatch.errors import EmptyMeshError, FormatError, ReadError
-from quadpatch.formats.attributes import nearest_rim_triangle, spread_over_vertices, vertex_normals
+from quadpatch.formats.attributes import extend_over_vertices, nearest_rim_triangle, vertex_normals
 from quadpatch.formats.limits import ReadLimits, check_indices, check_triangles, check_vertices
 from quadpatch.formats.lines import Lines, split_lines
 from quadpatch.formats.polygons import list_range, triangulate_polygons
-from quadpatch.formats.scan import Appearance, Fill, Scan
+from quadpatch.formats.scan import Fill, Scan, VertexAttributes
 from quadpatch.formats.text import decode_text, line_end_of, to_integers, to_lines, to_words
 from quadpatch.types import FloatArray, IntArray
 
@@ -80,7 +80,7 @@ class OffSource:
         return text if self.codec == "utf-8" else ("\ufeff" + text.decode()).encode(self.codec)
 
     def _vertex_lines(self, scan: Scan, fill: Fill, line_end: str) -> str:
-        extras = spread_over_vertices(fill, self.extras)
+        extras = extend_over_vertices(fill, self.extras)
         if self.n_normal:
             extras[:, : self.n_normal] = vertex_normals(scan, fill)
         # Colours were written as whole numbers in some files, and as fractions in others.
@@ -105,7 +105,7 @@ class OffSource:
         words = self.face_lines.text(face).decode("latin-1").split()
         return "".join(f" {word}" for word in words[1 + int(float(words[0])) :])
 
-    def appearance(self, scan: Scan) -> Appearance:
+    def vertex_attributes(self, scan: Scan) -> VertexAttributes:
         """Colours, normals and texture coordinates of the vertices."""
         stop = self.extras.shape[1] - self.n_texture
         colours = self.extras[:, self.n_normal : stop]
@@ -117,7 +117,7 @@ class OffSource:
             found = np.concatenate([colours, opaque], axis=1)[:, :4] * scale
         normals = self.extras[:, :3] if self.n_normal else None
         texture = self.extras[:, stop:][scan.triangles] if self.n_texture else None
-        return Appearance(found, normals, texture)
+        return VertexAttributes(found, normals, texture)
 
 
 def read_off(data: bytes, limits: ReadLimits) -> Scan:

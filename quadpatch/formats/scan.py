@@ -12,7 +12,7 @@ from quadpatch.types import FloatArray, IntArray, Triangles, Vertices
 
 
 @dataclass(frozen=True)
-class Appearance:
+class VertexAttributes:
     """How the measured surface looks, in the terms that all formats share.
 
     Attributes
@@ -36,7 +36,7 @@ class Source(Protocol):
     def append(self, scan: "Scan", fill: "Fill") -> bytes:
         """Hand the file back with a fill appended."""
 
-    def appearance(self, scan: "Scan") -> Appearance:
+    def vertex_attributes(self, scan: "Scan") -> VertexAttributes:
         """Say how the surface looks, for writing it in another format."""
 
 

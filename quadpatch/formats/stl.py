@@ -18,7 +18,7 @@ import numpy as np
 from quadpatch.errors import EmptyMeshError, ReadError
 from quadpatch.formats.attributes import joined_vertices, triangle_normals
 from quadpatch.formats.limits import ReadLimits, check_vertices, to_float64
-from quadpatch.formats.scan import Appearance, Fill, Scan
+from quadpatch.formats.scan import Fill, Scan, VertexAttributes
 from quadpatch.formats.stl_layout import FACET, HEADER_SIZE, check_layout, is_ascii_stl
 from quadpatch.formats.text import line_end_of, parse_numbers, to_words
 from quadpatch.types import BoolArray, FloatArray
@@ -49,9 +49,9 @@ class BinaryStl:
         new = encode_facets(corners, triangle_normals(scan, fill), np.ones(len(fill.triangles), dtype=bool))
         return self.data[: HEADER_SIZE - 4] + count + self.data[HEADER_SIZE:stop] + new + self.data[stop:]
 
-    def appearance(self, scan: Scan) -> Appearance:
+    def vertex_attributes(self, scan: Scan) -> VertexAttributes:
         """Nothing: the colour conventions of STL differ from program to program."""
-        return Appearance()
+        return VertexAttributes()
 
 
 @dataclass(frozen=True)
@@ -70,9 +70,9 @@ class AsciiStl:
             head += line_end.encode()
         return head + _ascii_facets(scan, fill, line_end).encode() + self.data[at:]
 
-    def appearance(self, scan: Scan) -> Appearance:
+    def vertex_attributes(self, scan: Scan) -> VertexAttributes:
         """Nothing: ascii STL knows no colours."""
-        return Appearance()
+        return VertexAttributes()
 
 
 def read_stl(data: bytes, limits: ReadLimits) -> Scan:

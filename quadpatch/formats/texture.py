@@ -15,7 +15,7 @@ from quadpatch.formats.scan import Fill, Scan
 from quadpatch.types import FloatArray, IntArray
 
 
-def spread_over_corners(scan: Scan, fill: Fill, coordinates: FloatArray) -> FloatArray:
+def extend_over_corners(scan: Scan, fill: Fill, coordinates: FloatArray) -> FloatArray:
     """Spread the texture coordinates of measured corners over the new triangles.
 
     Parameters
@@ -42,8 +42,8 @@ def spread_over_corners(scan: Scan, fill: Fill, coordinates: FloatArray) -> Floa
     known = np.asarray(corner >= 0)
     values = np.zeros((len(nodes), 2))
     values[known] = corner_value[corner[known]]
-    spread = extend_harmonically(triangle_edges(node.reshape(-1, 3)), known, values)
-    return np.asarray(spread[node.reshape(-1, 3)])
+    extended = extend_harmonically(triangle_edges(node.reshape(-1, 3)), known, values)
+    return np.asarray(extended[node.reshape(-1, 3)])
 
 
 def _charts(corner_vertex: IntArray, corner_value: FloatArray) -> IntArray:

@@ -6,10 +6,10 @@ from pathlib import Path
 from quadpatch.errors import FormatError
 from quadpatch.formats.conversion import encode_as_obj, encode_as_off, encode_as_ply, encode_as_stl
 from quadpatch.formats.gltf.encoder import encode_as_glb, encode_as_gltf
+from quadpatch.formats.merged_scene import merge_scene
 from quadpatch.formats.output_files import is_stream, write_whole
 from quadpatch.formats.scan import Fill, Scan
 from quadpatch.formats.threemf.encoder import encode_as_threemf
-from quadpatch.formats.whole import assemble
 from quadpatch.stages import failure_of
 
 _ENCODERS = {
@@ -74,11 +74,11 @@ def _encode(suffix: str, scan: Scan, fill: Fill) -> tuple[bytes, list[str]]:
         if suffix == scan.format and scan.source is not None:
             encoded.append(scan.source.append(scan, fill))
         else:
-            encoded.append(_ENCODERS[suffix](assemble(scan, fill)))
+            encoded.append(_ENCODERS[suffix](merge_scene(scan, fill)))
 
     failure = failure_of(with_attributes, passing=(FormatError,))
     if failure is None:
         return encoded[0], []
     bare = replace(scan, source=None)
     warning = f"colours, normals and the like are left out of the repaired mesh, which holds the shape alone: {failure}"
-    return _ENCODERS[suffix](assemble(bare, fill)), [warning]
+    return _ENCODERS[suffix](merge_scene(bare, fill)), [warning]

@@ -5,7 +5,7 @@ from quadpatch.patches.normalisation import HEIGHTS
 from quadpatch.sparse.dictionary import Dictionary
 from quadpatch.types import FloatArray
 from training.evaluation import complete, evaluate, join
-from training.spreading import disk
+from training.smooth_fills import disk
 
 N = 12
 

@@ -8,7 +8,7 @@ from tests.training.patches import SCALE, waves, write_corpus
 from training.export import to_onnx, write_network
 from training.network_evaluation import MAX_PATCHES, clean_heights, evaluate_network
 from training.shards import PatchSet
-from training.spreading import disk
+from training.smooth_fills import disk
 
 CARD = {"patch_resolution": 24, "recipe": "paper", "height_low": SCALE.low, "height_high": SCALE.high}
 

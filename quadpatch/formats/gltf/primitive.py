@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 
 from quadpatch.formats.attributes import normals_at
 from quadpatch.formats.gltf.container import GltfFile
-from quadpatch.formats.parts import PartFill
 from quadpatch.formats.scan import Fill, Scan
+from quadpatch.formats.scene_parts import PartFill
 from quadpatch.mesh.weld import first_of_equal
 from quadpatch.types import BoolArray, FloatArray, IntArray, Triangles, Vertices
 

@@ -18,9 +18,9 @@ from quadpatch.formats.gltf.scene import placed_nodes
 from quadpatch.formats.gltf.source import GltfSource, Primitive
 from quadpatch.formats.limits import ReadLimits, check_triangles, check_vertices, to_float64
 from quadpatch.formats.marks import next_hole_id
-from quadpatch.formats.parts import Part, place
 from quadpatch.formats.polygons import triangulate_strips
 from quadpatch.formats.scan import Scan
+from quadpatch.formats.scene_parts import Part, place
 from quadpatch.types import FloatArray, IntArray, Triangles
 
 _TRIANGLES, _STRIP, _FAN = 4, 5, 6

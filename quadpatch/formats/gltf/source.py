@@ -11,12 +11,12 @@ from typing import Any
 
 import numpy as np
 
-from quadpatch.formats.attributes import nearest_rim_triangle, spread_over_vertices
+from quadpatch.formats.attributes import extend_over_vertices, nearest_rim_triangle
 from quadpatch.formats.gltf.container import GltfFile, dump_gltf
 from quadpatch.formats.gltf.primitive import Corners, Store, build_primitive
-from quadpatch.formats.parts import Part, is_invertible, split_by_part
-from quadpatch.formats.scan import Appearance, Fill, Scan
-from quadpatch.formats.texture import spread_over_corners
+from quadpatch.formats.scan import Fill, Scan, VertexAttributes
+from quadpatch.formats.scene_parts import Part, is_invertible, split_by_part
+from quadpatch.formats.texture import extend_over_corners
 from quadpatch.mesh.weld import weld
 from quadpatch.types import BoolArray, FloatArray, IntArray
 
@@ -73,14 +73,14 @@ class GltfSource:
     nodes: list[int]
     primitives: list[Primitive]
 
-    def appearance(self, scan: Scan) -> Appearance:
+    def vertex_attributes(self, scan: Scan) -> VertexAttributes:
         """Colours, normals in the scene, and texture coordinates with v upwards."""
         colours = self._gather(scan, "COLOR_0", 4)
         texture = self._gather(scan, "TEXCOORD_0", 2)
         normals = self._gather(scan, "NORMAL", 3, in_scene=True)
         if texture is not None:
             texture = texture * np.array([1.0, -1.0]) + np.array([0.0, 1.0])
-        return Appearance(
+        return VertexAttributes(
             None if colours is None else colours * 255.0,
             None if normals is None else np.nan_to_num(normals),
             None if texture is None else texture[scan.triangles],
@@ -132,16 +132,16 @@ class GltfSource:
         """Attributes of all vertices and new corners that the new primitives draw on."""
         colours = self._gather(scan, "COLOR_0", 4)
         if colours is not None:
-            colours = np.concatenate([colours, spread_over_vertices(fill, colours)])
+            colours = np.concatenate([colours, extend_over_vertices(fill, colours)])
         texture = self._gather(scan, "TEXCOORD_0", 2)
-        spread = None
+        extended = None
         if texture is not None:
             # Vertices are repeated along seams of the atlas: joined, each rim vertex finds all its charts.
             welded = weld(scan.vertices, scan.triangles)
             joined = replace(scan, triangles=welded.to_file[welded.from_file[scan.triangles]])
-            spread = spread_over_corners(joined, fill, texture[scan.triangles])
+            extended = extend_over_corners(joined, fill, texture[scan.triangles])
         normals = self._gather(scan, "NORMAL", 3)
-        return Corners(fill, len(scan.vertices), colours, spread, normals)
+        return Corners(fill, len(scan.vertices), colours, extended, normals)
 
     @staticmethod
     def _attach(store: Store, parent: int, primitives: list[dict[str, Any]]) -> None:

@@ -6,20 +6,20 @@ import numpy as np
 
 from quadpatch.errors import FormatError
 from quadpatch.formats.attributes import (
+    extend_over_vertices,
     nearest_rim_triangle,
     nearest_rim_vertex,
-    spread_over_vertices,
     triangle_normals,
     vertex_normals,
 )
 from quadpatch.formats.limits import to_float64
-from quadpatch.formats.ply.appearance import wedge_texture
 from quadpatch.formats.ply.encoding import Table
 from quadpatch.formats.ply.file import INDEX_NAMES, PlyFile
 from quadpatch.formats.ply.header import Property, value_range
 from quadpatch.formats.ply.rows import ListColumn, Rows, Values
+from quadpatch.formats.ply.vertex_attributes import wedge_texture
 from quadpatch.formats.scan import Fill, Scan
-from quadpatch.formats.texture import spread_over_corners
+from quadpatch.formats.texture import extend_over_corners
 from quadpatch.types import FloatArray, IntArray
 
 # PLY type word, numpy code, name, and the value of a measured row.
@@ -32,7 +32,7 @@ _NORMALS = ("nx", "ny", "nz")
 def new_vertex_rows(scan: Scan, file: PlyFile, fill: Fill) -> list[Table]:
     """Rows of the new vertices, as one table.
 
-    Numbers that vary smoothly are spread from the rim, normals are those of the new surface, and integers that are
+    Numbers that vary smoothly are extended from the rim, normals are those of the new surface, and integers that are
     no colours, which may be flags or labels, are those of the nearest rim vertex.
     """
     rows = file.element("vertex")
@@ -56,7 +56,7 @@ def _spread_columns(rows: Rows, fill: Fill, given: dict[str, Values]) -> dict[st
     if not names:
         return {}
     columns = [to_float64(column) for name in names if (column := rows.scalar(name)) is not None]
-    return dict(zip(names, spread_over_vertices(fill, np.stack(columns, axis=1)).T, strict=True))
+    return dict(zip(names, extend_over_vertices(fill, np.stack(columns, axis=1)).T, strict=True))
 
 
 def _is_continuous(prop: Property) -> bool:
@@ -123,5 +123,5 @@ def _texture(scan: Scan, file: PlyFile, rows: Rows, fill: Fill) -> dict[str, Val
     coordinates = wedge_texture(rows, file.triangle_row)
     if coordinates is None:
         return {}
-    spread = spread_over_corners(scan, fill, coordinates)
-    return {"texcoord": np.nan_to_num(spread.reshape(-1, 6))}
+    extended = extend_over_corners(scan, fill, coordinates)
+    return {"texcoord": np.nan_to_num(extended.reshape(-1, 6))}

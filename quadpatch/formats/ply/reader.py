@@ -11,15 +11,15 @@ import numpy as np
 from quadpatch.errors import EmptyMeshError, FormatError, ReadError
 from quadpatch.formats.limits import ReadLimits, check_indices, check_triangles, check_vertices, to_float64
 from quadpatch.formats.marks import next_hole_id
-from quadpatch.formats.ply.appearance import ply_appearance
 from quadpatch.formats.ply.ascii import read_ascii_body
 from quadpatch.formats.ply.binary import read_binary_body
 from quadpatch.formats.ply.file import INDEX_NAMES, PlyFile
 from quadpatch.formats.ply.header import Element, parse_header
 from quadpatch.formats.ply.rows import Rows
+from quadpatch.formats.ply.vertex_attributes import ply_vertex_attributes
 from quadpatch.formats.ply.writer import append_to_ply
 from quadpatch.formats.polygons import triangulate_polygons, triangulate_strips
-from quadpatch.formats.scan import Appearance, Fill, Scan
+from quadpatch.formats.scan import Fill, Scan, VertexAttributes
 from quadpatch.types import IntArray, Triangles, Vertices
 
 
@@ -33,9 +33,9 @@ class PlySource:
         """Hand the file back with rows appended."""
         return append_to_ply(scan, self.file, fill)
 
-    def appearance(self, scan: Scan) -> Appearance:
+    def vertex_attributes(self, scan: Scan) -> VertexAttributes:
         """Say what colours, normals and texture coordinates the file has."""
-        return ply_appearance(scan, self.file)
+        return ply_vertex_attributes(scan, self.file)
 
 
 def read_ply(data: bytes, limits: ReadLimits) -> Scan:

@@ -10,8 +10,8 @@ import zipfile
 
 import numpy as np
 
+from quadpatch.formats.merged_scene import MergedScene
 from quadpatch.formats.text import to_words
-from quadpatch.formats.whole import Whole
 
 _UNITS = ("micron", "millimeter", "centimeter", "inch", "foot", "meter")
 _CORE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
@@ -31,21 +31,21 @@ _RELATIONS = (
 _TIME = (1980, 1, 1, 0, 0, 0)
 
 
-def encode_as_threemf(whole: Whole) -> bytes:
+def encode_as_threemf(scene: MergedScene) -> bytes:
     """Encode as a 3MF package."""
-    unit = whole.unit if whole.unit in _UNITS else "millimeter"
-    colours = whole.appearance.colours
+    unit = scene.unit if scene.unit in _UNITS else "millimeter"
+    colours = scene.vertex_attributes.colours
     group, default = "", ""
     if colours is not None:
         tints = ["#" + bytes(row).hex().upper() for row in np.rint(colours).astype(np.uint8).tolist()]
         group = '<m:colorgroup id="2">' + "".join(f'<m:color color="{tint}"/>' for tint in tints) + "</m:colorgroup>"
         default = ' pid="2" pindex="0"'
-    columns = [to_words(column) for column in whole.vertices.T]
+    columns = [to_words(column) for column in scene.vertices.T]
     vertices = "".join(f'<vertex x="{x}" y="{y}" z="{z}"/>' for x, y, z in zip(*columns, strict=True))
     model = (
         f'{_HEAD}<model unit="{unit}" xml:lang="en-US" xmlns="{_CORE}" xmlns:m="{_MATERIAL}" '
         f'xmlns:q="urn:quadpatch"><resources>{group}<object id="1" type="model"{default}><mesh>'
-        f"<vertices>{vertices}</vertices><triangles>{_triangles(whole)}</triangles>"
+        f"<vertices>{vertices}</vertices><triangles>{_triangles(scene)}</triangles>"
         '</mesh></object></resources><build><item objectid="1"/></build></model>'
     )
     packed = io.BytesIO()
@@ -57,12 +57,12 @@ def encode_as_threemf(whole: Whole) -> bytes:
     return packed.getvalue()
 
 
-def _triangles(whole: Whole) -> str:
+def _triangles(scene: MergedScene) -> str:
     text = []
-    for row, (a, b, c) in enumerate(whole.triangles.tolist()):
-        look = f' pid="2" p1="{a}" p2="{b}" p3="{c}"' if whole.appearance.colours is not None else ""
+    for row, (a, b, c) in enumerate(scene.triangles.tolist()):
+        material = f' pid="2" p1="{a}" p2="{b}" p3="{c}"' if scene.vertex_attributes.colours is not None else ""
         mark = ""
-        if row >= whole.n_measured:
-            mark = f' q:hole="{whole.triangle_hole[row]}" q:confidence="{whole.triangle_confidence[row]:.6g}"'
-        text.append(f'<triangle v1="{a}" v2="{b}" v3="{c}"{look}{mark}/>')
+        if row >= scene.n_measured:
+            mark = f' q:hole="{scene.triangle_hole[row]}" q:confidence="{scene.triangle_confidence[row]:.6g}"'
+        text.append(f'<triangle v1="{a}" v2="{b}" v3="{c}"{material}{mark}/>')
     return "".join(text)

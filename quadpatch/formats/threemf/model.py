@@ -12,7 +12,7 @@ import numpy as np
 from quadpatch.errors import FormatError, IndexRangeError, ReadError
 from quadpatch.formats.limits import ReadLimits
 from quadpatch.formats.text import parse_numbers, to_integers
-from quadpatch.formats.threemf.bulk import Block, Look, find_blocks
+from quadpatch.formats.threemf.element_lists import Block, Material, find_blocks
 from quadpatch.types import FloatArray, Triangles, Vertices
 
 _CORE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02 "
@@ -37,7 +37,7 @@ class ModelObject:
     default_index: str | None
     coordinates: list[str] = field(default_factory=list)
     corners: list[str] = field(default_factory=list)
-    properties: list[Look] = field(default_factory=list)
+    properties: list[Material] = field(default_factory=list)
     bulk: dict[str, FloatArray] = field(default_factory=dict)
     components: list[Placed] = field(default_factory=list)
     vertices_end: int = -1
@@ -137,7 +137,7 @@ class _Handler:
         if entry.coordinates if block.name == "vertices" else entry.corners:
             return False
         entry.bulk[block.name] = block.table
-        entry.properties += block.looks
+        entry.properties += block.materials
         self._skipped += block.stop - block.start
         return True
 

@@ -12,8 +12,8 @@ import numpy as np
 from quadpatch.errors import EmptyMeshError, ReadError, TooLargeError
 from quadpatch.formats.limits import ReadLimits, check_triangles, check_vertices
 from quadpatch.formats.marks import next_hole_id
-from quadpatch.formats.parts import Part, place
 from quadpatch.formats.scan import Scan
+from quadpatch.formats.scene_parts import Part, place
 from quadpatch.formats.threemf.model import Model, ModelObject, Placed, parse_model
 from quadpatch.formats.threemf.package import Package, open_package
 from quadpatch.formats.threemf.source import Origin, ThreemfSource

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from quadpatch.formats.attributes import joined_vertices, nearest_rim_triangle
-from quadpatch.formats.parts import Part, PartFill, split_by_part
-from quadpatch.formats.scan import Appearance, Fill, Scan
+from quadpatch.formats.scan import Fill, Scan, VertexAttributes
+from quadpatch.formats.scene_parts import Part, PartFill, split_by_part
 from quadpatch.formats.text import to_words
 from quadpatch.formats.threemf.model import Model, ModelObject
 from quadpatch.formats.threemf.package import Package
@@ -56,16 +56,16 @@ class ThreemfSource:
         origin = self.origins[part]
         return self.models[origin.path].objects[origin.object_id]
 
-    def appearance(self, scan: Scan) -> Appearance:
+    def vertex_attributes(self, scan: Scan) -> VertexAttributes:
         """Colour that the first triangle gives each vertex, from colour groups and base materials."""
         if not any(model.colours for model in self.models.values()):
-            return Appearance()
+            return VertexAttributes()
         colours = np.full((len(scan.vertices), 4), np.nan)
         for number, part in enumerate(self.parts):
             table = colours[part.first : part.first + len(part.vertices)]
             groups = self.models[self.origins[number].path].colours
             _colour_vertices(self._entry(number), groups, table)
-        return Appearance(None if np.isnan(colours).all() else colours)
+        return VertexAttributes(None if np.isnan(colours).all() else colours)
 
     def append(self, scan: Scan, fill: Fill) -> bytes:
         """Add the fill to the objects that have the holes."""
@@ -154,8 +154,8 @@ def _triangle_text(corners: Triangles, piece: PartFill, fill: Fill, prefix: str,
     text = []
     for (a, b, c), row in zip(corners.tolist(), piece.rows.tolist(), strict=True):
         mark = f'q:hole="{fill.triangle_hole[row]}" q:confidence="{fill.triangle_confidence[row]:.6g}"'
-        look = properties[row] if properties else ""
-        text.append(f'<{prefix}triangle v1="{a}" v2="{b}" v3="{c}"{look} xmlns:q="urn:quadpatch" {mark}/>')
+        material = properties[row] if properties else ""
+        text.append(f'<{prefix}triangle v1="{a}" v2="{b}" v3="{c}"{material} xmlns:q="urn:quadpatch" {mark}/>')
     return "".join(text)
 
 

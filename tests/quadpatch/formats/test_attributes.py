@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from quadpatch.formats.attributes import (
+    extend_over_vertices,
     nearest_rim_triangle,
     nearest_rim_vertex,
-    spread_over_vertices,
     triangle_normals,
     vertex_normals,
 )
@@ -42,16 +42,16 @@ def inner_cap(scan: Scan) -> Fill:
 def test_a_constant_attribute_stays_constant_to_the_bit() -> None:
     scan = holed_ball()
     values = np.full((len(scan.vertices), 3), [0.1, 7.0, 255.0])
-    spread = spread_over_vertices(cap_holes(scan), values)
-    assert (spread == [0.1, 7.0, 255.0]).all()
+    extended = extend_over_vertices(cap_holes(scan), values)
+    assert (extended == [0.1, 7.0, 255.0]).all()
 
 
 def test_each_hole_takes_from_its_own_rim() -> None:
     scan = holed_ball()
     fill = cap_holes(scan)
     side = (scan.vertices[:, 2] > scan.vertices[:, 0]).astype(float)[:, np.newaxis]
-    spread = spread_over_vertices(fill, side)[:, 0]
-    assert (spread == (fill.vertices[:, 2] > fill.vertices[:, 0])).all()
+    extended = extend_over_vertices(fill, side)[:, 0]
+    assert (extended == (fill.vertices[:, 2] > fill.vertices[:, 0])).all()
 
 
 def test_unknown_rim_values_take_no_part() -> None:
@@ -60,13 +60,13 @@ def test_unknown_rim_values_take_no_part() -> None:
     values = np.full((len(scan.vertices), 2), 5.0)
     values[::2, 0] = np.nan
     values[:, 1] = np.inf
-    spread = spread_over_vertices(fill, values)
-    assert (spread == [5.0, 0.0]).all()
+    extended = extend_over_vertices(fill, values)
+    assert (extended == [5.0, 0.0]).all()
 
 
 def test_an_empty_fill_has_no_attributes() -> None:
     scan = holed_ball()
-    assert spread_over_vertices(EMPTY, np.ones((len(scan.vertices), 2))).shape == (0, 2)
+    assert extend_over_vertices(EMPTY, np.ones((len(scan.vertices), 2))).shape == (0, 2)
     assert vertex_normals(scan, EMPTY).shape == (0, 3)
     assert triangle_normals(scan, EMPTY).shape == (0, 3)
     assert nearest_rim_triangle(scan, EMPTY).shape == (0,)

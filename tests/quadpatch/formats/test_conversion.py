@@ -60,7 +60,7 @@ def test_texture_and_normals_survive_where_there_is_room(suffix: str, tmp_path: 
     again = read_scan(tmp_path / f"out.{suffix}")
     assert again.source is not None
     assert scan.source is not None
-    old, new = scan.source.appearance(scan), again.source.appearance(again)
+    old, new = scan.source.vertex_attributes(scan), again.source.vertex_attributes(again)
     assert old.texture is not None
     assert new.texture is not None
     assert new.normals is not None
@@ -75,7 +75,7 @@ def test_colours_survive_where_there_is_room(suffix: str, tmp_path: Path) -> Non
     write_scan(tmp_path / f"out.{suffix}", scan, cap_holes(scan))
     again = read_scan(tmp_path / f"out.{suffix}")
     assert again.source is not None
-    colours = again.source.appearance(again).colours
+    colours = again.source.vertex_attributes(again).colours
     assert colours is not None
     corners = again.triangles[: len(scan.triangles)]
     expected = 200.0 * (again.vertices[corners][:, :, 0] > 0)

@@ -18,8 +18,8 @@ def test_along_a_path_values_run_straight_from_end_to_end(n: int, low: float, hi
     known[[0, -1]] = True
     values = np.zeros((n, 1))
     values[0], values[-1] = low, high
-    spread = extend_harmonically(path_edges(n), known, values)[:, 0]
-    assert np.allclose(spread, np.linspace(low, high, n), atol=1e-9)
+    extended = extend_harmonically(path_edges(n), known, values)[:, 0]
+    assert np.allclose(extended, np.linspace(low, high, n), atol=1e-9)
 
 
 @given(seed=st.integers(0, 10_000), n=st.integers(2, 30))
@@ -28,29 +28,29 @@ def test_every_unknown_node_is_the_mean_of_its_neighbours_and_within_the_known_r
     edges = rng.integers(0, n, (3 * n, 2))
     known = rng.random(n) < 0.3
     values = rng.normal(size=(n, 2))
-    spread = extend_harmonically(edges, known, values)
-    assert spread[known].tobytes() == values[known].tobytes()
+    extended = extend_harmonically(edges, known, values)
+    assert extended[known].tobytes() == values[known].tobytes()
     both = np.unique(np.concatenate([edges, edges[:, ::-1]]), axis=0)
     both = both[both[:, 0] != both[:, 1]]
-    for node in np.flatnonzero(~known & np.isfinite(spread[:, 0])):
+    for node in np.flatnonzero(~known & np.isfinite(extended[:, 0])):
         neighbours = both[both[:, 0] == node, 1]
-        assert np.allclose(spread[node], spread[neighbours].mean(axis=0), atol=1e-9)
+        assert np.allclose(extended[node], extended[neighbours].mean(axis=0), atol=1e-9)
     if known.any():
-        assert np.nanmin(spread) >= values[known].min()
-        assert np.nanmax(spread) <= values[known].max()
+        assert np.nanmin(extended) >= values[known].min()
+        assert np.nanmax(extended) <= values[known].max()
 
 
 def test_components_without_a_known_node_stay_unknown() -> None:
     edges = np.array([[0, 1], [2, 3]])
-    spread = extend_harmonically(edges, np.array([True, False, False, False]), np.full((4, 1), 7.0))
-    assert spread[:2, 0].tolist() == [7, 7]
-    assert np.isnan(spread[2:]).all()
+    extended = extend_harmonically(edges, np.array([True, False, False, False]), np.full((4, 1), 7.0))
+    assert extended[:2, 0].tolist() == [7, 7]
+    assert np.isnan(extended[2:]).all()
 
 
 def test_numbers_at_the_end_of_the_range_stay_within_that_of_their_rim() -> None:
     largest = np.finfo(np.float64).max
     known = np.array([True, False, False, True])
     values = np.array([[largest], [0.0], [0.0], [0.9 * largest]])
-    spread = extend_harmonically(path_edges(4), known, values)[:, 0]
-    assert np.isfinite(spread).all()
-    assert (spread >= 0.9 * largest).all()
+    extended = extend_harmonically(path_edges(4), known, values)[:, 0]
+    assert np.isfinite(extended).all()
+    assert (extended >= 0.9 * largest).all()

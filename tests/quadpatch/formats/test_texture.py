@@ -3,7 +3,7 @@
 import numpy as np
 
 from quadpatch.formats.scan import Fill, Scan
-from quadpatch.formats.texture import spread_over_corners
+from quadpatch.formats.texture import extend_over_corners
 from tests.quadpatch.formats.fills import as_scan, cap_holes
 from tests.quadpatch.shapes import punched, sphere
 
@@ -16,12 +16,12 @@ def ball() -> tuple[Scan, Fill]:
 def test_one_chart_spreads_without_leaving_its_range() -> None:
     scan, fill = ball()
     flat = scan.vertices[:, :2]
-    spread = spread_over_corners(scan, fill, flat[scan.triangles])
+    extended = extend_over_corners(scan, fill, flat[scan.triangles])
     rim = np.unique(fill.triangles[fill.triangles < len(scan.vertices)])
-    assert (spread.min(axis=(0, 1)) >= flat[rim].min(axis=0)).all()
-    assert (spread.max(axis=(0, 1)) <= flat[rim].max(axis=0)).all()
+    assert (extended.min(axis=(0, 1)) >= flat[rim].min(axis=0)).all()
+    assert (extended.max(axis=(0, 1)) <= flat[rim].max(axis=0)).all()
     corners = fill.triangles < len(scan.vertices)
-    assert (spread[corners] == flat[fill.triangles[corners]]).all()
+    assert (extended[corners] == flat[fill.triangles[corners]]).all()
 
 
 def test_a_hole_on_a_seam_stays_in_the_chart_that_surrounds_most_of_it() -> None:
@@ -31,18 +31,18 @@ def test_a_hole_on_a_seam_stays_in_the_chart_that_surrounds_most_of_it() -> None
     # A quarter of the sphere lies elsewhere in the atlas.
     far = scan.vertices[scan.triangles].mean(axis=1)[:, 0] > 0.55
     texture[far] += 10
-    spread = spread_over_corners(scan, fill, texture)
-    assert np.isfinite(spread).all()
-    assert spread.max() < 1
+    extended = extend_over_corners(scan, fill, texture)
+    assert np.isfinite(extended).all()
+    assert extended.max() < 1
 
 
 def test_a_rim_without_texture_gives_none() -> None:
     scan, fill = ball()
-    assert np.isnan(spread_over_corners(scan, fill, np.full((len(scan.triangles), 3, 2), np.nan))).all()
+    assert np.isnan(extend_over_corners(scan, fill, np.full((len(scan.triangles), 3, 2), np.nan))).all()
 
 
 def test_half_a_textured_rim_is_enough() -> None:
     scan, fill = ball()
     texture = np.full((len(scan.triangles), 3, 2), 0.25)
     texture[::2] = np.nan
-    assert (spread_over_corners(scan, fill, texture) == 0.25).all()
+    assert (extend_over_corners(scan, fill, texture) == 0.25).all()

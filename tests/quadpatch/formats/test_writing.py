@@ -8,7 +8,7 @@ import pytest
 
 from quadpatch.errors import FormatError
 from quadpatch.formats.reading import read_scan
-from quadpatch.formats.scan import Appearance, Fill, Scan
+from quadpatch.formats.scan import Fill, Scan, VertexAttributes
 from quadpatch.formats.writing import write_scan
 from tests.quadpatch.formats.fills import as_scan, cap_holes
 from tests.quadpatch.shapes import punched, sphere
@@ -25,7 +25,7 @@ class Broken:
     def append(self, scan: Scan, fill: Fill) -> bytes:
         raise self.error
 
-    def appearance(self, scan: Scan) -> Appearance:
+    def vertex_attributes(self, scan: Scan) -> VertexAttributes:
         raise self.error
 
 

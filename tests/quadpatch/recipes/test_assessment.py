@@ -42,7 +42,7 @@ class Says:
 
     def evidence(self) -> PatchAgreement:
         return PatchAgreement(
-            *(np.array(getattr(self, name)) for name in ("coverage", "spread", "departure", "rim_misfit"))
+            *(np.array(getattr(self, name)) for name in ("coverage", "deviation", "departure", "rim_misfit"))
         )
 
 

@@ -89,7 +89,7 @@ def test_normals_colours_and_texture_go_along_and_marks_tell_hole_and_confidence
     assert filled.vertex_normals[:, 2].min() > 0.5
     again = read(data)
     assert again.source is not None
-    looks = again.source.appearance(again)
+    looks = again.source.vertex_attributes(again)
     new = slice(len(mesh.vertices), None)
     assert looks.colours is not None
     assert looks.normals is not None

@@ -28,9 +28,11 @@ def package(model: str, **others: str) -> bytes:
     return packed.getvalue()
 
 
-def mesh_text(scan: Scan, prefix: str = "", look: str = "") -> str:
+def mesh_text(scan: Scan, prefix: str = "", material: str = "") -> str:
     vertices = "".join(f'<{prefix}vertex x="{x!r}" y="{y!r}" z="{z!r}"/>' for x, y, z in scan.vertices.tolist())
-    triangles = "".join(f'<{prefix}triangle v1="{a}" v2="{b}" v3="{c}"{look}/>' for a, b, c in scan.triangles.tolist())
+    triangles = "".join(
+        f'<{prefix}triangle v1="{a}" v2="{b}" v3="{c}"{material}/>' for a, b, c in scan.triangles.tolist()
+    )
     return (
         f"<{prefix}mesh>\n<{prefix}vertices>{vertices}</{prefix}vertices><{prefix}triangles>{triangles}"
         f"</{prefix}triangles></{prefix}mesh>"

@@ -54,7 +54,7 @@ def test_colours_of_groups_and_base_materials_are_read() -> None:
     coloured = f'<object id="1" pid="5" pindex="1">{mesh_text(BOX)}</object>'
     scan = read(package(model(group + coloured.replace('v3="1"', 'v3="1" pid="5" p1="0"'), ITEM)))
     assert scan.source is not None
-    colours = scan.source.appearance(scan).colours
+    colours = scan.source.vertex_attributes(scan).colours
     assert colours is not None
     assert colours.tolist() == [[255, 0, 0, 128]] * 3 + [[0, 255, 0, 255]]
 

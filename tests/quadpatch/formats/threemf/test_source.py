@@ -82,7 +82,7 @@ def test_prefixed_elements_get_prefixed_company() -> None:
 
 def test_new_triangles_have_the_material_of_their_neighbours_and_other_entries_stay() -> None:
     group = '<m:colorgroup id="5"><m:color color="#FF0000"/></m:colorgroup>'
-    mesh = mesh_text(ball(), look=' pid="5" p1="0"')
+    mesh = mesh_text(ball(), material=' pid="5" p1="0"')
     scan = read(package(model(f'{group}<object id="1">{mesh}</object>', '<item objectid="1"/>')))
     data = append(scan)
     assert root(data).count('pid="5" p1="0"') == len(read(data).triangles)

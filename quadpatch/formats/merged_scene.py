@@ -4,21 +4,21 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from quadpatch.formats.attributes import joined_vertices, spread_over_vertices, triangle_normals, vertex_normals
-from quadpatch.formats.scan import Appearance, Fill, Scan
-from quadpatch.formats.texture import spread_over_corners
+from quadpatch.formats.attributes import extend_over_vertices, joined_vertices, triangle_normals, vertex_normals
+from quadpatch.formats.scan import Fill, Scan, VertexAttributes
+from quadpatch.formats.texture import extend_over_corners
 from quadpatch.types import BoolArray, FloatArray, IntArray, Triangles, Vertices
 
 
 @dataclass(frozen=True)
-class Whole:
+class MergedScene:
     """Measured surface and invented surface behind it.
 
     Attributes
     ----------
     vertices : (n, 3) float64
     triangles : (m, 3) int64
-    appearance : Appearance
+    vertex_attributes : VertexAttributes
         Of all vertices and triangles; colours without NaN.
     vertex_hole, vertex_confidence : (n,) int64, (n,) float64
         -1 and 1 for measured vertices.
@@ -32,7 +32,7 @@ class Whole:
 
     vertices: Vertices
     triangles: Triangles
-    appearance: Appearance
+    vertex_attributes: VertexAttributes
     vertex_hole: IntArray
     vertex_confidence: FloatArray
     triangle_hole: IntArray
@@ -56,29 +56,29 @@ def _as_fill(vertices: Vertices, triangles: Triangles) -> Fill:
     return Fill(np.zeros((0, 3)), triangles, nothing.astype(np.int64), nothing, nothing.astype(np.int64), nothing)
 
 
-def assemble(scan: Scan, fill: Fill) -> Whole:
-    """Join a scan and its fill, and spread the scan's appearance over the fill.
+def merge_scene(scan: Scan, fill: Fill) -> MergedScene:
+    """Join a scan and its fill, and extend the scan's vertex attributes over the fill.
 
     Parameters
     ----------
     scan : Scan
     fill : Fill
     """
-    looks = Appearance() if scan.source is None else scan.source.appearance(scan)
-    colours, normals, texture = looks.colours, looks.normals, looks.texture
+    attributes = VertexAttributes() if scan.source is None else scan.source.vertex_attributes(scan)
+    colours, normals, texture = attributes.colours, attributes.normals, attributes.texture
     if colours is not None:
-        spread = spread_over_vertices(fill, colours)
+        extended = extend_over_vertices(fill, colours)
         # Vertices without a colour among coloured ones are white.
-        colours = np.nan_to_num(np.concatenate([colours, spread]), nan=255.0).clip(0, 255)
+        colours = np.nan_to_num(np.concatenate([colours, extended]), nan=255.0).clip(0, 255)
     if normals is not None:
         normals = np.concatenate([normals, vertex_normals(scan, fill)])
     if texture is not None:
-        texture = np.concatenate([texture, spread_over_corners(scan, fill, texture)])
+        texture = np.concatenate([texture, extend_over_corners(scan, fill, texture)])
     n_vertices, n_triangles = len(scan.vertices), len(scan.triangles)
-    return Whole(
+    return MergedScene(
         vertices=joined_vertices(scan, fill),
         triangles=np.concatenate([scan.triangles, fill.triangles]),
-        appearance=Appearance(colours, normals, texture),
+        vertex_attributes=VertexAttributes(colours, normals, texture),
         vertex_hole=np.concatenate([np.full(n_vertices, -1), fill.vertex_hole]),
         vertex_confidence=np.concatenate([np.ones(n_vertices), fill.vertex_confidence]),
         triangle_hole=np.concatenate([np.full(n_triangles, -1), fill.triangle_hole]),

@@ -12,8 +12,8 @@ from quadpatch.errors import ReadError
 from quadpatch.formats.text import parse_numbers
 from quadpatch.types import FloatArray
 
-Look = tuple[str | None, str | None, str | None, str | None]
-PLAIN: Look = (None, None, None, None)
+Material = tuple[str | None, str | None, str | None, str | None]
+PLAIN: Material = (None, None, None, None)
 
 _OPENING = re.compile(rb"<((?:[\w.-]+:)?)(vertices|triangles)[ \t\r\n]*>")
 _ATTRIBUTE = re.compile(rb'(pid|p1|p2|p3)[ \t\r\n]*=[ \t\r\n]*"([0-9]+)"')
@@ -32,13 +32,13 @@ _ELEMENTS = {
 
 
 class Block(NamedTuple):
-    """A list of the usual form: name, bytes from behind its opening to its closing tag, rows of three, looks."""
+    """A list of the usual form: name, bytes from behind its opening to its closing tag, rows of three, materials."""
 
     name: str
     start: int
     stop: int
     table: FloatArray
-    looks: list[Look]
+    materials: list[Material]
 
 
 def find_blocks(text: bytes) -> Iterator[Block]:
@@ -69,10 +69,10 @@ def find_blocks(text: bytes) -> Iterator[Block]:
             numbers = parse_numbers(b" ".join(number for row in found for number in row[:3]))
         except ReadError:
             continue
-        looks = [_look(row[3]) if row[3] else PLAIN for row in found] if name == b"triangles" else []
-        yield Block(name.decode(), start, stop, numbers.reshape(-1, 3), looks)
+        materials = [_material(row[3]) if row[3] else PLAIN for row in found] if name == b"triangles" else []
+        yield Block(name.decode(), start, stop, numbers.reshape(-1, 3), materials)
 
 
-def _look(attributes: bytes) -> Look:
+def _material(attributes: bytes) -> Material:
     found = {name.decode(): value.decode() for name, value in _ATTRIBUTE.findall(attributes)}
     return found.get("pid"), found.get("p1"), found.get("p2"), found.get("p3")

@@ -5,15 +5,15 @@ import numpy as np
 from quadpatch.formats.limits import to_float64
 from quadpatch.formats.ply.file import PlyFile
 from quadpatch.formats.ply.rows import Rows
-from quadpatch.formats.scan import Appearance, Scan
+from quadpatch.formats.scan import Scan, VertexAttributes
 from quadpatch.types import FloatArray, IntArray
 
 _COLOURS = (("red", "green", "blue"), ("diffuse_red", "diffuse_green", "diffuse_blue"), ("r", "g", "b"))
 _TEXTURES = (("s", "t"), ("u", "v"), ("texture_u", "texture_v"))
 
 
-def ply_appearance(scan: Scan, file: PlyFile) -> Appearance:
-    """Find the appearance of the measured surface.
+def ply_vertex_attributes(scan: Scan, file: PlyFile) -> VertexAttributes:
+    """Find the colours, normals and texture coordinates of the measured surface.
 
     Parameters
     ----------
@@ -23,14 +23,14 @@ def ply_appearance(scan: Scan, file: PlyFile) -> Appearance:
     """
     rows = file.element("vertex")
     if rows is None:
-        return Appearance()
+        return VertexAttributes()
     normals = _columns(rows, (("nx", "ny", "nz"),))
     faces = file.element("face")
     texture = None if faces is None else wedge_texture(faces, file.triangle_row)
     by_vertex = _columns(rows, _TEXTURES)
     if texture is None and by_vertex is not None:
         texture = by_vertex[scan.triangles]
-    return Appearance(_colours(rows), normals, texture)
+    return VertexAttributes(_colours(rows), normals, texture)
 
 
 def _columns(rows: Rows, choices: tuple[tuple[str, ...], ...]) -> FloatArray | None:

@@ -7,7 +7,7 @@ import pytest
 
 from quadpatch.formats.limits import ReadLimits
 from quadpatch.formats.scan import Scan
-from quadpatch.formats.threemf.bulk import find_blocks
+from quadpatch.formats.threemf.element_lists import find_blocks
 from quadpatch.formats.threemf.model import parse_model
 from tests.quadpatch.formats.fills import as_scan
 from tests.quadpatch.formats.threemf.packages import mesh_text, model
@@ -60,11 +60,11 @@ def test_places_to_insert_are_the_same_with_and_without_bulk() -> None:
         assert version.encode()[parsed.build_end :] == b"</build></model>"
 
 
-def test_looks_are_read_in_any_order() -> None:
+def test_materials_are_read_in_any_order() -> None:
     scan = Scan(np.eye(3), np.array([[0, 1, 2]]), "memory")
-    look = ' p1="4" pid="7"'
-    text = f'<object id="1">{mesh_text(scan, look=look)}</object>'
+    material = ' p1="4" pid="7"'
+    text = f'<object id="1">{mesh_text(scan, material=material)}</object>'
     (_, block) = find_blocks(text.encode())
-    assert block.looks == [("7", "4", None, None)]
+    assert block.materials == [("7", "4", None, None)]
     parsed = parse_model(model(text, "").encode(), ReadLimits())
     assert parsed.objects["1"].properties == [("7", "4", None, None)]

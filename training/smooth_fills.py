@@ -5,7 +5,7 @@ import numpy as np
 from quadpatch.types import BoolArray, FloatArray
 
 
-def spread(values: FloatArray, known: BoolArray, order: int) -> FloatArray:
+def smooth_fill(values: FloatArray, known: BoolArray, order: int) -> FloatArray:
     """Fill the unknown bins of all patches with the smoothest continuation of the known ones.
 
     Minimises the sum of squared differences of the given order over the whole patch while the known bins stay as
