@@ -179,9 +179,9 @@ def _write(trainer: Trainer, architecture: Architecture, corpus: Corpus, request
     evaluate = EVALUATIONS[architecture.recipe]
 
     def write(model: Any, metrics: dict[str, float]) -> Card:
-        told = {**facts, "metrics": metrics}
+        card_facts = {**facts, "metrics": metrics}
         name = parse_reference(request.name)
-        card = network_card(name, architecture, corpus, request.options, trainer.state, told)
+        card = network_card(name, architecture, corpus, request.options, trainer.state, card_facts)
         write_network(request.output, model, card)
         return card
 

@@ -12,7 +12,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from quadpatch.calibration.error_model import ErrorModel, fit_error_model
-from quadpatch.calibration.synthetic_holes import Punched, Spacing, cut_holes
+from quadpatch.calibration.synthetic_holes import MeshWithHoles, Spacing, cut_holes
 from quadpatch.filling.fairing import Energy, triangles_around
 from quadpatch.filling.fill import ClosedMesh, close_holes
 from quadpatch.filling.filled_mesh import FilledMesh
@@ -89,7 +89,7 @@ def cut_calibration_set(
     CalibrationSet or None
         None where the undamaged surface has no room for enough holes.
     """
-    best: tuple[Punched, float] | None = None
+    best: tuple[MeshWithHoles, float] | None = None
     spacing = Spacing(edge_length, _MARGIN_EDGES * edge_length, MAX_HOLES)
     for size in _SIZES:
         punched = cut_holes(mesh, size * diameter, spacing, rng)
@@ -100,11 +100,13 @@ def cut_calibration_set(
     if best is None:
         return None
     punched, used = best
-    around = triangles_around(mesh.triangles, np.flatnonzero(punched.gone), len(mesh.vertices), 2)
-    truth = TriangleMesh(mesh.vertices, mesh.triangles[around])
+    adjacent = triangles_around(mesh.triangles, np.flatnonzero(punched.removed), len(mesh.vertices), 2)
+    truth = TriangleMesh(mesh.vertices, mesh.triangles[adjacent])
     diameters = np.array([loop_diameter(mesh.vertices[loop]) for loop in punched.loops])
     closed = close_holes(punched.mesh, punched.loops)
-    return CalibrationSet(truth, mesh.vertices[punched.gone], punched.cut_away, punched.loops, closed, used, diameters)
+    return CalibrationSet(
+        truth, mesh.vertices[punched.removed], punched.cut_away, punched.loops, closed, used, diameters
+    )
 
 
 def choose_energy(errors: FloatArray, diameter: float, energies: Sequence[Energy], usual: Energy) -> Energy:

@@ -114,28 +114,28 @@ def leave_one_ring_out(mesh: TriangleMesh, loops: list[IntArray], energies: Sequ
     n_vertices = len(mesh.vertices)
     ring = np.zeros(len(mesh.triangles), bool)
     ring[triangles_around(mesh.triangles, rim, n_vertices, 1)] = True
-    left = mesh.triangles[~ring]
-    gone = np.flatnonzero(_used(mesh.triangles, n_vertices) & ~_used(left, n_vertices))
+    remaining = mesh.triangles[~ring]
+    removed = np.flatnonzero(_used(mesh.triangles, n_vertices) & ~_used(remaining, n_vertices))
     rim_tree = cKDTree(mesh.vertices[rim])
-    wider = _new_loops(mesh, left)
-    closed = close_holes(TriangleMesh(mesh.vertices, left), wider)
+    wider_loops = _new_loops(mesh, remaining)
+    closed = close_holes(TriangleMesh(mesh.vertices, remaining), wider_loops)
     opened = np.zeros(len(loops), bool)
-    for number, loop in enumerate(wider):
+    for number, loop in enumerate(wider_loops):
         if number not in closed.unfilled:
             opened[hole[rim_tree.query(mesh.vertices[loop])[1]]] = True
-    hole_of_gone = hole[rim_tree.query(mesh.vertices[gone])[1]]
+    hole_of_removed = hole[rim_tree.query(mesh.vertices[removed])[1]]
     misses = np.full((len(loops), len(energies)), np.nan)
-    told = np.zeros(len(loops), bool)
-    told[hole_of_gone] = True
-    told &= opened
+    has_residual = np.zeros(len(loops), bool)
+    has_residual[hole_of_removed] = True
+    has_residual &= opened
     # A rim that is joined to an island opens into two loops, which say nothing about the ring between them.
-    told &= np.array([len(np.unique(loop)) == len(loop) for loop in loops])
-    if told.any():
+    has_residual &= np.array([len(np.unique(loop)) == len(loop) for loop in loops])
+    if has_residual.any():
         for number, energy in enumerate(energies):
             filled = fair_holes(closed, energy)
             new = TriangleMesh(filled.mesh.vertices, filled.mesh.triangles[filled.n_measured_triangles :])
-            distance = distance_to_mesh(mesh.vertices[gone], new)
-            misses[told, number] = mean_by(hole_of_gone, distance, len(loops))[told]
+            distance = distance_to_mesh(mesh.vertices[removed], new)
+            misses[has_residual, number] = mean_by(hole_of_removed, distance, len(loops))[has_residual]
     return misses
 
 
@@ -145,12 +145,12 @@ def _blended(fills: list[FilledMesh], weights: FloatArray) -> FilledMesh:
     return fills[0].with_vertices(np.einsum("vek,ve->vk", invented, of_vertex))
 
 
-def _new_loops(mesh: TriangleMesh, left: IntArray) -> list[IntArray]:
+def _new_loops(mesh: TriangleMesh, remaining: IntArray) -> list[IntArray]:
     """Find simple loops of what is left that touch no border that was there before."""
     before = np.zeros(len(mesh.vertices), bool)
     for loop in boundary_loops(mesh.triangles).loops:
         before[loop] = True
-    boundary = boundary_loops(left)
+    boundary = boundary_loops(remaining)
     pairs = zip(boundary.loops, boundary.is_manifold, strict=True)
     return [loop for loop, is_manifold in pairs if is_manifold and not before[loop].any()]
 

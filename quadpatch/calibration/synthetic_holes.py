@@ -14,14 +14,14 @@ _RIM_EDGES = 0.7
 
 
 @dataclass(frozen=True)
-class Punched:
+class MeshWithHoles:
     """What holes took from a mesh.
 
     Attributes
     ----------
     mesh : TriangleMesh
-        All vertices, and the triangles that are left.
-    gone : (n_vertices,) bool
+        All vertices, and the triangles that remain.
+    removed : (n_vertices,) bool
     cut_away : (n_triangles,) bool
         Triangles of the whole mesh that were taken.
     loops : list of (n_loop,) int64
@@ -29,7 +29,7 @@ class Punched:
     """
 
     mesh: TriangleMesh
-    gone: BoolArray
+    removed: BoolArray
     cut_away: BoolArray
     loops: list[IntArray]
 
@@ -53,7 +53,7 @@ class Spacing:
     most: int | None = None
 
 
-def cut_holes(mesh: TriangleMesh, diameter: float, spacing: Spacing, rng: np.random.Generator) -> Punched:
+def cut_holes(mesh: TriangleMesh, diameter: float, spacing: Spacing, rng: np.random.Generator) -> MeshWithHoles:
     """Cut disks of surface out of a mesh wherever they keep clear of every boundary and of each other.
 
     Parameters
@@ -66,10 +66,10 @@ def cut_holes(mesh: TriangleMesh, diameter: float, spacing: Spacing, rng: np.ran
         Picks the places.
     """
     radius = max(diameter / 2 - _RIM_EDGES * spacing.edge_length, 0.5 * spacing.edge_length)
-    gone = _disks(mesh, radius, spacing, rng)
-    cut_away = np.asarray(gone[mesh.triangles].any(axis=1))
-    left = TriangleMesh(mesh.vertices, mesh.triangles[~cut_away])
-    return Punched(left, gone, cut_away, _new_loops(mesh, left.triangles))
+    removed = _disks(mesh, radius, spacing, rng)
+    cut_away = np.asarray(removed[mesh.triangles].any(axis=1))
+    remaining = TriangleMesh(mesh.vertices, mesh.triangles[~cut_away])
+    return MeshWithHoles(remaining, removed, cut_away, _new_loops(mesh, remaining.triangles))
 
 
 def _disks(mesh: TriangleMesh, radius: float, spacing: Spacing, rng: np.random.Generator) -> BoolArray:
@@ -77,19 +77,19 @@ def _disks(mesh: TriangleMesh, radius: float, spacing: Spacing, rng: np.random.G
     normals = vertex_normals(mesh.vertices, mesh.triangles)
     tree = cKDTree(mesh.vertices)
     clear = _far_from_boundary(mesh, radius + spacing.margin)
-    gone = np.zeros(len(mesh.vertices), bool)
+    removed = np.zeros(len(mesh.vertices), bool)
     count = 0
     for centre in rng.permutation(np.flatnonzero(clear)).tolist():
         if not clear[centre]:
             continue
-        around = np.array(tree.query_ball_point(mesh.vertices[centre], 2 * (radius + spacing.margin)))
-        distance = np.linalg.norm(mesh.vertices[around] - mesh.vertices[centre], axis=1)
-        gone[around[(distance < radius) & (normals[around] @ normals[centre] > 0)]] = True
-        clear[around] = False
+        nearby = np.array(tree.query_ball_point(mesh.vertices[centre], 2 * (radius + spacing.margin)))
+        distance = np.linalg.norm(mesh.vertices[nearby] - mesh.vertices[centre], axis=1)
+        removed[nearby[(distance < radius) & (normals[nearby] @ normals[centre] > 0)]] = True
+        clear[nearby] = False
         count += 1
         if count == spacing.most:
             break
-    return gone
+    return removed
 
 
 def _far_from_boundary(mesh: TriangleMesh, distance: float) -> BoolArray:
@@ -103,10 +103,10 @@ def _far_from_boundary(mesh: TriangleMesh, distance: float) -> BoolArray:
     return far
 
 
-def _new_loops(mesh: TriangleMesh, left: Triangles) -> list[IntArray]:
+def _new_loops(mesh: TriangleMesh, remaining: Triangles) -> list[IntArray]:
     old = np.zeros(len(mesh.vertices), bool)
     old[_boundary_vertices(mesh)] = True
-    boundary = boundary_loops(left)
+    boundary = boundary_loops(remaining)
     pairs = zip(boundary.loops, boundary.is_manifold, strict=True)
     return [loop for loop, is_manifold in pairs if is_manifold and not old[loop].any()]
 

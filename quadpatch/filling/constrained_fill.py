@@ -151,16 +151,18 @@ class _OneHole:
         if patch is None:
             return None
         near = self._near
-        refined = refine(patch, near.edges, near.around)
+        refined = refine(patch, near.edges, near.adjacent_triangles)
         if not self._holds(refined):
             return self._with(patch)
-        refined = self._moved(refined, fair_refined(refined, near.around, THIN_PLATE, uniform=True).vertices)
-        denser = refine(refined, near.edges, near.around)
-        for start in (relax(denser, near.around, near.edges, near.around), denser):
+        refined = self._moved(
+            refined, fair_refined(refined, near.adjacent_triangles, THIN_PLATE, uniform=True).vertices
+        )
+        denser = refine(refined, near.edges, near.adjacent_triangles)
+        for start in (relax(denser, near.adjacent_triangles, near.edges, near.adjacent_triangles), denser):
             if self._holds(start):
                 refined = start
                 break
-        plate = self._moved(refined, fair_refined(refined, near.around, THIN_PLATE).vertices)
+        plate = self._moved(refined, fair_refined(refined, near.adjacent_triangles, THIN_PLATE).vertices)
         return self._with(self._moved(plate, self._nearest_on_first(plate)))
 
     def _nearest_on_first(self, patch: Refined) -> Vertices:

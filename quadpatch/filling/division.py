@@ -15,7 +15,7 @@ from quadpatch.mesh.normals import cross, unit
 from quadpatch.types import BoolArray, FloatArray, IntArray, Vertices
 
 # Which pairs (k, k) of the loop vertices (k,) are joined by an edge already.
-Taken = Callable[[IntArray], BoolArray]
+IsEdge = Callable[[IntArray], BoolArray]
 
 # End points that are compared, at most; the rest of a longer loop is left out, evenly.
 _MAX_ENDS = 512
@@ -46,7 +46,7 @@ class RimLoop:
     normals: FloatArray
 
 
-def divide(loop: RimLoop, points: Vertices, max_size: int, taken: Taken) -> list[RimLoop]:
+def divide(loop: RimLoop, points: Vertices, max_size: int, is_edge: IsEdge) -> list[RimLoop]:
     """Divide a loop until none of the parts has more than `max_size` vertices.
 
     Parameters
@@ -54,7 +54,7 @@ def divide(loop: RimLoop, points: Vertices, max_size: int, taken: Taken) -> list
     loop : RimLoop
     points : (n_vertices, 3) float64
     max_size : int
-    taken : callable
+    is_edge : callable
         Which pairs (k, k) bool of loop vertices (k,) int64 an edge joins already.
 
     Returns
@@ -68,7 +68,7 @@ def divide(loop: RimLoop, points: Vertices, max_size: int, taken: Taken) -> list
         if len(part.vertices) <= max_size:
             parts.append(part)
             continue
-        chord = _best_chord(part, points, taken)
+        chord = _best_chord(part, points, is_edge)
         if chord is None:
             return []
         waiting += _cut(part, *chord)
@@ -83,14 +83,14 @@ def _cut(loop: RimLoop, i: int, j: int) -> list[RimLoop]:
     return [RimLoop(loop.vertices[at], np.concatenate([loop.normals[at[:-1]], normal])) for at in positions]
 
 
-def _best_chord(loop: RimLoop, points: Vertices, taken: Taken) -> tuple[int, int] | None:
+def _best_chord(loop: RimLoop, points: Vertices, is_edge: IsEdge) -> tuple[int, int] | None:
     n = len(loop.vertices)
     ends = np.unique(np.linspace(0, n, min(n, _MAX_ENDS), endpoint=False).astype(np.int64))
     rim = points[loop.vertices]
     chords = rim[ends][None] - rim[ends][:, None]
     steps = np.abs(ends[:, None] - ends[None])
     allowed = np.minimum(steps, n - steps) >= max(2, int(_LEAST_SHARE * n))
-    allowed &= ~taken(loop.vertices[ends])
+    allowed &= ~is_edge(loop.vertices[ends])
     starts_inside = _points_inside(loop, rim, ends, chords)
     inside = starts_inside & starts_inside.T & allowed
     ratio = np.linalg.norm(chords, axis=-1) / np.maximum(_rim_between(rim, ends), 1e-300)

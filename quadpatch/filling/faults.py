@@ -182,9 +182,9 @@ def _crossings(
         nothing = np.zeros(0, np.int64)
         return np.zeros(n_loops, np.int64), nothing, nothing.reshape(0, 2), np.zeros(n_loops, bool)
     others = triangles[~mine] if obstacles is None else np.concatenate([triangles[~mine], obstacles])
-    around = TriangleMesh(filled.mesh.vertices, others)
-    near = others[touching_boxes(*_boxes(filled, looked_at), around)]
-    pairs = crossing_pairs(TriangleMesh(around.vertices, np.concatenate([triangles[mine], near])))
+    surroundings = TriangleMesh(filled.mesh.vertices, others)
+    near = others[touching_boxes(*_boxes(filled, looked_at), surroundings)]
+    pairs = crossing_pairs(TriangleMesh(surroundings.vertices, np.concatenate([triangles[mine], near])))
     owner = filled.triangle_hole[mine[filled.n_measured_triangles :]]
     crossing = np.unique(pairs[pairs < len(owner)])
     crossings = np.bincount(owner[crossing], minlength=n_loops)

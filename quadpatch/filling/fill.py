@@ -68,11 +68,11 @@ def close_holes(mesh: TriangleMesh, loops: list[IntArray]) -> ClosedMesh:
     near = Surroundings.of(mesh, loops)
     patch, unfilled = near.triangulate()
     # A first, crumpled fairing; its bulge makes room for more vertices, and its shape better weights.
-    patch = fair_refined(refine(patch, near.edges), near.around, THIN_PLATE, uniform=True)
-    patch = relax(refine(patch, near.edges), near.around, near.edges)
-    plate = fair_refined(patch, near.around, THIN_PLATE)
-    apart = _apart(fair_refined(plate, near.around, ALTERNATIVE_ENERGY), plate)
-    disagreement = _mean_by_hole(plate, apart, len(loops))
+    patch = fair_refined(refine(patch, near.edges), near.adjacent_triangles, THIN_PLATE, uniform=True)
+    patch = relax(refine(patch, near.edges), near.adjacent_triangles, near.edges)
+    plate = fair_refined(patch, near.adjacent_triangles, THIN_PLATE)
+    distances = _distances(fair_refined(plate, near.adjacent_triangles, ALTERNATIVE_ENERGY), plate)
+    disagreement = _mean_by_hole(plate, distances, len(loops))
     return ClosedMesh(near, plate, disagreement, near.rim_variation(), unfilled)
 
 
@@ -110,12 +110,12 @@ def fair_holes(closed: ClosedMesh, energy: Energy) -> FilledMesh:
 
 def _fair_patch(closed: ClosedMesh, energy: Energy) -> Refined:
     """Fair twice, since the weights depend on the shape."""
-    plate, around, n_holes = closed.plate, closed.near.around, closed.n_holes
-    faired = fair_refined(fair_refined(plate, around, energy), around, energy)
+    plate, adjacent_triangles, n_holes = closed.plate, closed.near.adjacent_triangles, closed.n_holes
+    faired = fair_refined(fair_refined(plate, adjacent_triangles, energy), adjacent_triangles, energy)
     hole = _hole_of_new(plate)
     new = hole >= 0
     furthest = np.zeros(n_holes)
-    np.maximum.at(furthest, hole[new], _apart(faired, plate)[new])
+    np.maximum.at(furthest, hole[new], _distances(faired, plate)[new])
     # Curvature carried on from a ragged rim can run away; such a hole takes the thin plate.
     runaway = furthest > OVERSHOOT_LIMIT * rim_diagonals(
         plate.vertices, plate.triangles, plate.hole, plate.n_measured, n_holes
@@ -124,7 +124,7 @@ def _fair_patch(closed: ClosedMesh, energy: Energy) -> Refined:
     return replace(faired, vertices=vertices)
 
 
-def _apart(one: Refined, other: Refined) -> FloatArray:
+def _distances(one: Refined, other: Refined) -> FloatArray:
     """Distance (n,) between the places of every vertex."""
     return np.asarray(np.linalg.norm(one.vertices - other.vertices, axis=1))
 
@@ -144,17 +144,17 @@ def _mean_by_hole(patch: Refined, values: FloatArray, n_holes: int) -> FloatArra
     return mean_by(hole[new], values[new], n_holes)
 
 
-def fair_refined(patch: Refined, around: Triangles, energy: Energy, *, uniform: bool = False) -> Refined:
+def fair_refined(patch: Refined, adjacent_triangles: Triangles, energy: Energy, *, uniform: bool = False) -> Refined:
     """Move the new vertices of a patch to where the surface has least energy.
 
     Parameters
     ----------
     patch : Refined
-    around : (k, 3) int64
+    adjacent_triangles : (k, 3) int64
         Triangles of the input next to the holes.
     energy : Energy
     uniform : bool
         See `quadpatch.filling.fairing.fair`.
     """
-    triangles = np.concatenate([around, patch.triangles])
+    triangles = np.concatenate([adjacent_triangles, patch.triangles])
     return replace(patch, vertices=fair(patch.vertices, triangles, patch.is_new, energy, uniform=uniform))

@@ -73,19 +73,19 @@ class FilledMesh:
     def with_fills(self, other: "FilledMesh", loops: IntArray) -> "FilledMesh":
         """Take the fills of some loops (k,) from another fill of the same loops of the same mesh."""
         base = self.without(loops)
-        taken = other.without(np.setdiff1d(np.arange(len(self.disagreement)), loops))
+        replacement = other.without(np.setdiff1d(np.arange(len(self.disagreement)), loops))
         shift = len(base.mesh.vertices) - other.n_measured_vertices
-        new = taken.mesh.triangles[other.n_measured_triangles :]
+        new = replacement.mesh.triangles[other.n_measured_triangles :]
         new = np.where(new >= other.n_measured_vertices, new + shift, new)
         mesh = TriangleMesh(
-            np.concatenate([base.mesh.vertices, taken.mesh.vertices[other.n_measured_vertices :]]),
+            np.concatenate([base.mesh.vertices, replacement.mesh.vertices[other.n_measured_vertices :]]),
             np.concatenate([base.mesh.triangles, new]),
         )
         return replace(
             base,
             mesh=mesh,
-            triangle_hole=np.concatenate([base.triangle_hole, taken.triangle_hole]),
-            vertex_hole=np.concatenate([base.vertex_hole, taken.vertex_hole]),
+            triangle_hole=np.concatenate([base.triangle_hole, replacement.triangle_hole]),
+            vertex_hole=np.concatenate([base.vertex_hole, replacement.vertex_hole]),
             unfilled=sorted(set(self.unfilled) - set(loops.tolist()) | set(other.unfilled) & set(loops.tolist())),
         )
 

@@ -112,8 +112,10 @@ def _cap(vertices: Vertices, loops: Sequence[IntArray], existing: IntArray) -> t
         return None
     spacing = _COARSENING * np.concatenate([_spacing(vertices[loop]) for loop in loops])
     patch = Refined(_as_3d(flat), triangles, np.zeros(len(triangles), np.int64), spacing, len(rim))
-    taken = EdgeSet(_local_edges(rim, existing))
-    patch = _relaxed(refine(_without_chords(patch, taken, [len(loop) for loop in loops]), taken), taken)
+    existing_edges = EdgeSet(_local_edges(rim, existing))
+    patch = _relaxed(
+        refine(_without_chords(patch, existing_edges, [len(loop) for loop in loops]), existing_edges), existing_edges
+    )
     return plane.lift(patch.vertices[len(rim) :, :2]), patch.triangles
 
 
@@ -177,14 +179,14 @@ def _local_edges(rim: IntArray, existing: IntArray) -> IntArray:
     return np.asarray(order[np.searchsorted(rim, ends, sorter=order)])
 
 
-def _without_chords(patch: Refined, taken: EdgeSet, counts: list[int]) -> Refined:
+def _without_chords(patch: Refined, existing_edges: EdgeSet, counts: list[int]) -> Refined:
     """Split chords along edges that exist already, which would give those a third face, in their middles."""
     n, starts = len(patch.vertices), np.cumsum(counts) - counts
     after = np.arange(n) + 1
     after[starts + counts - 1] = starts
     edges = np.sort(directed_edges(patch.triangles), axis=1)
     on_rim = EdgeSet(np.stack([np.arange(n), after], axis=1))
-    chords = np.unique(edges[taken.contains(edges) & ~on_rim.contains(edges)], axis=0)
+    chords = np.unique(edges[existing_edges.contains(edges) & ~on_rim.contains(edges)], axis=0)
     for a, b in chords.tolist():
         patch = _split(patch, a, b)
     return patch
@@ -205,7 +207,7 @@ def _split(patch: Refined, a: int, b: int) -> Refined:
     )
 
 
-def _relaxed(patch: Refined, taken: EdgeSet) -> Refined:
+def _relaxed(patch: Refined, existing_edges: EdgeSet) -> Refined:
     """Move new vertices to the centroids of the triangles around them and flip edges, in turns.
 
     L. Chen, "Mesh smoothing schemes based on optimal Delaunay triangulations", International Meshing Roundtable 2004:
@@ -214,7 +216,7 @@ def _relaxed(patch: Refined, taken: EdgeSet) -> Refined:
     if not patch.is_new.any():
         return patch
     for _ in range(_ROUNDS):
-        patch = flip_to_delaunay(replace(patch, vertices=_moved(patch, _centroids(patch))), taken)
+        patch = flip_to_delaunay(replace(patch, vertices=_moved(patch, _centroids(patch))), existing_edges)
     return patch
 
 
@@ -223,9 +225,9 @@ def _centroids(patch: Refined) -> Vertices:
     corners, n = patch.triangles.ravel(), len(patch.vertices)
     areas = np.abs(_areas(patch.vertices, patch.triangles))
     moments = np.repeat(areas[:, None] * patch.vertices[patch.triangles].mean(axis=1), 3, axis=0)
-    around = np.bincount(corners, np.repeat(areas, 3), minlength=n)
+    area_sums = np.bincount(corners, np.repeat(areas, 3), minlength=n)
     sums = np.stack([np.bincount(corners, moments[:, k], minlength=n) for k in range(3)], axis=1)
-    return np.asarray(sums / np.maximum(around, 1e-300)[:, None])
+    return np.asarray(sums / np.maximum(area_sums, 1e-300)[:, None])
 
 
 def _moved(patch: Refined, target: Vertices) -> Vertices:

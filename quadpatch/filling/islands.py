@@ -61,9 +61,9 @@ def join_islands(mesh: TriangleMesh, holes: list[Hole], chosen: list[Hole]) -> J
     for island, host in host_of.items():
         islands.setdefault(host, []).append(holes[island].loop)
     # The quad mesh depends on the order of the vertices: how holes are numbered must not decide what the model makes.
-    left = sorted((hole for hole in chosen if hole.id not in host_of), key=lambda hole: -hole.perimeter)
-    loops = [_bridged(mesh.vertices, hole.loop, islands.get(hole.id, [])) for hole in left]
-    return JoinedRims(loops, left, host_of)
+    other_holes = sorted((hole for hole in chosen if hole.id not in host_of), key=lambda hole: -hole.perimeter)
+    loops = [_bridged(mesh.vertices, hole.loop, islands.get(hole.id, [])) for hole in other_holes]
+    return JoinedRims(loops, other_holes, host_of)
 
 
 def hosts_of(mesh: TriangleMesh, holes: list[Hole], hosts: list[Hole], most: int = MOST_HOSTS) -> dict[int, list[int]]:

@@ -56,22 +56,22 @@ class Refined:
         return np.arange(len(self.vertices)) >= self.n_measured
 
 
-def refine(patch: Refined, taken: EdgeSet, rim: Triangles | None = None) -> Refined:
+def refine(patch: Refined, existing_edges: EdgeSet, rim: Triangles | None = None) -> Refined:
     """Split and flip until every triangle is about as large as the surface around its hole is dense.
 
     Parameters
     ----------
     patch : Refined
-    taken : EdgeSet
+    existing_edges : EdgeSet
     rim : (k, 3) int64, optional
         See `flip_to_delaunay`.
     """
-    patch = flip_to_delaunay(patch, taken, rim)
+    patch = flip_to_delaunay(patch, existing_edges, rim)
     for _ in range(_MAX_ROUNDS):
         large = _too_large(patch)
         if not large.any():
             break
-        patch = flip_to_delaunay(_split_at_centroid(patch, large), taken, rim)
+        patch = flip_to_delaunay(_split_at_centroid(patch, large), existing_edges, rim)
     return patch
 
 
@@ -97,34 +97,36 @@ def _split_at_centroid(patch: Refined, large: BoolArray) -> Refined:
     )
 
 
-def relax(patch: Refined, around: Triangles, taken: EdgeSet, rim: Triangles | None = None) -> Refined:
+def relax(
+    patch: Refined, adjacent_triangles: Triangles, existing_edges: EdgeSet, rim: Triangles | None = None
+) -> Refined:
     """Slide new vertices along the surface to the mean of their neighbours, and flip again: better shaped triangles.
 
     Parameters
     ----------
     patch : Refined
-    around : (k, 3) int64
+    adjacent_triangles : (k, 3) int64
         Triangles of the input next to the holes.
-    taken : EdgeSet
+    existing_edges : EdgeSet
     rim : (k, 3) int64, optional
         See `flip_to_delaunay`.
     """
-    triangles = np.concatenate([around, patch.triangles])
+    triangles = np.concatenate([adjacent_triangles, patch.triangles])
     mean = neighbour_average(triangles, len(patch.vertices)) @ patch.vertices
     normals = vertex_normals(patch.vertices, triangles)
     slide = mean - patch.vertices
     slide -= np.einsum("ij,ij->i", slide, normals)[:, None] * normals
     slide[~patch.is_new] = 0
-    return flip_to_delaunay(replace(patch, vertices=patch.vertices + slide), taken, rim)
+    return flip_to_delaunay(replace(patch, vertices=patch.vertices + slide), existing_edges, rim)
 
 
-def flip_to_delaunay(patch: Refined, taken: EdgeSet, rim: Triangles | None = None) -> Refined:
+def flip_to_delaunay(patch: Refined, existing_edges: EdgeSet, rim: Triangles | None = None) -> Refined:
     """Flip interior edges until all are locally Delaunay; each pass flips edges that share no triangle.
 
     Parameters
     ----------
     patch : Refined
-    taken : EdgeSet
+    existing_edges : EdgeSet
         Edges that exist already.
     rim : (k, 3) int64, optional
         Triangles of the input next to the holes. With them, no flip makes a turn beyond `MOST_TURN_DEG` or makes one
@@ -135,7 +137,7 @@ def flip_to_delaunay(patch: Refined, taken: EdgeSet, rim: Triangles | None = Non
     shared = _in_several_holes(patch)
     for _ in range(_MAX_FLIP_PASSES):
         part = triangles[active]
-        flipped = _flip_once(part, patch.vertices, taken, shared, rim)
+        flipped = _flip_once(part, patch.vertices, existing_edges, shared, rim)
         if not len(flipped):
             break
         triangles[active] = part
@@ -156,7 +158,7 @@ def _in_several_holes(patch: Refined) -> BoolArray:
 
 
 def _flip_once(
-    triangles: Triangles, vertices: Vertices, taken: EdgeSet, shared: BoolArray, rim: Triangles | None
+    triangles: Triangles, vertices: Vertices, existing_edges: EdgeSet, shared: BoolArray, rim: Triangles | None
 ) -> IntArray:
     """Flip, in place, edges that are not Delaunay, no two in one triangle; return the triangles that changed."""
     n_vertices = len(vertices)
@@ -173,7 +175,7 @@ def _flip_once(
     bad = bad[np.argsort(excess[bad], kind="stable")]
     a, b, c, d, left, right = (row[bad] for row in (a, b, c, d, left, right))
     allowed = _is_unfolded(*(vertices[row] for row in (a, b, c, d))) & (c != d)
-    allowed &= ~taken.contains(np.stack([c, d], axis=1)) & ~(shared[c] & shared[d])
+    allowed &= ~existing_edges.contains(np.stack([c, d], axis=1)) & ~(shared[c] & shared[d])
     crossing = _edge_keys(c, d, n_vertices)
     allowed &= ranked[np.searchsorted(ranked, crossing).clip(max=max(len(ranked) - 1, 0))] != crossing
     if rim is not None:

@@ -30,7 +30,7 @@ class Surroundings:
     centre : (3,) float64
         Origin of the local coordinates: far-away scans would lose digits without it.
     vertices : (n_local, 3) float64
-    around : (k, 3) int64
+    adjacent_triangles : (k, 3) int64
         Input triangles next to a hole, in local vertices.
     loops : list of (n_loop,) int64
         In local vertices.
@@ -42,7 +42,7 @@ class Surroundings:
     used: IntArray
     centre: FloatArray
     vertices: FloatArray
-    around: Triangles
+    adjacent_triangles: Triangles
     loops: list[IntArray]
     edges: EdgeSet
 
@@ -52,11 +52,11 @@ class Surroundings:
         rim = np.unique(np.concatenate([np.zeros(0, np.int64), *loops]))
         near = triangles_around(mesh.triangles, rim, len(mesh.vertices), _RINGS)
         used, local = np.unique(mesh.triangles[near], return_inverse=True)
-        around = local.reshape(-1, 3)
+        adjacent_triangles = local.reshape(-1, 3)
         centre = mesh.vertices[used].mean(axis=0) if len(used) else np.zeros(3)
         local_loops = [np.searchsorted(used, loop) for loop in loops]
-        edges = EdgeSet(directed_edges(around))
-        return cls(mesh, used, centre, mesh.vertices[used] - centre, around, local_loops, edges)
+        edges = EdgeSet(directed_edges(adjacent_triangles))
+        return cls(mesh, used, centre, mesh.vertices[used] - centre, adjacent_triangles, local_loops, edges)
 
     def triangulate(self, forbidden: Forbidden | None = None) -> tuple[Refined, list[int]]:
         """Triangulate all loops, without new vertices.
@@ -72,7 +72,7 @@ class Surroundings:
         unfilled : list of int
             Positions of loops that have no triangulation.
         """
-        rim_normals = _rim_normals(self.vertices, self.around, self.loops)
+        rim_normals = _rim_normals(self.vertices, self.adjacent_triangles, self.loops)
         flat = triangulate_loops(self.loops, self.vertices, rim_normals, forbidden or Forbidden(self.edges))
         found = [(i, triangles) for i, triangles in enumerate(flat) if triangles is not None]
         unfilled = [i for i, triangles in enumerate(flat) if triangles is None]
@@ -82,7 +82,7 @@ class Surroundings:
 
     def _spacing(self) -> FloatArray:
         """Mean length (n_local,) of the edges at every vertex; 0 without any."""
-        edges = directed_edges(self.around)
+        edges = directed_edges(self.adjacent_triangles)
         lengths = np.linalg.norm(self.vertices[edges[:, 0]] - self.vertices[edges[:, 1]], axis=1)
         count = np.bincount(edges.ravel(), minlength=len(self.vertices))
         total = np.bincount(edges.ravel(), np.repeat(lengths, 2), minlength=len(self.vertices))
@@ -90,7 +90,7 @@ class Surroundings:
 
     def rim_variation(self) -> FloatArray:
         """Mean length (n_loops,) of the difference between the unit normals of neighbouring rim vertices."""
-        normals = vertex_normals(self.vertices, self.around)
+        normals = vertex_normals(self.vertices, self.adjacent_triangles)
         turns = [np.linalg.norm(normals[loop] - normals[np.roll(loop, -1)], axis=1).mean() for loop in self.loops]
         return np.array(turns, np.float64)
 
@@ -122,10 +122,10 @@ class Surroundings:
         )
 
 
-def _rim_normals(vertices: FloatArray, around: Triangles, loops: list[IntArray]) -> list[FloatArray]:
+def _rim_normals(vertices: FloatArray, adjacent_triangles: Triangles, loops: list[IntArray]) -> list[FloatArray]:
     """Look up the unit normals of the faces at the rim edges of every loop; a bridge lies between its neighbours'."""
-    normals = triangle_normals(vertices, around)
-    edges = directed_edges(around)
+    normals = triangle_normals(vertices, adjacent_triangles)
+    edges = directed_edges(adjacent_triangles)
     keys = edges[:, 0] * np.int64(len(vertices)) + edges[:, 1]
     order = np.argsort(keys)
     found = []

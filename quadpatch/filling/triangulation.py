@@ -194,7 +194,7 @@ def _minimum_weight(
 ) -> tuple[IntArray, BoolArray]:
     """Triangulate b loops (b, n) of points (b, n, 3) at once: corners (b, n - 2, 3), whether each exists (b,)."""
     b, n, _ = points.shape
-    taken = forbidden.edges.chords(loops)
+    existing_edges = forbidden.edges.chords(loops)
     angle, area = np.zeros((b, n, n)), np.zeros((b, n, n))
     apex = np.full((b, n, n), -1)
     normal = np.zeros((b, n, n, 3))
@@ -216,7 +216,7 @@ def _minimum_weight(
             bend = np.maximum(bend, _bend(unit, rim_normals[:, None, None, -1]))
         bend = np.maximum(bend, np.maximum(angle[ik], angle[kj]))
         total = double_area / 2 + area[ik] + area[kj]
-        bend[taken[:, i, j]] = np.inf
+        bend[existing_edges[:, i, j]] = np.inf
         bend[forbidden.contains(loops[:, i, None], loops[:, k], loops[:, j, None])] = np.inf
         best = np.argmin(np.round(bend / _ANGLE_STEP) + 1e-3 * total / size, axis=-1)  # (b, n - gap)
         at = (rows, np.arange(n - gap)[None, :], best)

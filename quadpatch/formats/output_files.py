@@ -96,12 +96,12 @@ def check_outputs(source: Path, mesh: Path, others: Iterable[Path], *, may_overw
     _check_place(mesh)
     if is_same_file(mesh, source) and not may_overwrite:
         raise OptionError(f"{mesh} is the scan itself: name another file, or say --overwrite")
-    taken = [source, mesh]
+    claimed_paths = [source, mesh]
     for path in others:
         _check_place(path)
-        if any(is_same_file(path, other) for other in taken):
+        if any(is_same_file(path, other) for other in claimed_paths):
             raise OptionError(f"{path} is named twice: mesh, report and picture need files of their own")
-        taken.append(path)
+        claimed_paths.append(path)
 
 
 def check_folder(folder: Path, files: Iterable[Path] = ()) -> None:

@@ -107,23 +107,23 @@ def _flatten(points: FloatArray, normal: FloatArray) -> FloatArray:
 
 def _clip_ears(flat: FloatArray) -> IntArray:
     """Triangles of a simple counter-clockwise polygon, (k - 2, 3) positions in it."""
-    left = list(range(len(flat)))
+    remaining = list(range(len(flat)))
     triangles: list[tuple[int, int, int]] = []
-    while len(left) > 3:
-        corners = [(left[i - 1], left[i], left[(i + 1) % len(left)]) for i in range(len(left))]
+    while len(remaining) > 3:
+        corners = [(remaining[i - 1], remaining[i], remaining[(i + 1) % len(remaining)]) for i in range(len(remaining))]
         # A polygon that crosses itself may have no ear: any corner then keeps the work finite.
-        at = next((i for i, corner in enumerate(corners) if _is_ear(flat, corner, left)), 0)
+        at = next((i for i, corner in enumerate(corners) if _is_ear(flat, corner, remaining)), 0)
         triangles.append(corners[at])
-        del left[at]
-    triangles.append((left[0], left[1], left[2]))
+        del remaining[at]
+    triangles.append((remaining[0], remaining[1], remaining[2]))
     return np.array(triangles, dtype=np.int64)
 
 
-def _is_ear(flat: FloatArray, corner: tuple[int, int, int], left: list[int]) -> bool:
+def _is_ear(flat: FloatArray, corner: tuple[int, int, int], remaining: list[int]) -> bool:
     a, b, c = (flat[i] for i in corner)
     if _area(a, b, c) <= 0:
         return False
-    others = flat[[i for i in left if i not in corner]]
+    others = flat[[i for i in remaining if i not in corner]]
     inside = (_area(a, b, others) >= 0) & (_area(b, c, others) >= 0) & (_area(c, a, others) >= 0)
     return not bool(np.any(inside))
 

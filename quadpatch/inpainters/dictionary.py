@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from quadpatch.inpainters.inpainter import Surroundings
+from quadpatch.inpainters.inpainter import UndamagedSurface
 from quadpatch.patches.normalisation import from_signals, to_signals
 from quadpatch.sparse.dictionary import Dictionary
 from quadpatch.sparse.gaussian import gaussian_codes, known_covariance, principal_atoms
@@ -45,12 +45,12 @@ class DictionaryInpainter:
         """Bins along one side of its patches."""
         return self.dictionary.resolution
 
-    def fitted_to(self, surroundings: Surroundings) -> "DictionaryInpainter":
+    def fitted_to(self, undamaged: UndamagedSurface) -> "DictionaryInpainter":
         """See `Inpainter`: learn how much this mesh uses each atom, from sparse codes of its patches.
 
         That makes a covariance of the bins, and its principal directions take the place of the atoms.
         """
-        signals, known = _usable_signals(surroundings.patches, surroundings.base_heights)
+        signals, known = _usable_signals(undamaged.patches, undamaged.base_heights)
         if len(signals) < MIN_TRAINING_PATCHES:
             return self
         codes = masked_omp(signals, known, self.dictionary.atoms, self.dictionary.n_nonzero)

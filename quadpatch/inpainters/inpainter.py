@@ -8,7 +8,7 @@ from quadpatch.types import FloatArray, Patches
 
 
 @dataclass(frozen=True)
-class Surroundings:
+class UndamagedSurface:
     """Undamaged surface of the mesh at hand, for a model to be fitted to.
 
     Attributes
@@ -33,7 +33,7 @@ class Inpainter(Protocol):
         """Bins along one side of its patches."""
         ...
 
-    def fitted_to(self, surroundings: Surroundings) -> "Inpainter":
+    def fitted_to(self, undamaged: UndamagedSurface) -> "Inpainter":
         """Fit the model to the mesh at hand; itself where there is nothing to fit."""
         ...
 

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from quadpatch.errors import ModelError
-from quadpatch.inpainters.inpainter import Surroundings
+from quadpatch.inpainters.inpainter import UndamagedSurface
 from quadpatch.inpainters.onnx_runtime import ort
 from quadpatch.patches.residual_input import CHANNELS, corrected, network_input
 from quadpatch.types import BoolArray, FloatArray, Patches
@@ -86,7 +86,7 @@ class AutoencoderInpainter:
         _check_shapes(session, 1 if recipe == "paper" else CHANNELS, resolution, path.name)
         return cls(session, resolution, recipe, scale, card)
 
-    def fitted_to(self, surroundings: Surroundings) -> "AutoencoderInpainter":
+    def fitted_to(self, undamaged: UndamagedSurface) -> "AutoencoderInpainter":
         """See `Inpainter`; a network stays as it was trained."""
         return self
 

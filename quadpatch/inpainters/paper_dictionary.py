@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from quadpatch.inpainters.inpainter import Surroundings
+from quadpatch.inpainters.inpainter import UndamagedSurface
 from quadpatch.options import DictionaryOptions
 from quadpatch.patches.normalisation import from_signals, mean_free
 from quadpatch.sparse.dictionary import Dictionary
@@ -43,7 +43,7 @@ class HeightsInpainter:
         """Bins along one side of its patches."""
         return self.dictionary.resolution
 
-    def fitted_to(self, surroundings: Surroundings) -> "HeightsInpainter":
+    def fitted_to(self, undamaged: UndamagedSurface) -> "HeightsInpainter":
         """See `Inpainter`; the paper fits nothing."""
         return self
 

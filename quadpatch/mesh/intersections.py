@@ -129,6 +129,6 @@ def touching_boxes(low: FloatArray, high: FloatArray, mesh: TriangleMesh) -> Boo
     spheres = cKDTree(centres[ordinary]).query_ball_point((low + high) / 2, length(high - low) / 2 + reach)
     for box_low, box_high, found in zip(low, high, spheres, strict=True):
         near = ordinary[found]
-        apart = (corners[near].min(axis=1) > box_high) | (corners[near].max(axis=1) < box_low)
-        touched[near[~apart.any(axis=1)]] = True
+        is_disjoint = (corners[near].min(axis=1) > box_high) | (corners[near].max(axis=1) < box_low)
+        touched[near[~is_disjoint.any(axis=1)]] = True
     return touched

@@ -232,8 +232,8 @@ def _join_one_by_one(first: IntArray, mesh: TriangleMesh, pairs: IntArray, reach
         if any((a, b) in edges for a in mine for b in theirs):
             continue
         both = sorted(mine + theirs)
-        apart = np.linalg.norm(vertices[mine][:, np.newaxis] - vertices[theirs], axis=2)
-        if apart.max() <= reach[both].min():
+        distances = np.linalg.norm(vertices[mine][:, np.newaxis] - vertices[theirs], axis=2)
+        if distances.max() <= reach[both].min():
             members |= dict.fromkeys(both, both)
     for vertex, both in members.items():
         first[vertex] = both[0]

@@ -10,7 +10,7 @@ import torch
 from torch import Tensor
 
 from quadpatch.calibration.training_pairs import TrainingPairs, make_training_pairs
-from quadpatch.inpainters.inpainter import Surroundings
+from quadpatch.inpainters.inpainter import UndamagedSurface
 from quadpatch.networks.precision import has_fast_bfloat16
 from quadpatch.networks.residual import Residual, errors, rotated
 from quadpatch.options import NetworkOptions
@@ -56,17 +56,17 @@ class FittingInpainter:
         """Bins along one side of its patches."""
         return RESOLUTION
 
-    def fitted_to(self, surroundings: Surroundings) -> "FittingInpainter":
+    def fitted_to(self, undamaged: UndamagedSurface) -> "FittingInpainter":
         """See `Inpainter`. Leaves the weights as they are where the mesh has no room to cut any."""
         started = time.monotonic()
         cutting_s = CUTTING_SHARE * self.options.seconds
-        pairs = collect_training_pairs(surroundings, self.seed, cutting_s, self._first_part)
+        pairs = collect_training_pairs(undamaged, self.seed, cutting_s, self._first_part)
         if len(pairs) < MIN_PAIRS:
             return self
         network = Residual()
         network.load_state_dict(self.network.state_dict())
-        left = self.options.seconds - (time.monotonic() - started)
-        fit(network, pairs, replace(self.options, seconds=max(left, 1e-3)), self.seed, self._second_part)
+        remaining_s = self.options.seconds - (time.monotonic() - started)
+        fit(network, pairs, replace(self.options, seconds=max(remaining_s, 1e-3)), self.seed, self._second_part)
         return replace(self, network=network)
 
     def _first_part(self, stage: str, fraction: float) -> None:
@@ -87,13 +87,11 @@ class FittingInpainter:
 
 
 def collect_training_pairs(
-    surroundings: Surroundings, seed: int, seconds: float = np.inf, progress: Progress = no_progress
+    undamaged: UndamagedSurface, seed: int, seconds: float = np.inf, progress: Progress = no_progress
 ) -> TrainingPairs:
     """Cut pairs until there are enough, or another round would come too often to the same places, or too late."""
     started, parts = time.monotonic(), list[TrainingPairs]()
-    for part in islice(
-        make_training_pairs(surroundings.training_surface, np.random.default_rng([seed, 3])), MAX_ROUNDS
-    ):
+    for part in islice(make_training_pairs(undamaged.training_surface, np.random.default_rng([seed, 3])), MAX_ROUNDS):
         parts.append(part)
         done = max(sum(len(part) for part in parts) / ENOUGH_PAIRS, (time.monotonic() - started) / seconds)
         progress("learn", min(done, 1.0))

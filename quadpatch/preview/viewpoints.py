@@ -101,9 +101,9 @@ def spread_directions(count: int) -> FloatArray:
     """Directions (n, 3) spread evenly over the sphere (Fibonacci lattice)."""
     k = np.arange(count)
     height = 1 - (2 * k + 1) / count
-    around = k * np.pi * (3 - np.sqrt(5))
+    azimuth = k * np.pi * (3 - np.sqrt(5))
     radius = np.sqrt(1 - height**2)
-    return np.stack([radius * np.sin(around), height, radius * np.cos(around)], axis=1)
+    return np.stack([radius * np.sin(azimuth), height, radius * np.cos(azimuth)], axis=1)
 
 
 def _flipped(part: Part) -> Part:

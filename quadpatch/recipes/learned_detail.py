@@ -10,7 +10,7 @@ from quadpatch.calibration.error_model import ErrorModel
 from quadpatch.calibration.training_pairs import TrainingSurface
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.inpainters.dictionary import learn_from_patches
-from quadpatch.inpainters.inpainter import Inpainter, Surroundings
+from quadpatch.inpainters.inpainter import Inpainter, UndamagedSurface
 from quadpatch.mesh.smoothing import laplacian_smooth
 from quadpatch.options import RepairOptions
 from quadpatch.patches.folding import is_unfolded
@@ -111,7 +111,7 @@ def complete(
             inpainter = learn_from_patches(known_patches, everywhere.base_heights)
         else:
             training_surface = _training_surface(problem, seeds, scale)
-            inpainter = inpainter.fitted_to(Surroundings(known_patches, everywhere.base_heights, training_surface))
+            inpainter = inpainter.fitted_to(UndamagedSurface(known_patches, everywhere.base_heights, training_surface))
         if inpainter is None:
             return None
         blend_factor, error_model = _calibrate(problem, _Model(inpainter, seeds, scale))

@@ -63,8 +63,8 @@ def displace(filled: FilledMesh, vertices: IntArray, patches: Patches, predicted
     mean = np.stack(
         [np.bincount(seen.vertex, weight * vectors[:, k], minlength=len(vertices)) / safe for k in range(3)], axis=1
     )
-    apart = ((vectors - mean[seen.vertex]) ** 2).sum(axis=1)
-    deviation = np.sqrt(np.bincount(seen.vertex, weight * apart, minlength=len(vertices)) / safe)
+    squared_deviation = ((vectors - mean[seen.vertex]) ** 2).sum(axis=1)
+    deviation = np.sqrt(np.bincount(seen.vertex, weight * squared_deviation, minlength=len(vertices)) / safe)
     return Displacement(mean, deviation, np.bincount(seen.vertex, minlength=len(vertices)))
 
 

@@ -41,6 +41,6 @@ def place(filled: FilledMesh, vertices: IntArray, patches: Patches, predicted: F
     overlap = np.bincount(seen.vertex, minlength=len(vertices))
     count = np.maximum(overlap, 1)
     mean = np.stack([np.bincount(seen.vertex, moves[:, k], minlength=len(vertices)) / count for k in range(3)], axis=1)
-    apart = ((moves - mean[seen.vertex]) ** 2).sum(axis=1)
-    deviation = np.sqrt(np.bincount(seen.vertex, apart, minlength=len(vertices)) / count)
+    squared_deviation = ((moves - mean[seen.vertex]) ** 2).sum(axis=1)
+    deviation = np.sqrt(np.bincount(seen.vertex, squared_deviation, minlength=len(vertices)) / count)
     return Displacement(mean, deviation, overlap)

@@ -136,19 +136,19 @@ def _improve_atom(
         return
     shape, values = atoms[:, atom].copy(), codes[users, atom]
     if weights is None:
-        left = residual[users] + np.outer(values, shape)
-        shape = _unit(values @ left, shape)
-        values = left @ shape
-        residual[users] = left - np.outer(values, shape)
+        residual_without = residual[users] + np.outer(values, shape)
+        shape = _unit(values @ residual_without, shape)
+        values = residual_without @ shape
+        residual[users] = residual_without - np.outer(values, shape)
     else:
         mask = weights[users]
-        left = residual[users] + mask * np.outer(values, shape)
+        residual_without = residual[users] + mask * np.outer(values, shape)
         seen = values**2 @ mask
         # A bin that no user of the atom knows keeps what it had.
-        shape = _unit(np.divide(values @ left, seen, out=shape.copy(), where=seen > 0.0), shape)
+        shape = _unit(np.divide(values @ residual_without, seen, out=shape.copy(), where=seen > 0.0), shape)
         in_sight = mask @ shape**2
-        values = np.divide(left @ shape, in_sight, out=np.zeros_like(values), where=in_sight > 0.0)
-        residual[users] = left - mask * np.outer(values, shape)
+        values = np.divide(residual_without @ shape, in_sight, out=np.zeros_like(values), where=in_sight > 0.0)
+        residual[users] = residual_without - mask * np.outer(values, shape)
     atoms[:, atom] = shape
     codes[users, atom] = values
 

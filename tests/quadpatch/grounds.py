@@ -5,7 +5,7 @@ import numpy as np
 from quadpatch.calibration.energy_selection import EnergyBlend
 from quadpatch.calibration.training_pairs import TrainingSurface
 from quadpatch.filling.fairing import THIN_PLATE
-from quadpatch.inpainters.inpainter import Surroundings
+from quadpatch.inpainters.inpainter import UndamagedSurface
 from quadpatch.mesh.measures import mean_edge_length
 from quadpatch.mesh.smoothing import laplacian_smooth
 from quadpatch.options import PatchOptions
@@ -29,9 +29,9 @@ def looking_down(*places: tuple[float, float, float]) -> Seeds:
     return Seeds(np.array(places), np.tile(np.eye(3), (len(places), 1, 1)), np.zeros(len(places), np.int64))
 
 
-def surroundings_of(training_surface: TrainingSurface) -> Surroundings:
+def surroundings_of(training_surface: TrainingSurface) -> UndamagedSurface:
     """What a model that is fitted by lessons alone is given: no patch, and the ground."""
     none = np.zeros((0, RESOLUTION, RESOLUTION))
     is_none = none > 0
     patches = Patches(np.zeros((0, 3)), np.zeros((0, 3, 3)), 1.0, none, is_none, is_none, none.astype(np.int64))
-    return Surroundings(patches, none, training_surface)
+    return UndamagedSurface(patches, none, training_surface)

@@ -72,9 +72,9 @@ def test_a_hole_beside_a_border_can_not_be_opened_wider() -> None:
     loops = [hole.loop for hole in find_holes(mesh) if hole.diameter < 2.0]
     misses = leave_one_ring_out(mesh, loops, PAIR)
     known = np.isfinite(misses).all(axis=1)
-    left = np.array([mesh.vertices[loop, 0].mean() < 0 for loop in loops])
+    remaining = np.array([mesh.vertices[loop, 0].mean() < 0 for loop in loops])
     assert sorted(known.tolist()) == [False, True]
-    assert (known == ~left).all()
+    assert (known == ~remaining).all()
 
 
 def test_holes_on_a_rough_and_on_a_smooth_half_are_filled_by_other_weights() -> None:

@@ -4,7 +4,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial import cKDTree
 
-from quadpatch.calibration.synthetic_holes import Punched, Spacing, cut_holes
+from quadpatch.calibration.synthetic_holes import MeshWithHoles, Spacing, cut_holes
 from quadpatch.mesh.boundary import boundary_edge_mask, boundary_loops, directed_edges
 from quadpatch.mesh.loop_diameter import loop_diameter
 from quadpatch.mesh.measures import mean_edge_length
@@ -16,7 +16,7 @@ EDGE = mean_edge_length(SHEET)
 LONGEST = float(np.linalg.norm(np.diff(SHEET.vertices[directed_edges(SHEET.triangles)], axis=1), axis=2).max())
 
 
-def punched_at_random(mesh: TriangleMesh, diameter: float, spacing: Spacing, seed: int = 0) -> Punched:
+def punched_at_random(mesh: TriangleMesh, diameter: float, spacing: Spacing, seed: int = 0) -> MeshWithHoles:
     return cut_holes(mesh, diameter, spacing, np.random.default_rng(seed))
 
 
@@ -30,8 +30,8 @@ def test_holes_keep_their_margin_from_every_border_and_from_each_other(
     seed: int, diameter: float, margin: float
 ) -> None:
     cut = punched_at_random(SHEET, diameter, Spacing(EDGE, margin), seed)
-    gone, rims = SHEET.vertices[cut.gone], SHEET.vertices[rim_vertices(SHEET)]
-    assert np.linalg.norm(gone[:, None] - rims, axis=2).min() > margin
+    removed, rims = SHEET.vertices[cut.removed], SHEET.vertices[rim_vertices(SHEET)]
+    assert np.linalg.norm(removed[:, None] - rims, axis=2).min() > margin
     # The first hole leaves room for another one on a sheet of this size, wherever it lies.
     assert len(cut.loops) >= 2
     for i, loop in enumerate(cut.loops):
@@ -49,7 +49,7 @@ def test_holes_are_cut_until_there_is_no_room_left(seed: int, diameter: float, m
     reach = diameter / 2 + margin
     surface = SHEET.vertices[np.unique(SHEET.triangles)]
     to_rim, _ = cKDTree(SHEET.vertices[rim_vertices(SHEET)]).query(surface)
-    to_gone, _ = cKDTree(SHEET.vertices[cut.gone]).query(surface)
+    to_gone, _ = cKDTree(SHEET.vertices[cut.removed]).query(surface)
     assert (to_gone[to_rim > reach] <= 2 * reach).all()
 
 
@@ -59,15 +59,15 @@ def test_loops_are_the_new_rims_and_all_of_them() -> None:
     now = {tuple(loop.tolist()) for loop in boundary_loops(cut.mesh.triangles).loops}
     assert old < now
     assert {tuple(loop.tolist()) for loop in cut.loops} == now - old
-    assert not cut.gone[np.concatenate(cut.loops)].any()
+    assert not cut.removed[np.concatenate(cut.loops)].any()
 
 
 def test_what_is_left_and_what_was_cut_away_make_up_the_mesh() -> None:
     cut = punched_at_random(SHEET, 0.25, Spacing(EDGE, 2 * EDGE))
     np.testing.assert_array_equal(cut.mesh.triangles, SHEET.triangles[~cut.cut_away])
-    np.testing.assert_array_equal(cut.cut_away, cut.gone[SHEET.triangles].any(axis=1))
+    np.testing.assert_array_equal(cut.cut_away, cut.removed[SHEET.triangles].any(axis=1))
     assert cut.mesh.vertices is SHEET.vertices
-    assert not cut.gone[cut.mesh.triangles].any()
+    assert not cut.removed[cut.mesh.triangles].any()
 
 
 def test_rims_are_as_wide_as_they_were_asked_to_be() -> None:
@@ -95,7 +95,7 @@ def test_a_hole_never_takes_the_surface_that_lies_behind_it() -> None:
     cut = punched_at_random(thin, 0.3, Spacing(edge, 2 * edge))
     assert len(cut.loops) > 3
     # The centres keep clear of each other on both sides, so no place is gone on both.
-    assert not (cut.gone[:n] & cut.gone[n:]).any()
+    assert not (cut.removed[:n] & cut.removed[n:]).any()
 
 
 def test_no_more_holes_are_cut_than_were_asked_for() -> None:
@@ -107,7 +107,7 @@ def test_no_more_holes_are_cut_than_were_asked_for() -> None:
 def test_nothing_is_cut_where_there_is_no_room(mesh: TriangleMesh) -> None:
     cut = punched_at_random(mesh, 0.4, Spacing(0.07, 0.2))
     assert cut.loops == []
-    assert not cut.gone.any()
+    assert not cut.removed.any()
     assert not cut.cut_away.any()
     np.testing.assert_array_equal(cut.mesh.triangles, mesh.triangles)
 
@@ -115,7 +115,7 @@ def test_nothing_is_cut_where_there_is_no_room(mesh: TriangleMesh) -> None:
 def test_the_same_generator_cuts_the_same_holes_another_one_others_and_neither_changes_the_mesh() -> None:
     before = SHEET.vertices.tobytes(), SHEET.triangles.tobytes()
     one, same, other = (punched_at_random(SHEET, 0.2, Spacing(EDGE, 2 * EDGE), seed) for seed in (1, 1, 2))
-    assert one.gone.tobytes() == same.gone.tobytes()
+    assert one.removed.tobytes() == same.removed.tobytes()
     assert [loop.tolist() for loop in one.loops] == [loop.tolist() for loop in same.loops]
-    assert one.gone.tobytes() != other.gone.tobytes()
+    assert one.removed.tobytes() != other.removed.tobytes()
     assert before == (SHEET.vertices.tobytes(), SHEET.triangles.tobytes())

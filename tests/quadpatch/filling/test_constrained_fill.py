@@ -148,7 +148,7 @@ def test_flips_that_keep_the_rim_in_sight_make_no_sharper_turns(seed: int) -> No
     patch, _ = near.triangulate()
 
     def sharpest_turn(triangles: IntArray, vertices: np.ndarray) -> float:
-        every = np.concatenate([triangles, near.around])
+        every = np.concatenate([triangles, near.adjacent_triangles])
         normals = triangle_normals(vertices, every)
         of_edge: dict[frozenset[int], list[int]] = {}
         for i, (a, b, c) in enumerate(every.tolist()):
@@ -162,7 +162,7 @@ def test_flips_that_keep_the_rim_in_sight_make_no_sharper_turns(seed: int) -> No
         return float(np.degrees(np.arccos(np.clip(min(turns), -1, 1))))
 
     before = sharpest_turn(patch.triangles, patch.vertices)
-    refined = refine(patch, near.edges, near.around)
+    refined = refine(patch, near.edges, near.adjacent_triangles)
     assert sharpest_turn(refined.triangles, refined.vertices) <= max(before, MOST_TURN_DEG) + 1e-6
 
 

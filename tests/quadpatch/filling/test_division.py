@@ -162,11 +162,11 @@ def test_vertices_keep_their_numbers_wherever_the_loop_starts() -> None:
 
 def test_chords_that_are_taken_are_not_used_again() -> None:
     corners = ellipse(200)
-    taken = EdgeSet(np.stack([np.arange(200), (np.arange(200) + 100) % 200], axis=1))
+    existing_edges = EdgeSet(np.stack([np.arange(200), (np.arange(200) + 100) % 200], axis=1))
     loop = loop_of(corners)
-    parts = divide(loop, corners, 101, taken.pairs)
+    parts = divide(loop, corners, 101, existing_edges.pairs)
     assert_divided(parts, loop, 101 - 1)
-    assert not taken.contains(np.array(chords_of(parts, loop))).any()
+    assert not existing_edges.contains(np.array(chords_of(parts, loop))).any()
 
 
 def test_a_loop_whose_chords_are_all_taken_has_no_parts() -> None:

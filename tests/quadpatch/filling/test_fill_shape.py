@@ -51,12 +51,15 @@ def test_the_gap_is_the_mean_distance_between_the_thin_plate_and_a_second_opinio
     closed = close_holes(mesh, all_loops(mesh))
     plate = closed.plate
     second = fair(
-        plate.vertices, np.concatenate([closed.near.around, plate.triangles]), plate.is_new, ALTERNATIVE_ENERGY
+        plate.vertices,
+        np.concatenate([closed.near.adjacent_triangles, plate.triangles]),
+        plate.is_new,
+        ALTERNATIVE_ENERGY,
     )
-    apart = np.linalg.norm(second - plate.vertices, axis=1)[len(closed.near.used) :]
+    distances = np.linalg.norm(second - plate.vertices, axis=1)[len(closed.near.used) :]
     for energy in (SMOOTH, THIN_PLATE):
         result = fair_holes(closed, energy)
-        expected = [apart[result.vertex_hole == i].mean() for i in range(3)]
+        expected = [distances[result.vertex_hole == i].mean() for i in range(3)]
         np.testing.assert_allclose(result.disagreement, expected, rtol=1e-9)
         assert (result.disagreement > 0).all()
 

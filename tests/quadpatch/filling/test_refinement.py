@@ -27,14 +27,14 @@ NOTHING = EdgeSet(np.zeros((0, 2), np.int64))
 def coarse(mesh: TriangleMesh, n_holes: int = 1) -> tuple[Refined, EdgeSet]:
     """The shortest loops of a mesh, triangulated; wanted spacing everywhere that of the mesh."""
     loops = sorted(boundary_loops(mesh.triangles).loops, key=len)[:n_holes]
-    taken = EdgeSet(directed_edges(mesh.triangles))
+    existing_edges = EdgeSet(directed_edges(mesh.triangles))
     normals = vertex_normals(mesh.vertices, mesh.triangles)
-    flat = triangulate_loops(loops, mesh.vertices, [normals[loop] for loop in loops], Forbidden(taken))
+    flat = triangulate_loops(loops, mesh.vertices, [normals[loop] for loop in loops], Forbidden(existing_edges))
     found = [triangles for triangles in flat if triangles is not None]
     assert len(found) == n_holes
     hole = np.repeat(np.arange(n_holes), [len(triangles) for triangles in found])
     spacing = np.full(len(mesh.vertices), mean_length(mesh.vertices, mesh.triangles))
-    return Refined(mesh.vertices, np.concatenate(found), hole, spacing, len(mesh.vertices)), taken
+    return Refined(mesh.vertices, np.concatenate(found), hole, spacing, len(mesh.vertices)), existing_edges
 
 
 def edge_lengths(vertices: Vertices, triangles: Triangles) -> FloatArray:
@@ -70,8 +70,8 @@ MESHES = {
 @pytest.mark.parametrize("name", MESHES)
 def test_refinement_adds_vertices_and_leaves_everything_else_as_it_was(name: str) -> None:
     mesh = MESHES[name]
-    patch, taken = coarse(mesh)
-    fine = refine(patch, taken)
+    patch, existing_edges = coarse(mesh)
+    fine = refine(patch, existing_edges)
     assert fine.n_measured == len(mesh.vertices)
     assert fine.vertices[: fine.n_measured].tobytes() == mesh.vertices.tobytes()
     assert fine.is_new.sum() == len(fine.vertices) - len(mesh.vertices) > 0
@@ -86,8 +86,8 @@ def test_refinement_adds_vertices_and_leaves_everything_else_as_it_was(name: str
 @pytest.mark.parametrize("name", MESHES)
 def test_edges_of_the_fill_are_a_little_shorter_than_those_around_it(name: str) -> None:
     mesh = MESHES[name]
-    patch, taken = coarse(mesh)
-    fine = refine(patch, taken)
+    patch, existing_edges = coarse(mesh)
+    fine = refine(patch, existing_edges)
     wanted = mean_length(mesh.vertices, mesh.triangles)
     lengths = edge_lengths(fine.vertices, fine.triangles)
     assert 0.55 * wanted < np.median(lengths) < 1.0 * wanted
@@ -100,22 +100,22 @@ def test_edges_of_the_fill_are_a_little_shorter_than_those_around_it(name: str) 
 def test_one_to_two_times_as_many_vertices_come_back_as_were_lost(name: str) -> None:
     mesh = MESHES[name]
     lost = len(mesh.vertices) - len(np.unique(mesh.triangles))
-    patch, taken = coarse(mesh)
-    assert lost < refine(patch, taken).is_new.sum() < 2 * lost
+    patch, existing_edges = coarse(mesh)
+    assert lost < refine(patch, existing_edges).is_new.sum() < 2 * lost
 
 
 def test_a_flat_fill_is_delaunay_when_it_is_done() -> None:
-    patch, taken = coarse(punched(bumpy_plate(25, 2.0), (0.1, 0.1, 0), radius=0.5))
+    patch, existing_edges = coarse(punched(bumpy_plate(25, 2.0), (0.1, 0.1, 0), radius=0.5))
     flat = Refined(patch.vertices * [1, 1, 0], patch.triangles, patch.hole, patch.spacing, patch.n_measured)
-    fine = refine(flat, taken)
+    fine = refine(flat, existing_edges)
     assert angles_across(fine.vertices, fine.triangles).max() <= np.pi + 1e-7
     assert (area_vectors(fine.vertices, fine.triangles)[:, 2] > 0).all()
 
 
 def test_a_fill_that_is_fine_enough_gets_no_vertex() -> None:
-    patch, taken = coarse(punched(open_grid(9), (0, 0, 0), radius=0.5))
+    patch, existing_edges = coarse(punched(open_grid(9), (0, 0, 0), radius=0.5))
     patch = replace(patch, spacing=2 * patch.spacing)
-    assert len(refine(patch, taken).vertices) == len(patch.vertices)
+    assert len(refine(patch, existing_edges).vertices) == len(patch.vertices)
 
 
 def test_no_triangle_at_all_stays_none() -> None:
@@ -126,12 +126,12 @@ def test_no_triangle_at_all_stays_none() -> None:
 
 def test_holes_are_refined_together_as_they_are_alone() -> None:
     mesh = punched(bumpy_plate(40, 2.0), (-0.5, -0.5, 0.0), (0.5, 0.4, 0.05), radius=0.3)
-    both, taken = coarse(mesh, 2)
-    together = refine(both, taken)
+    both, existing_edges = coarse(mesh, 2)
+    together = refine(both, existing_edges)
     for hole in range(2):
         alone = both.triangles[both.hole == hole]
         fine = refine(
-            Refined(both.vertices, alone, np.zeros(len(alone), np.int64), both.spacing, both.n_measured), taken
+            Refined(both.vertices, alone, np.zeros(len(alone), np.int64), both.spacing, both.n_measured), existing_edges
         )
         corners = together.vertices[together.triangles[together.hole == hole]]
         assert canonical(corners) == canonical(fine.vertices[fine.triangles])
@@ -171,9 +171,11 @@ def test_flipping_uses_no_edge_that_is_taken(seed: int) -> None:
     patch = Refined(vertices, fan(np.arange(n)), np.zeros(n - 2, np.int64), np.zeros(n), n)
     before = {frozenset(edge) for edge in directed_edges(patch.triangles).tolist()}
     chords = np.array([(i, j) for j in range(n) for i in range(j) if frozenset((i, j)) not in before])
-    taken = chords[rng.random(len(chords)) < 0.5]
-    after = {frozenset(edge) for edge in directed_edges(flip_to_delaunay(patch, EdgeSet(taken)).triangles).tolist()}
-    assert not after & {frozenset(edge) for edge in taken.tolist()}
+    existing_edges = chords[rng.random(len(chords)) < 0.5]
+    after = {
+        frozenset(edge) for edge in directed_edges(flip_to_delaunay(patch, EdgeSet(existing_edges)).triangles).tolist()
+    }
+    assert not after & {frozenset(edge) for edge in existing_edges.tolist()}
 
 
 @pytest.mark.parametrize("seed", range(30))
@@ -195,9 +197,9 @@ def test_two_holes_with_common_corners_never_flip_to_one_edge(seed: int) -> None
 
 def test_relaxing_evens_out_triangles_and_stays_on_the_surface() -> None:
     mesh = MESHES["plane"]
-    patch, taken = coarse(mesh)
-    fine = refine(patch, taken)
-    relaxed = relax(fine, mesh.triangles, taken)
+    patch, existing_edges = coarse(mesh)
+    fine = refine(patch, existing_edges)
+    relaxed = relax(fine, mesh.triangles, existing_edges)
     assert relaxed.vertices[: fine.n_measured].tobytes() == mesh.vertices.tobytes()
     assert (relaxed.vertices[:, 2] == 0).all()
     assert is_oriented_manifold(np.concatenate([mesh.triangles, relaxed.triangles]))

@@ -36,9 +36,11 @@ def polygon_area(corners: FloatArray) -> float:
     return abs(float((x * np.roll(y, -1) - y * np.roll(x, -1)).sum())) / 2
 
 
-def triangulate(corners: FloatArray, taken: EdgeSet = NO_EDGES, normals: FloatArray | None = None) -> Triangles | None:
+def triangulate(
+    corners: FloatArray, existing_edges: EdgeSet = NO_EDGES, normals: FloatArray | None = None
+) -> Triangles | None:
     normals = np.tile(UP, (len(corners), 1)) if normals is None else normals
-    (found,) = triangulate_loops([np.arange(len(corners))], corners, [normals], Forbidden(taken))
+    (found,) = triangulate_loops([np.arange(len(corners))], corners, [normals], Forbidden(existing_edges))
     return found
 
 
@@ -135,13 +137,13 @@ def test_many_loops_at_once_are_triangulated_as_one_by_one(lengths: list[int], s
 def test_edges_that_are_taken_are_not_used_again(n: int, seed: int) -> None:
     rng = np.random.default_rng(seed)
     chords = np.array([(i, j) for j in range(n) for i in range(j - 1) if (i, j) != (0, n - 1)])
-    taken = chords[rng.random(len(chords)) < 0.3]
-    found = triangulate(star(n, seed), EdgeSet(taken))
+    existing_edges = chords[rng.random(len(chords)) < 0.3]
+    found = triangulate(star(n, seed), EdgeSet(existing_edges))
     if found is None:
         return
     assert_closes(np.arange(n), found)
     used = {frozenset(edge) for edge in directed_edges(found).tolist()}
-    assert not used & {frozenset(edge) for edge in taken.tolist()}
+    assert not used & {frozenset(edge) for edge in existing_edges.tolist()}
 
 
 def test_a_rim_whose_chords_are_all_taken_has_no_triangulation() -> None:

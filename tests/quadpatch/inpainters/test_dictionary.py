@@ -11,7 +11,7 @@ from quadpatch.inpainters.dictionary import (
     DictionaryInpainter,
     learn_from_patches,
 )
-from quadpatch.inpainters.inpainter import Surroundings
+from quadpatch.inpainters.inpainter import UndamagedSurface
 from quadpatch.patches.scale import PatchScale
 from quadpatch.patches.seeds import Seeds
 from quadpatch.sparse.dictionary import Dictionary
@@ -29,14 +29,14 @@ def as_patches(heights: FloatArray, known: BoolArray | None = None) -> Patches:
     )
 
 
-def surroundings(patches: Patches) -> Surroundings:
+def undamaged(patches: Patches) -> UndamagedSurface:
     """Surface over a flat base surface; dictionaries don't look at the ground."""
     flat = TriangleMesh(np.zeros((0, 3)), np.zeros((0, 3), np.int64))
     nowhere = Seeds(np.zeros((0, 3)), np.zeros((0, 3, 3)), np.zeros(0, np.int64))
     training_surface = TrainingSurface(
         flat, nowhere, PatchScale(1.0, N, 1), EnergyBlend.of_one(THIN_PLATE), np.ones(1), 0.1
     )
-    return Surroundings(patches, 0 * patches.heights, training_surface)
+    return UndamagedSurface(patches, 0 * patches.heights, training_surface)
 
 
 def waves(count: int, seed: int = 0) -> FloatArray:
@@ -120,7 +120,7 @@ def test_a_dictionary_from_elsewhere_learns_how_much_this_mesh_uses_each_atom(le
     atoms = learned.dictionary.atoms
     strangers = np.linalg.qr(np.random.default_rng(0).normal(size=(N * N, N * N - atoms.shape[1])))[0]
     mixed = Dictionary(np.concatenate([atoms, strangers], axis=1), N, 4)
-    fitted = DictionaryInpainter(mixed).fitted_to(surroundings(as_patches(heights)))
+    fitted = DictionaryInpainter(mixed).fitted_to(undamaged(as_patches(heights)))
     # What this mesh uses comes first: the waves, not the strangers.
     common = fitted.dictionary.atoms[:, :4]
     assert np.linalg.norm(atoms.T @ common, axis=0).min() > 0.95
@@ -133,7 +133,7 @@ def test_a_dictionary_from_elsewhere_learns_how_much_this_mesh_uses_each_atom(le
 def test_without_surface_to_fit_to_a_dictionary_stays_as_it_is(learned: DictionaryInpainter) -> None:
     plain = DictionaryInpainter(learned.dictionary)
     few = waves(MIN_TRAINING_PATCHES - 1)
-    assert plain.fitted_to(surroundings(as_patches(few))) is plain
+    assert plain.fitted_to(undamaged(as_patches(few))) is plain
 
 
 def test_unknown_bins_are_not_learned_from() -> None:

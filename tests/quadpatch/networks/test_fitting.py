@@ -117,8 +117,8 @@ def test_the_outcome_is_the_same_on_a_busy_machine_as_long_as_the_time_is_not_ah
 
 
 def test_lessons_follow_from_the_seed_and_are_those_of_several_rounds(small_ground: TrainingSurface) -> None:
-    surroundings = surroundings_of(small_ground)
-    one, same, other = (collect_training_pairs(surroundings, seed) for seed in (0, 0, 1))
+    undamaged = surroundings_of(small_ground)
+    one, same, other = (collect_training_pairs(undamaged, seed) for seed in (0, 0, 1))
     first = next(make_training_pairs(small_ground, np.random.default_rng([0, 3])))
     assert len(first) < len(one) <= MAX_ROUNDS * len(small_ground.seeds)
     assert one.channels[: len(first)].tobytes() == first.channels.tobytes()

@@ -205,4 +205,6 @@ def test_evidence_is_averaged_over_the_vertices_of_each_hole() -> None:
             "rim_misfit": np.linalg.norm(at_rim.mean[rim_hole == hole], axis=1),
         }
         for name, values in expected.items():
-            assert cast(FloatArray, getattr(evidence, name))[hole] == pytest.approx(values.mean())
+            assert cast(FloatArray, getattr(evidence, "deviation" if name == "spread" else name))[
+                hole
+            ] == pytest.approx(values.mean())
