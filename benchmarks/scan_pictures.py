@@ -13,7 +13,7 @@ from quadpatch.mesh.boundary import boundary_loops
 from quadpatch.mesh.raycast import RayScene
 from quadpatch.mesh.weld import weld
 from quadpatch.preview.camera import Camera, view_of
-from quadpatch.preview.pair import SURE
+from quadpatch.preview.pair import TINT
 from quadpatch.preview.parts import Part, part_of
 from quadpatch.preview.shading import CLAY, Clay
 from quadpatch.preview.sheet import render_before_after
@@ -26,7 +26,7 @@ _CAPTION = 22
 _PAIRS_PER_ROW = 3
 _MOST_LOOPS = 24
 # How much of the tint of invented surface is mixed into the clay: enough to see it, too little to hide its shape.
-_TINT = 0.4
+_STRENGTH = 0.4
 
 
 @dataclass(frozen=True)
@@ -53,9 +53,9 @@ def draw_scan(source: Path, repaired: Path, holes: Sequence[dict[str, Any]], fol
     folder.mkdir(parents=True, exist_ok=True)
     before, after = _read(source), _read(repaired)
     is_new = np.arange(len(after.triangles)) >= len(before.triangles)
-    render_before_after(before, after, is_new, folder / f"{name}.png", title=name)
+    render_before_after(before, after, is_new, folder / f"{name}.png")
     scene = RayScene(after)
-    tinted = np.where(is_new[:, None], CLAY + _TINT * (SURE - CLAY), CLAY)
+    tinted = np.where(is_new[:, None], CLAY + _STRENGTH * (TINT - CLAY), CLAY)
     grey = np.tile(CLAY, (len(before.triangles), 1))
     scenes = _Scenes(Clay(before, RayScene(before), grey), Clay(after, scene, tinted), scene)
     pairs = [

@@ -13,7 +13,7 @@ from benchmarks.quality.results import Results
 from quadpatch.formats.reading import read_scan
 from quadpatch.mesh.raycast import RayScene
 from quadpatch.preview.camera import Camera, view_of
-from quadpatch.preview.pair import SURE
+from quadpatch.preview.pair import TINT
 from quadpatch.preview.parts import part_of
 from quadpatch.preview.shading import CLAY, Clay
 from quadpatch.preview.viewpoints import close_ups
@@ -23,7 +23,7 @@ _TILE = 360
 _GAP = 6
 _CAPTION = 24
 # How much of the tint of invented surface is mixed into the clay: enough to see it, too little to hide its shape.
-_TINT = 0.35
+_STRENGTH = 0.35
 _COLUMNS = ("punched", "truth", "repaired")
 
 
@@ -62,7 +62,7 @@ def _set_up(bench: Bench, case: Case, repaired: Path) -> _Stage:
     after = TriangleMesh(scan.vertices, scan.triangles)
     is_new = np.arange(len(after.triangles)) >= len(punched.triangles)
     scene = RayScene(after)
-    tinted = np.where(is_new[:, None], CLAY + _TINT * (SURE - CLAY), CLAY)
+    tinted = np.where(is_new[:, None], CLAY + _STRENGTH * (TINT - CLAY), CLAY)
     grey = [Clay(mesh, RayScene(mesh), np.tile(CLAY, (len(mesh.triangles), 1))) for mesh in (punched, truth)]
     return _Stage((grey[0], grey[1], Clay(after, scene, tinted)), after, scene, is_new)
 

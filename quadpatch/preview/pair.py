@@ -10,11 +10,10 @@ from quadpatch.mesh.raycast import RayScene
 from quadpatch.preview.parts import main_pieces, part_of
 from quadpatch.preview.shading import CLAY, Clay
 from quadpatch.preview.viewpoints import is_inside_out
-from quadpatch.types import BoolArray, FloatArray, TriangleMesh
+from quadpatch.types import BoolArray, TriangleMesh
 
-# What was invented with full confidence, and with none.
-SURE = np.array([0.98, 0.74, 0.42])
-UNSURE = np.array([0.89, 0.38, 0.30])
+# Of invented surface.
+TINT = np.array([0.98, 0.74, 0.42])
 
 
 @dataclass(frozen=True)
@@ -40,9 +39,7 @@ class Pair:
     new: Clay
 
 
-def prepare(
-    before: TriangleMesh, after: TriangleMesh, invented: BoolArray, confidence: FloatArray | None = None
-) -> Pair:
+def prepare(before: TriangleMesh, after: TriangleMesh, invented: BoolArray) -> Pair:
     """Make a mesh before and after its repair ready to be drawn.
 
     Parameters
@@ -50,8 +47,6 @@ def prepare(
     before, after : TriangleMesh
         In the same place.
     invented : (n_triangles of `after`,) bool
-    confidence : (n_triangles of `after`,) float64, optional
-        0..1; the less, the redder the tint.
 
     Raises
     ------
@@ -65,14 +60,8 @@ def prepare(
     if is_flipped:
         before, after = _flipped(before), _flipped(after)
     old = Clay(before, RayScene(before), np.tile(CLAY, (len(before.triangles), 1)))
-    return Pair(scene, after, is_flipped, old, Clay(after, scene, _colours(invented, confidence)))
+    return Pair(scene, after, is_flipped, old, Clay(after, scene, np.where(invented[:, None], TINT, CLAY)))
 
 
 def _flipped(mesh: TriangleMesh) -> TriangleMesh:
     return TriangleMesh(mesh.vertices, mesh.triangles[:, ::-1])
-
-
-def _colours(invented: BoolArray, confidence: FloatArray | None) -> FloatArray:
-    sure = np.ones(len(invented)) if confidence is None else np.clip(confidence, 0.0, 1.0)
-    tint = UNSURE + sure[:, None] * (SURE - UNSURE)
-    return np.where(invented[:, None], tint, CLAY)

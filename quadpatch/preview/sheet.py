@@ -7,7 +7,7 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 from quadpatch.preview.camera import Camera
-from quadpatch.preview.pair import SURE, UNSURE, Pair, prepare
+from quadpatch.preview.pair import TINT, Pair, prepare
 from quadpatch.preview.parts import filled_holes, main_pieces, part_of
 from quadpatch.preview.png import to_pixels, write_png
 from quadpatch.preview.shading import BACK, CLAY
@@ -22,7 +22,6 @@ _TILE = (246, 246)
 _PAIR_GAP = 4
 _GROUP_GAP = 24
 _WIDTH = 2 * _MARGIN + 2 * _PANEL[0] + _GAP
-_TITLE_HEIGHT = 46
 _CAPTION_HEIGHT = 28
 _LEGEND_HEIGHT = 30
 _SWATCH = (120, 16)
@@ -52,14 +51,7 @@ class _Sheet:
         self.image.paste(Image.fromarray(to_pixels(picture)), (left, self.top))
 
 
-def render_before_after(
-    before: TriangleMesh,
-    after: TriangleMesh,
-    invented: BoolArray,
-    path: Path,
-    confidence: FloatArray | None = None,
-    title: str = "",
-) -> None:
+def render_before_after(before: TriangleMesh, after: TriangleMesh, invented: BoolArray, path: Path) -> None:
     """Draw a mesh before and after its repair, and its largest holes in close-up, as a PNG file.
 
     Parameters
@@ -69,34 +61,26 @@ def render_before_after(
     invented : (n_triangles of `after`,) bool
         True for the triangles that were not measured: they are tinted.
     path : Path
-    confidence : (n_triangles of `after`,) float64, optional
-        0..1; the less, the redder the tint. Only that of invented triangles counts.
-    title : str
-        First line of the sheet.
 
     Raises
     ------
     EmptyMeshError
         If `after` has no triangle of any area.
     """
-    pair = prepare(before, after, invented, confidence)
+    pair = prepare(before, after, invented)
     holes = [part_of(pair.after, hole) for hole in filled_holes(pair.after, invented, _N_CANDIDATES)]
     camera = _overview_camera(pair, invented)
     cameras = close_ups(pair.scene, holes, camera, _N_CLOSE_UPS)
-    sheet = _blank_sheet(has_title=bool(title), has_close_ups=bool(cameras))
-    if title:
-        sheet.write(title, _MARGIN, 24, _INK)
-        sheet.top += _TITLE_HEIGHT
+    sheet = _blank_sheet(has_close_ups=bool(cameras))
     _draw_overview(sheet, pair, camera)
     if cameras:
         _draw_close_ups(sheet, pair, cameras)
-    _draw_legend(sheet, has_confidence=confidence is not None)
+    _draw_legend(sheet)
     write_png(path, sheet.image)
 
 
-def _blank_sheet(*, has_title: bool, has_close_ups: bool) -> _Sheet:
+def _blank_sheet(*, has_close_ups: bool) -> _Sheet:
     height = 2 * _MARGIN + _CAPTION_HEIGHT + _PANEL[1] + _GAP + _LEGEND_HEIGHT
-    height += _TITLE_HEIGHT if has_title else 0
     height += _CAPTION_HEIGHT + _TILE[1] + _GAP if has_close_ups else 0
     image = Image.new("RGB", (_WIDTH, height), _PAPER)
     return _Sheet(image, ImageDraw.Draw(image), _MARGIN)
@@ -130,14 +114,11 @@ def _draw_close_ups(sheet: _Sheet, pair: Pair, cameras: list[Camera]) -> None:
     sheet.top += _TILE[1] + _GAP
 
 
-def _draw_legend(sheet: _Sheet, *, has_confidence: bool) -> None:
-    """Draw a swatch per kind of surface; that of invented surface runs from unsure to sure if there is a confidence."""
-    share = np.linspace(0, 1, _SWATCH[0]) if has_confidence else np.ones(_SWATCH[0])
-    tint = UNSURE + share[:, None] * (SURE - UNSURE)
-    text = "invented surface" + (", confidence 0 to 1" if has_confidence else "")
+def _draw_legend(sheet: _Sheet) -> None:
+    """Draw a swatch for each kind of surface."""
     left = _MARGIN
     for colours, label in (
-        (tint, text),
+        (np.tile(TINT, (_SWATCH[0], 1)), "invented surface"),
         (np.tile(CLAY, (40, 1)), "measured surface"),
         (np.tile(BACK, (40, 1)), "inside"),
     ):

@@ -7,24 +7,23 @@ heights, no calibration, no share, no joining at the rim, no judgement.
 One thing differs. The paper places all vertices anew; here measured ones keep their bits, and only new ones are placed.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from quadpatch.calibration.energy_selection import EnergyBlend
-from quadpatch.errors import NoQuadsError, OptionError, StageError
+from quadpatch.errors import NoQuadsError, OptionError
 from quadpatch.filling.fairing import Energy
 from quadpatch.filling.faults import find_faults
 from quadpatch.filling.fill import close_flat
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.inpainters.inpainter import Inpainter
-from quadpatch.inpainters.paper_dictionary import GLOBAL_ATOMS, HeightsInpainter, learn_heights
+from quadpatch.inpainters.paper_dictionary import learn_heights
 from quadpatch.mesh.holes import Hole, Selection, find_holes, select_holes
 from quadpatch.mesh.measures import diagonal, mean_edge_length
 from quadpatch.mesh.raycast import RayScene
 from quadpatch.mesh.smoothing import laplacian_smooth
-from quadpatch.options import MODEL_FILLS_ONLY, DictionaryOptions, PatchOptions, RepairOptions
+from quadpatch.options import MODEL_FILLS_ONLY, PatchOptions, RepairOptions
 from quadpatch.patches.height_map import sample_height_maps
 from quadpatch.patches.layout import lay_out, pick_patches, seeds_near, take
 from quadpatch.patches.scale import PatchScale
@@ -35,7 +34,7 @@ from quadpatch.recipes.verification import with_named_faults
 from quadpatch.reconstruction.displacement import rim_vertices
 from quadpatch.reconstruction.placement import place
 from quadpatch.stages import Stages
-from quadpatch.types import BoolArray, FloatArray, Patches, Progress, TriangleMesh, Triangles, no_progress
+from quadpatch.types import BoolArray, FloatArray, Patches, TriangleMesh, Triangles
 
 # The paper gives patch length, resolution and overlap for each of its objects. Where none are given, patches are twice
 # as wide as the holes, nearly, with bins as in the paper's networks and every vertex in about nine patches.
@@ -145,42 +144,6 @@ def paper_scale(
     typical = float(np.percentile(hole_diameters, 75)) if hole_diameters else 0.0
     length = options.length or max(HOLES_PER_LENGTH * typical, least)
     return PatchScale(float(length), resolution, OVERLAP if options.overlap is None else options.overlap)
-
-
-def learn_as_paper(
-    meshes: Sequence[TriangleMesh],
-    scale: PatchScale,
-    options: DictionaryOptions | None = None,
-    seed: int = 0,
-    progress: Progress = no_progress,
-) -> HeightsInpainter:
-    """Learn one dictionary from the patches of whole meshes: the paper's local (one mesh) and global (many) ones.
-
-    Parameters
-    ----------
-    meshes : sequence of TriangleMesh
-        All in the same unit; holes in them are unknown.
-    scale : PatchScale
-    options : DictionaryOptions, optional
-    seed : int
-    progress : callable
-
-    Raises
-    ------
-    StageError
-        If the meshes have too few patches.
-    """
-    options = options or DictionaryOptions()
-    if options.atoms is None and len(meshes) > 1:
-        options = DictionaryOptions(GLOBAL_ATOMS, options.nonzero)
-    parts = [cut_heights(mesh, scale) for mesh in meshes]
-    none = np.zeros((0, scale.resolution, scale.resolution))
-    heights = np.concatenate([none, *(part.heights for part in parts)])
-    known = np.concatenate([none > 0, *(part.known for part in parts)])
-    learned = learn_heights(heights, known, options, np.random.default_rng(seed), progress)
-    if learned is None:
-        raise StageError(f"the meshes give {len(heights)} patches; too few of them are known well enough to learn from")
-    return learned
 
 
 def cut_heights(mesh: TriangleMesh, scale: PatchScale) -> Patches:

@@ -37,19 +37,6 @@ class KsvdOptions:
     n_iterations: int = 15
 
 
-def ksvd(
-    signals: FloatArray,
-    n_atoms: int,
-    n_nonzero: int,
-    n_iterations: int,
-    rng: np.random.Generator,
-    on_iteration: OnIteration | None = None,
-) -> tuple[FloatArray, FloatArray]:
-    """Learn a dictionary from signals known in every bin; see `masked_ksvd`."""
-    known = np.ones(signals.shape, dtype=np.bool_)
-    return masked_ksvd(signals, known, KsvdOptions(n_atoms, n_nonzero, n_iterations), rng, on_iteration)
-
-
 def masked_ksvd(
     signals: FloatArray,
     known: BoolArray,

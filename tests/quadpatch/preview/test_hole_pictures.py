@@ -6,7 +6,7 @@ from PIL import Image
 
 from quadpatch.mesh.holes import find_holes
 from quadpatch.preview.hole_pictures import NumberedHole, draw_hole, mean_normal
-from quadpatch.preview.pair import SURE, Pair, prepare
+from quadpatch.preview.pair import TINT, Pair, prepare
 from quadpatch.preview.shading import BACK
 from quadpatch.types import FloatArray, TriangleMesh
 from tests.quadpatch.preview.test_sheet import share_of_hue
@@ -63,11 +63,11 @@ def test_the_hole_is_open_before_and_filled_after_and_lies_in_the_middle(tmp_pat
     middle = sheet.shape[1] // 2
     left, right = sheet[30:, : middle - 4], sheet[30:, middle + 4 :]
     assert share_of_hue(left, BACK) > 0.08
-    assert share_of_hue(left, SURE) == 0
-    assert share_of_hue(right, SURE) > 0.08
+    assert share_of_hue(left, TINT) == 0
+    assert share_of_hue(right, TINT) > 0.08
     assert share_of_hue(right, BACK) < 0.002
     # Seen along its normal, the hole covers the middle of the picture.
-    assert share_of_hue(right[160:260, 160:260], SURE) > 0.99
+    assert share_of_hue(right[160:260, 160:260], TINT) > 0.99
 
 
 def test_the_number_is_drawn_in_both_pictures(tmp_path: Path) -> None:
@@ -98,7 +98,7 @@ def test_a_surface_turned_inside_out_is_seen_from_outside(tmp_path: Path) -> Non
     inside_out = prepare(turned, after, invented)
     assert inside_out.is_flipped
     (tmp_path / "turned.png").write_bytes(draw_hole(inside_out, NumberedHole(7, hole.rim[::-1])))
-    assert share_of_hue(picture(tmp_path / "turned.png"), SURE) > 0.04
+    assert share_of_hue(picture(tmp_path / "turned.png"), TINT) > 0.04
 
 
 def test_punched_holes_of_a_ball_face_outwards() -> None:

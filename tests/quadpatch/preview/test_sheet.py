@@ -5,7 +5,7 @@ import pytest
 from PIL import Image
 
 from quadpatch.errors import EmptyMeshError
-from quadpatch.preview.pair import SURE, UNSURE
+from quadpatch.preview.pair import TINT
 from quadpatch.preview.shading import BACK
 from quadpatch.preview.sheet import render_before_after
 from quadpatch.types import BoolArray, FloatArray, TriangleMesh
@@ -51,19 +51,9 @@ def test_holes_show_the_inside_before_and_the_tint_after(plain: Path) -> None:
     middle = sheet.shape[1] // 2
     left, right = sheet[60:640, :middle], sheet[60:640, middle:]
     assert share_of_hue(left, BACK) > 0.01
-    assert share_of_hue(left, SURE) == 0
-    assert share_of_hue(right, SURE) > 0.01
+    assert share_of_hue(left, TINT) == 0
+    assert share_of_hue(right, TINT) > 0.01
     assert share_of_hue(right, BACK) == 0
-
-
-def test_the_tint_follows_the_confidence_and_a_title_takes_a_line(plain: Path, tmp_path: Path) -> None:
-    before, after, invented = repaired()
-    nothing = np.zeros(len(invented))
-    render_before_after(before, after, invented, tmp_path / "sheet.png", confidence=nothing, title="a sphere")
-    sheet = pixels(tmp_path / "sheet.png")
-    assert share_of_hue(sheet[120:680], UNSURE) > 0.005
-    assert share_of_hue(sheet[120:680], SURE) == 0
-    assert sheet.shape[0] > pixels(plain).shape[0]
 
 
 def test_a_surface_turned_inside_out_gives_the_same_sheet(plain: Path, tmp_path: Path) -> None:

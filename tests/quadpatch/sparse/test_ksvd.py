@@ -4,7 +4,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from quadpatch.errors import StageError
-from quadpatch.sparse.ksvd import KsvdOptions, ksvd, masked_ksvd
+from quadpatch.sparse.ksvd import KsvdOptions, masked_ksvd
 from quadpatch.sparse.omp import masked_omp
 from quadpatch.types import FloatArray
 
@@ -19,6 +19,11 @@ def planted(rng: np.random.Generator, n: int, n_bins: int, n_atoms: int, n_nonze
     return codes @ atoms.T, atoms
 
 
+def ksvd(signals: FloatArray, options: KsvdOptions, rng: np.random.Generator) -> tuple[FloatArray, FloatArray]:
+    """Learn from signals that are known in every bin."""
+    return masked_ksvd(signals, np.ones(signals.shape, dtype=np.bool_), options, rng)
+
+
 def share_found(learned: FloatArray, truth: FloatArray) -> float:
     """Tell which part of the true atoms was learned, up to sign."""
     return float((np.abs(learned.T @ truth).max(axis=0) > 0.99).mean())
@@ -27,7 +32,7 @@ def share_found(learned: FloatArray, truth: FloatArray) -> float:
 def test_a_planted_dictionary_is_found_again() -> None:
     rng = np.random.default_rng(0)
     signals, truth = planted(rng, 1500, 30, 40, 3)
-    atoms, errors = ksvd(signals, 40, 3, 40, rng)
+    atoms, errors = ksvd(signals, KsvdOptions(40, 3, 40), rng)
     assert share_found(atoms, truth) > 0.9
     assert errors[-1] < 0.25 * errors[0]
 
@@ -66,8 +71,8 @@ def test_the_reported_error_is_at_least_that_of_coding_with_the_result() -> None
 
 def test_same_generator_same_bits() -> None:
     signals, _ = planted(np.random.default_rng(3), 300, 16, 20, 3)
-    one, errors = ksvd(signals, 20, 3, 5, np.random.default_rng(7))
-    two, same_errors = ksvd(signals, 20, 3, 5, np.random.default_rng(7))
+    one, errors = ksvd(signals, KsvdOptions(20, 3, 5), np.random.default_rng(7))
+    two, same_errors = ksvd(signals, KsvdOptions(20, 3, 5), np.random.default_rng(7))
     np.testing.assert_array_equal(one, two)
     np.testing.assert_array_equal(errors, same_errors)
 
@@ -76,7 +81,7 @@ def test_repeated_signals_do_not_become_repeated_atoms() -> None:
     rng = np.random.default_rng(4)
     few = rng.normal(size=(5, 16))
     signals = np.concatenate([np.repeat(few, 40, axis=0), rng.normal(size=(60, 16))])
-    atoms, _ = ksvd(signals, 12, 2, 20, rng)
+    atoms, _ = ksvd(signals, KsvdOptions(12, 2, 20), rng)
     gram = np.abs(atoms.T @ atoms) - np.eye(12)
     assert gram.max() < 0.995
 
@@ -96,6 +101,6 @@ def test_fewer_signals_than_atoms_are_refused() -> None:
     signals = np.zeros((30, 9))
     signals[:7] = np.random.default_rng(6).normal(size=(7, 9))
     with pytest.raises(StageError, match="7 patches"):
-        ksvd(signals, 8, 2, 3, np.random.default_rng(0))
-    atoms, _ = ksvd(signals, 7, 2, 3, np.random.default_rng(0))
+        ksvd(signals, KsvdOptions(8, 2, 3), np.random.default_rng(0))
+    atoms, _ = ksvd(signals, KsvdOptions(7, 2, 3), np.random.default_rng(0))
     assert atoms.shape == (9, 7)
