@@ -14,10 +14,10 @@ from quadpatch.formats.precision import check_precision
 from quadpatch.formats.reading import read_scan
 from quadpatch.formats.scan import Fill, Scan
 from quadpatch.formats.writing import check_suffix, write_scan, written_as
-from quadpatch.inpainters.dictionary import DictionaryInpainter
+from quadpatch.inpainters.dictionary import DictionaryInpainter, SelfDictionary
 from quadpatch.inpainters.inpainter import Inpainter
 from quadpatch.inpainters.model_file import Model, load_model, shipped_model
-from quadpatch.inpainters.paper_dictionary import HeightsInpainter
+from quadpatch.inpainters.paper_dictionary import HeightsInpainter, SelfHeights
 from quadpatch.mesh.holes import find_holes, select_holes
 from quadpatch.mesh.measures import diagonal
 from quadpatch.mesh.near_vertices import Tolerance
@@ -126,8 +126,7 @@ def repair_and_keep(
         scan, welded = _read(source, options.weld_tolerance)
         named = written_as(output, scan)
         precision = check_precision(scan, named)
-    by_recipe = inpaint_as_paper if options.recipe == "paper" else inpaint
-    repair = by_recipe(welded.mesh, inpainter, options, stages, learn=model == SELF, obstacles=welded.ignored_triangles)
+    repair = _inpaint(welded, inpainter, options, stages)
     with stages.stage("write"):
         losses = write_scan(output, scan, _fill(scan, welded, repair))
     warnings = [
@@ -207,8 +206,12 @@ def _resolve(
         return _network_to_fit(options, progress)
     if options.network != NetworkOptions():
         raise OptionError(f"network.steps and network.seconds go with the model {SELF_NETWORK} only")
-    if model in (SMOOTH, SELF):
-        return None, {"name": str(model)}
+    if model == SMOOTH:
+        return None, {"name": SMOOTH}
+    if model == SELF:
+        is_paper = options.recipe == "paper"
+        learned = SelfHeights(options.dictionary, options.seed, progress) if is_paper else SelfDictionary()
+        return learned, {"name": SELF}
     path = Path(model)
     if not path.is_file():
         path = shipped_model(str(model))
@@ -220,6 +223,12 @@ def _resolve(
     _check_recipe(loaded, options)
     inpainter = HeightsInpainter if loaded.recipe == "paper" else DictionaryInpainter
     return inpainter(loaded.dictionary), facts
+
+
+def _inpaint(welded: Weld, inpainter: Inpainter | None, options: RepairOptions, stages: Stages) -> Repair:
+    if inpainter is None or options.recipe == "default":
+        return inpaint(welded.mesh, inpainter, options, stages, obstacles=welded.ignored_triangles)
+    return inpaint_as_paper(welded.mesh, inpainter, options, stages, obstacles=welded.ignored_triangles)
 
 
 def _network(path: Path, options: RepairOptions, card: dict[str, Any] | None) -> Inpainter:

@@ -70,23 +70,20 @@ class DictionaryInpainter:
         return base_heights + from_signals(completed, scaling)
 
 
-def learn_from_patches(patches: Patches, base_heights: FloatArray) -> DictionaryInpainter | None:
-    """Learn a dictionary from the known bins of a mesh's own patches.
+@dataclass(frozen=True)
+class SelfDictionary:
+    """A dictionary that is learned from the known bins of the mesh's own patches: the model `self`."""
 
-    Parameters
-    ----------
-    patches : Patches
-    base_heights : (n_patches, N, N) float64
+    @property
+    def resolution(self) -> None:
+        """See `Inpainter`."""
 
-    Returns
-    -------
-    DictionaryInpainter or None
-        None where too few patches show enough surface to learn anything.
-    """
-    signals, known = _usable_signals(patches, base_heights)
-    if len(signals) < MIN_TRAINING_PATCHES:
-        return None
-    return _principal(known_covariance(signals, known), patches.resolution)
+    def fitted_to(self, undamaged: UndamagedSurface) -> DictionaryInpainter | None:
+        """See `Inpainter`."""
+        signals, known = _usable_signals(undamaged.patches, undamaged.base_heights)
+        if len(signals) < MIN_TRAINING_PATCHES:
+            return None
+        return _principal(known_covariance(signals, known), undamaged.patches.resolution)
 
 
 def _principal(covariance: FloatArray, resolution: int) -> DictionaryInpainter:

@@ -1,5 +1,6 @@
-"""What every inpainter does: predict the whole height map of a patch from its known bins."""
+"""What every inpainter does: fit itself to the mesh at hand, then predict whole height maps from their known bins."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -16,25 +17,21 @@ class UndamagedSurface:
     patches : Patches
         Calibration holes count as unknown.
     base_heights : (n_patches, N, N) float64
-    training_surface : TrainingSurface
-        The same surface to cut training pairs from; calibration holes are open.
+    training_surface : callable
+        Returns the same surface to cut training pairs from; calibration holes are open.
     """
 
     patches: Patches
     base_heights: FloatArray
-    training_surface: TrainingSurface
+    training_surface: Callable[[], TrainingSurface]
 
 
-class Inpainter(Protocol):
+class FittedInpainter(Protocol):
     """Predicts heights. `resolution` is what its patches must have."""
 
     @property
     def resolution(self) -> int:
         """Bins along one side of its patches."""
-        ...
-
-    def fitted_to(self, undamaged: UndamagedSurface) -> "Inpainter":
-        """Fit the model to the mesh at hand; itself where there is nothing to fit."""
         ...
 
     def predict(self, patches: Patches, base_heights: FloatArray) -> FloatArray:
@@ -51,5 +48,24 @@ class Inpainter(Protocol):
         -------
         (n_patches, N, N) float64
             Heights in mesh units.
+        """
+        ...
+
+
+class Inpainter(Protocol):
+    """A model that a repair is asked for."""
+
+    @property
+    def resolution(self) -> int | None:
+        """Bins along one side of its patches; None for one that is learned from the mesh alone, with any."""
+        ...
+
+    def fitted_to(self, undamaged: UndamagedSurface) -> FittedInpainter | None:
+        """Fit the model to the mesh at hand; itself where there is nothing to fit.
+
+        Returns
+        -------
+        FittedInpainter or None
+            None where the surface shows too little to learn a model from.
         """
         ...

@@ -56,6 +56,33 @@ class HeightsInpainter:
         return from_signals(codes @ self.dictionary.atoms.T, scaling)
 
 
+@dataclass(frozen=True)
+class SelfHeights:
+    """A dictionary that is learned by K-SVD from the mesh's own patches: the model `self` of the recipe `paper`.
+
+    Attributes
+    ----------
+    options : DictionaryOptions
+    seed : int
+        Draws the patches to learn from, and the atoms to start from.
+    progress : callable
+    """
+
+    options: DictionaryOptions
+    seed: int = 0
+    progress: Progress = no_progress
+
+    @property
+    def resolution(self) -> None:
+        """See `Inpainter`."""
+
+    def fitted_to(self, undamaged: UndamagedSurface) -> HeightsInpainter | None:
+        """See `Inpainter`."""
+        rng = np.random.default_rng(self.seed)
+        patches = undamaged.patches
+        return learn_heights(patches.heights, patches.known, self.options, rng, self.progress)
+
+
 def is_learnable(known: BoolArray) -> BoolArray:
     """Say which patches (n_patches,) are known (n_patches, N, N) well enough to learn from."""
     return np.asarray(known.mean(axis=(1, 2)) >= LEAST_KNOWN)

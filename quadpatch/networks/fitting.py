@@ -91,7 +91,7 @@ def collect_training_pairs(
 ) -> TrainingPairs:
     """Cut pairs until there are enough, or another round would come too often to the same places, or too late."""
     started, parts = time.monotonic(), list[TrainingPairs]()
-    for part in islice(make_training_pairs(undamaged.training_surface, np.random.default_rng([seed, 3])), MAX_ROUNDS):
+    for part in islice(make_training_pairs(undamaged.training_surface(), np.random.default_rng([seed, 3])), MAX_ROUNDS):
         parts.append(part)
         done = max(sum(len(part) for part in parts) / ENOUGH_PAIRS, (time.monotonic() - started) / seconds)
         progress("learn", min(done, 1.0))

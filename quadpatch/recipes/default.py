@@ -45,7 +45,6 @@ def inpaint(
     options: RepairOptions,
     stages: Stages | None = None,
     *,
-    learn: bool = False,
     obstacles: Triangles | None = None,
 ) -> Repair:
     """Repair the holes of a mesh.
@@ -54,12 +53,10 @@ def inpaint(
     ----------
     mesh : TriangleMesh
     inpainter : Inpainter or None
-        None fills by geometry alone, unless `learn` is set.
+        None fills by geometry alone.
     options : RepairOptions
     stages : Stages, optional
         Gets progress and seconds.
-    learn : bool
-        Learn a dictionary from the mesh's own surface.
     obstacles : (k, 3) int64, optional
         Triangles that the mesh leaves out, such as repeated ones: a fill may not run through them either.
 
@@ -82,7 +79,7 @@ def inpaint(
         problem, error_model, checked = _fill(mesh, rims, _loops_to_fill(rims, selection), obstacles, rng)
     completion, warnings = None, []
     by_model = _with_action(rims, selection, "model")
-    if (inpainter is not None or learn) and by_model[problem.filled.vertex_hole].any():
+    if inpainter is not None and by_model[problem.filled.vertex_hole].any():
         try:
             completion = complete(problem, inpainter, options, rng, stages)
             if completion is None:

@@ -1,6 +1,7 @@
 """What learning adds to the geometric fill (sections 3 to 5 of the paper)."""
 
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -9,8 +10,7 @@ from quadpatch.calibration.energy_selection import EnergyBlend
 from quadpatch.calibration.error_model import ErrorModel
 from quadpatch.calibration.training_pairs import TrainingSurface
 from quadpatch.filling.filled_mesh import FilledMesh
-from quadpatch.inpainters.dictionary import learn_from_patches
-from quadpatch.inpainters.inpainter import Inpainter, UndamagedSurface
+from quadpatch.inpainters.inpainter import FittedInpainter, Inpainter, UndamagedSurface
 from quadpatch.mesh.smoothing import laplacian_smooth
 from quadpatch.options import RepairOptions
 from quadpatch.patches.folding import is_unfolded
@@ -60,14 +60,14 @@ class CompletionInput:
 class _Model:
     """A model, and the layout of the patches that it is applied to."""
 
-    inpainter: Inpainter
+    inpainter: FittedInpainter
     seeds: Seeds
     scale: PatchScale
 
 
 def complete(
     problem: CompletionInput,
-    inpainter: Inpainter | None,
+    inpainter: Inpainter,
     options: RepairOptions,
     rng: np.random.Generator,
     stages: Stages,
@@ -76,9 +76,8 @@ def complete(
 
     Parameters
     ----------
-    problem : Problem
-    inpainter : Inpainter or None
-        None: learn a dictionary from the mesh's own patches.
+    problem : CompletionInput
+    inpainter : Inpainter
     options : RepairOptions
     rng : numpy.random.Generator
     stages : Stages
@@ -94,8 +93,7 @@ def complete(
         If the base surface can't carry one quad.
     """
     filled = problem.filled
-    model_resolution = inpainter.resolution if inpainter else None
-    scale = choose_scale(problem.diameters, problem.edge_length, options.patches, model_resolution)
+    scale = choose_scale(problem.diameters, problem.edge_length, options.patches, inpainter.resolution)
     with stages.stage("smooth"):
         base_surface = _base_surface(filled, scale, problem.edge_length)
     with stages.stage("quadrangulate"):
@@ -107,17 +105,14 @@ def complete(
         sampled = pick(everywhere, near[wanted] & is_unfolded(everywhere.patches))
     with stages.stage("learn"):
         known_patches = _without_calibration_holes(everywhere.patches, problem)
-        if inpainter is None:
-            inpainter = learn_from_patches(known_patches, everywhere.base_heights)
-        else:
-            training_surface = _training_surface(problem, seeds, scale)
-            inpainter = inpainter.fitted_to(UndamagedSurface(known_patches, everywhere.base_heights, training_surface))
-        if inpainter is None:
+        training_surface = partial(_training_surface, problem, seeds, scale)
+        fitted = inpainter.fitted_to(UndamagedSurface(known_patches, everywhere.base_heights, training_surface))
+        if fitted is None:
             return None
-        blend_factor, error_model = _calibrate(problem, _Model(inpainter, seeds, scale))
+        blend_factor, error_model = _calibrate(problem, _Model(fitted, seeds, scale))
     with stages.stage("inpaint"):
         # A model with a blend factor of 0 need not be asked.
-        predicted = inpainter.predict(sampled.patches, sampled.base_heights) if blend_factor else None
+        predicted = fitted.predict(sampled.patches, sampled.base_heights) if blend_factor else None
     with stages.stage("reconstruct"):
         evidence, trust = None, np.zeros(len(filled.disagreement), bool)
         if predicted is not None:

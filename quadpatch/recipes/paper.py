@@ -12,13 +12,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from quadpatch.calibration.energy_selection import EnergyBlend
+from quadpatch.calibration.training_pairs import TrainingSurface
 from quadpatch.errors import NoQuadsError, OptionError
 from quadpatch.filling.fairing import Energy
 from quadpatch.filling.faults import find_faults
 from quadpatch.filling.fill import close_flat
 from quadpatch.filling.filled_mesh import FilledMesh
-from quadpatch.inpainters.inpainter import Inpainter
-from quadpatch.inpainters.paper_dictionary import learn_heights
+from quadpatch.inpainters.inpainter import FittedInpainter, Inpainter, UndamagedSurface
 from quadpatch.mesh.holes import Hole, Selection, find_holes, select_holes
 from quadpatch.mesh.measures import diagonal, mean_edge_length
 from quadpatch.mesh.raycast import RayScene
@@ -72,11 +72,10 @@ class _Laid:
 
 def inpaint_as_paper(
     mesh: TriangleMesh,
-    inpainter: Inpainter | None,
+    inpainter: Inpainter,
     options: RepairOptions,
     stages: Stages | None = None,
     *,
-    learn: bool = False,
     obstacles: Triangles | None = None,
 ) -> Repair:
     """Repair the holes of a mesh by the method of the paper.
@@ -84,14 +83,12 @@ def inpaint_as_paper(
     Parameters
     ----------
     mesh : TriangleMesh
-    inpainter : Inpainter or None
+    inpainter : Inpainter
         Codes heights, as `HeightsInpainter` does.
     options : RepairOptions
         The recipe they name is not looked at.
     stages : Stages, optional
         Gets progress and seconds.
-    learn : bool
-        With no inpainter: learn a dictionary from the mesh's own patches.
     obstacles : (k, 3) int64, optional
         Triangles that the mesh leaves out; crossings of these are counted too.
 
@@ -103,10 +100,8 @@ def inpaint_as_paper(
     Raises
     ------
     OptionError
-        If there is neither an inpainter nor leave to learn one, or the options don't fit the mesh.
+        If the options don't fit the mesh.
     """
-    if inpainter is None and not learn:
-        raise OptionError(NOTHING_TO_DO)
     stages = stages or Stages()
     with stages.stage("holes"):
         holes = find_holes(mesh)
@@ -118,9 +113,9 @@ def inpaint_as_paper(
     completion, warnings = None, []
     if len(filled.vertex_hole):
         diameters = [hole.diameter for hole in selection.chosen]
-        scale = paper_scale(diameters, mean_edge_length(mesh), options.patches, inpainter)
+        scale = paper_scale(diameters, mean_edge_length(mesh), options.patches, inpainter.resolution)
         try:
-            completion = _complete(filled, scale, inpainter, options, stages)
+            completion = _complete(filled, scale, inpainter, stages)
             if completion is None:
                 warnings.append("too little undamaged surface to learn from; the holes were closed, nothing more")
         except NoQuadsError as error:
@@ -134,13 +129,12 @@ def inpaint_as_paper(
 
 
 def paper_scale(
-    hole_diameters: list[float], edge_length: float, options: PatchOptions, inpainter: Inpainter | None = None
+    hole_diameters: list[float], edge_length: float, options: PatchOptions, model_resolution: int | None = None
 ) -> PatchScale:
     """Choose patch length, resolution and overlap where the user or the model doesn't; lengths in mesh units."""
-    of_model = inpainter.resolution if inpainter else None
-    resolution = of_model or options.resolution or RESOLUTION
+    resolution = model_resolution or options.resolution or RESOLUTION
     # The finest networks show as much surface as the others, more finely: they were trained so.
-    least = LEAST_EDGES_PER_BIN * edge_length * (min(of_model, RESOLUTION) if of_model else resolution)
+    least = LEAST_EDGES_PER_BIN * edge_length * (min(model_resolution, RESOLUTION) if model_resolution else resolution)
     typical = float(np.percentile(hole_diameters, 75)) if hole_diameters else 0.0
     length = options.length or max(HOLES_PER_LENGTH * typical, least)
     return PatchScale(float(length), resolution, OVERLAP if options.overlap is None else options.overlap)
@@ -164,26 +158,35 @@ def _lay_out(filled: FilledMesh, scale: PatchScale, stages: Stages) -> _Laid:
         return _Laid(filled, lay_out(base_surface, scale), scale)
 
 
-def _complete(
-    filled: FilledMesh, scale: PatchScale, inpainter: Inpainter | None, options: RepairOptions, stages: Stages
-) -> Completion | None:
+def _complete(filled: FilledMesh, scale: PatchScale, inpainter: Inpainter, stages: Stages) -> Completion | None:
     """Complete the patches that see a hole, and place its vertices by them (sections 3 and 4 of the paper)."""
     laid = _lay_out(filled, scale, stages)
     near = seeds_near(laid.seeds, filled.mesh.vertices[filled.n_measured_vertices :], scale.length)
     with stages.stage("patchify"):
         patches = laid.patches(near)
         patches = pick_patches(patches, np.asarray(patches.known.any(axis=(1, 2))))
-    if inpainter is None:
-        with stages.stage("learn"):
-            everywhere = laid.patches(np.ones(len(laid.seeds), bool))
-            rng = np.random.default_rng(options.seed)
-            inpainter = learn_heights(everywhere.heights, everywhere.known, options.dictionary, rng, stages.progress)
-        if inpainter is None:
-            return None
+    fitted = _fitted(inpainter, laid, patches, stages)
+    if fitted is None:
+        return None
     with stages.stage("inpaint"):
-        predicted = inpainter.predict(patches, np.zeros_like(patches.heights))
+        predicted = fitted.predict(patches, np.zeros_like(patches.heights))
     with stages.stage("reconstruct"):
         return _reconstruct(filled, patches, predicted, scale)
+
+
+def _fitted(inpainter: Inpainter, laid: _Laid, patches: Patches, stages: Stages) -> FittedInpainter | None:
+    """Learn from all patches what is learned from the mesh; other models are shown those at the holes."""
+    if inpainter.resolution is not None:
+        return inpainter.fitted_to(_undamaged(patches))
+    with stages.stage("learn"):
+        return inpainter.fitted_to(_undamaged(laid.patches(np.ones(len(laid.seeds), bool))))
+
+
+def _undamaged(patches: Patches) -> UndamagedSurface:
+    def no_training_surface() -> TrainingSurface:
+        raise OptionError("the recipe paper fits no network to a mesh")
+
+    return UndamagedSurface(patches, np.zeros_like(patches.heights), no_training_surface)
 
 
 def _reconstruct(filled: FilledMesh, patches: Patches, predicted: FloatArray, scale: PatchScale) -> Completion:

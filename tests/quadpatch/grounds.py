@@ -34,4 +34,4 @@ def surroundings_of(training_surface: TrainingSurface) -> UndamagedSurface:
     none = np.zeros((0, RESOLUTION, RESOLUTION))
     is_none = none > 0
     patches = Patches(np.zeros((0, 3)), np.zeros((0, 3, 3)), 1.0, none, is_none, is_none, none.astype(np.int64))
-    return UndamagedSurface(patches, none, training_surface)
+    return UndamagedSurface(patches, none, lambda: training_surface)

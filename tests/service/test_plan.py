@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 
 from jobkit.schema import JobSpec, Plan, ResolvedModel
 from jobkit.settings import Settings
-from quadpatch.options import HoleOptions, HoleRule, RepairOptions
+from quadpatch.inpainters.paper_dictionary import SelfHeights
+from quadpatch.options import DictionaryOptions, HoleOptions, HoleRule, RepairOptions
 from quadpatch.recipes.default import inpaint
 from quadpatch.recipes.paper import inpaint_as_paper
 from quadpatch.recipes.result import HoleResult
@@ -101,7 +102,7 @@ def test_the_recipe_of_the_paper_knows_no_islands_and_so_does_its_plan(tmp_path:
     plan = plan_of(mesh, options, tmp_path, method)
     assert [hole.joined_to for hole in plan.holes] == [None] * 3
     assert any(hole.lies_in for hole in plan.holes)
-    done = inpaint_as_paper(mesh, None, RepairOptions(options, recipe="paper"), learn=True)
+    done = inpaint_as_paper(mesh, SelfHeights(DictionaryOptions()), RepairOptions(options, recipe="paper"))
     assert_agree(plan, done.results)
 
 

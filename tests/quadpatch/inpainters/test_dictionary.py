@@ -9,7 +9,7 @@ from quadpatch.inpainters.dictionary import (
     MIN_TRAINING_PATCHES,
     PRINCIPAL_ATOMS,
     DictionaryInpainter,
-    learn_from_patches,
+    SelfDictionary,
 )
 from quadpatch.inpainters.inpainter import UndamagedSurface
 from quadpatch.patches.scale import PatchScale
@@ -36,7 +36,7 @@ def undamaged(patches: Patches) -> UndamagedSurface:
     training_surface = TrainingSurface(
         flat, nowhere, PatchScale(1.0, N, 1), EnergyBlend.of_one(THIN_PLATE), np.ones(1), 0.1
     )
-    return UndamagedSurface(patches, 0 * patches.heights, training_surface)
+    return UndamagedSurface(patches, 0 * patches.heights, lambda: training_surface)
 
 
 def waves(count: int, seed: int = 0) -> FloatArray:
@@ -57,7 +57,7 @@ def with_hole(count: int, seed: int = 1) -> BoolArray:
 @pytest.fixture(scope="module")
 def learned() -> DictionaryInpainter:
     heights = waves(400)
-    found = learn_from_patches(as_patches(heights), 0 * heights)
+    found = SelfDictionary().fitted_to(undamaged(as_patches(heights)))
     assert found is not None
     return found
 
@@ -109,7 +109,7 @@ def test_a_flat_patch_stays_flat(learned: DictionaryInpainter) -> None:
 
 def test_the_same_patches_give_the_same_dictionary() -> None:
     heights = waves(100)
-    one, same = (learn_from_patches(as_patches(heights), 0 * heights) for _ in range(2))
+    one, same = (SelfDictionary().fitted_to(undamaged(as_patches(heights))) for _ in range(2))
     assert one is not None
     assert same is not None
     assert one.dictionary.atoms.tobytes() == same.dictionary.atoms.tobytes()
@@ -139,7 +139,7 @@ def test_without_surface_to_fit_to_a_dictionary_stays_as_it_is(learned: Dictiona
 def test_unknown_bins_are_not_learned_from() -> None:
     heights, known = waves(200), with_hole(200)
     junk = np.where(known, heights, 1e6)
-    clean, dirty = (learn_from_patches(as_patches(part, known), 0 * heights) for part in (heights, junk))
+    clean, dirty = (SelfDictionary().fitted_to(undamaged(as_patches(part, known))) for part in (heights, junk))
     assert clean is not None
     assert dirty is not None
     assert clean.dictionary.atoms.tobytes() == dirty.dictionary.atoms.tobytes()
@@ -148,7 +148,7 @@ def test_unknown_bins_are_not_learned_from() -> None:
 def test_atoms_are_of_unit_length_and_no_more_than_the_texture_needs() -> None:
     for count in (MIN_TRAINING_PATCHES, 400):
         heights = waves(count)
-        found = learn_from_patches(as_patches(heights), 0 * heights)
+        found = SelfDictionary().fitted_to(undamaged(as_patches(heights)))
         assert found is not None
         assert found.resolution == N
         # Four functions span these waves, less the mean of each patch, in any of the eight turns.
@@ -165,13 +165,13 @@ def test_nothing_to_learn_from_is_no_dictionary(why: str) -> None:
     if why == "too little known":
         known[:, : int(N * (1 - LEAST_KNOWN)) + 1] = False
     patches = as_patches(heights, known)
-    assert learn_from_patches(patches, 0 * heights) is None
+    assert SelfDictionary().fitted_to(undamaged(patches)) is None
 
 
 def test_no_patch_at_all_needs_no_prediction(learned: DictionaryInpainter) -> None:
     nothing = np.zeros((0, N, N))
     assert learned.predict(as_patches(nothing), nothing).shape == (0, N, N)
-    assert learn_from_patches(as_patches(nothing), nothing) is None
+    assert SelfDictionary().fitted_to(undamaged(as_patches(nothing))) is None
 
 
 def test_the_resolution_is_that_of_the_dictionary() -> None:

@@ -2,7 +2,8 @@ import numpy as np
 import pytest
 
 from quadpatch.errors import OptionError
-from quadpatch.inpainters.dictionary import DictionaryInpainter
+from quadpatch.inpainters.dictionary import DictionaryInpainter, SelfDictionary
+from quadpatch.inpainters.inpainter import Inpainter
 from quadpatch.mesh.boundary import boundary_loops
 from quadpatch.mesh.measures import diagonal
 from quadpatch.mesh.raycast import RayScene
@@ -40,7 +41,7 @@ def smooth_small_relief() -> Repair:
 
 @pytest.fixture(scope="module")
 def learned_relief() -> Repair:
-    return inpaint(RELIEF, None, RepairOptions(), learn=True)
+    return inpaint(RELIEF, SelfDictionary(), RepairOptions())
 
 
 def new_vertices(repair: Repair) -> FloatArray:
@@ -86,7 +87,7 @@ def test_holes_that_the_model_does_not_complete_stay_as_geometry_filled_them(
 
 def test_every_stage_is_gone_through_in_order() -> None:
     stages = Stages()
-    inpaint(SMALL_RELIEF, None, RepairOptions(), stages, learn=True)
+    inpaint(SMALL_RELIEF, SelfDictionary(), RepairOptions(), stages)
     names = ["holes", "fill", "smooth", "quadrangulate", "patchify", "learn", "inpaint", "reconstruct", "judge"]
     assert list(stages.seconds) == names
     geometry = Stages()
@@ -130,7 +131,7 @@ def test_a_learned_repair_moves_with_its_mesh_as_far_as_the_quads_do(
     # The mesher lays other quads over a turned mesh, so other patches are learned from and averaged: the same
     # triangles, and displacements that differ by less than half of what they are.
     mesh, rotation, shift = moved(RELIEF, 0)
-    there = inpaint(mesh, None, RepairOptions(), learn=True)
+    there = inpaint(mesh, SelfDictionary(), RepairOptions())
     here, smooth = learned_relief, smooth_relief
     assert (there.filled.mesh.triangles == here.filled.mesh.triangles).all()
     assert here.completion is not None
@@ -147,11 +148,11 @@ def test_a_mesh_twice_as_large_gets_the_same_repair_twice_as_large(smooth_small_
     assert (doubled.filled.mesh.vertices == 1024.0 * smooth_small_relief.filled.mesh.vertices).all()
 
 
-@pytest.mark.parametrize("learn", [False, True])
-def test_a_flat_plate_with_holes_stays_flat(learn: bool) -> None:
+@pytest.mark.parametrize("inpainter", [None, SelfDictionary()])
+def test_a_flat_plate_with_holes_stays_flat(inpainter: Inpainter | None) -> None:
     plate = bumpy_plate(60, 2.0)
     flat = TriangleMesh(plate.vertices * [1, 1, 0], plate.triangles)
-    repair = inpaint(punched(flat, (0.3, 0.2, 0), (-0.5, -0.4, 0), radius=0.15), None, RepairOptions(), learn=learn)
+    repair = inpaint(punched(flat, (0.3, 0.2, 0), (-0.5, -0.4, 0), radius=0.15), inpainter, RepairOptions())
     assert len(new_vertices(repair)) > 0
     assert np.abs(new_vertices(repair)[:, 2]).max() < 1e-12
     assert [result.verdict for result in repair.results] == ["skipped", "filled_smooth", "filled_smooth"]
@@ -182,10 +183,10 @@ def test_an_unknown_hole_is_refused() -> None:
         inpaint(SMALL_RELIEF, None, RepairOptions(HoleOptions(ids=(99,))))
 
 
-@pytest.mark.parametrize("learn", [False, True])
-def test_a_mesh_without_holes_is_given_back(learn: bool) -> None:
+@pytest.mark.parametrize("inpainter", [None, SelfDictionary()])
+def test_a_mesh_without_holes_is_given_back(inpainter: Inpainter | None) -> None:
     mesh = sphere(2)
-    repair = inpaint(mesh, None, RepairOptions(), learn=learn)
+    repair = inpaint(mesh, inpainter, RepairOptions())
     assert repair.results == []
     assert repair.filled.mesh.vertices.tobytes() == mesh.vertices.tobytes()
     assert repair.filled.mesh.triangles.tobytes() == mesh.triangles.tobytes()
@@ -193,7 +194,7 @@ def test_a_mesh_without_holes_is_given_back(learn: bool) -> None:
 
 def test_too_little_surface_to_learn_from_falls_back_to_geometry_and_says_so() -> None:
     mesh = punched(sphere(2), (0, 0, 1), radius=0.5)
-    repair = inpaint(mesh, None, RepairOptions(HoleOptions(max_diameter=10.0)), learn=True)
+    repair = inpaint(mesh, SelfDictionary(), RepairOptions(HoleOptions(max_diameter=10.0)))
     geometry = inpaint(mesh, None, RepairOptions(HoleOptions(max_diameter=10.0)))
     assert [result.verdict for result in repair.results] == ["filled_smooth"]
     assert new_vertices(repair).tobytes() == new_vertices(geometry).tobytes()
@@ -203,12 +204,13 @@ def test_too_little_surface_to_learn_from_falls_back_to_geometry_and_says_so() -
 
 
 @pytest.mark.parametrize("length", [0.2, 3.0, 10.0])
-@pytest.mark.parametrize("learn", [False, True])
-def test_patches_of_any_length_give_a_repair_also_where_none_shows_the_hole(length: float, learn: bool) -> None:
+@pytest.mark.parametrize("inpainter", [SelfDictionary(), DictionaryInpainter(Dictionary(np.eye(256)[:, :20], 16, 4))])
+def test_patches_of_any_length_give_a_repair_also_where_none_shows_the_hole(
+    length: float, inpainter: Inpainter
+) -> None:
     mesh = punched(sphere(4), (0, 0, 1), radius=0.4)
-    dictionary = None if learn else DictionaryInpainter(Dictionary(np.eye(256)[:, :20], 16, 4))
     options = RepairOptions(HoleOptions(max_diameter=10.0), PatchOptions(length=length))
-    repair = inpaint(mesh, dictionary, options, learn=learn)
+    repair = inpaint(mesh, inpainter, options)
     assert [result.verdict for result in repair.results] == ["filled_smooth"]
     assert np.isfinite(new_vertices(repair)).all()
 
@@ -217,7 +219,7 @@ def test_a_hole_without_new_vertices_is_not_called_folded() -> None:
     # One triangle is missing, far from all other holes.
     drop = int(np.argmin(np.linalg.norm(SMALL_RELIEF.vertices[SMALL_RELIEF.triangles[:, 0]] - [0.1, 0.8, 0], axis=1)))
     mesh = TriangleMesh(SMALL_RELIEF.vertices, np.delete(SMALL_RELIEF.triangles, drop, axis=0))
-    repair = inpaint(mesh, None, RepairOptions(), learn=True)
+    repair = inpaint(mesh, SelfDictionary(), RepairOptions())
     tiny = repair.results[-1]
     assert tiny.hole.n_edges == 3
     assert (tiny.verdict, tiny.n_new_vertices, tiny.n_new_triangles) == ("filled_smooth", 0, 1)
@@ -239,7 +241,7 @@ def test_confidence_falls_with_the_roughness_around_a_hole() -> None:
 def test_two_sheets_close_together_are_repaired_apart() -> None:
     top = punched(bumpy_plate(60, 2.0), *PLACES, radius=0.15)
     under = TriangleMesh(top.vertices - [0, 0, 0.01], top.triangles[:, ::-1])
-    repair = inpaint(joined(top, under), None, RepairOptions(), learn=True)
+    repair = inpaint(joined(top, under), SelfDictionary(), RepairOptions())
     alone = inpaint(top, None, RepairOptions())
     verdicts = [result.verdict for result in repair.results]
     assert verdicts.count("skipped") == 2

@@ -5,7 +5,8 @@ import pytest
 
 from quadpatch.errors import OptionError
 from quadpatch.filling.fill import close_flat
-from quadpatch.inpainters.paper_dictionary import LOCAL_ATOMS, HeightsInpainter, learn_heights
+from quadpatch.inpainters.inpainter import UndamagedSurface
+from quadpatch.inpainters.paper_dictionary import LOCAL_ATOMS, HeightsInpainter, SelfHeights, learn_heights
 from quadpatch.mesh.distance import distance_to_mesh
 from quadpatch.mesh.raycast import RayScene
 from quadpatch.options import DictionaryOptions, HoleOptions, PatchOptions, RepairOptions
@@ -32,12 +33,18 @@ RELIEF = punched(WHOLE, *PLACES, radius=0.1)
 OPTIONS = RepairOptions(patches=PatchOptions(0.3, 16), recipe="paper", dictionary=DictionaryOptions(60, 20))
 
 
+SELF = SelfHeights(OPTIONS.dictionary)
+
+
 class Truth:
     """A model that knows the whole surface: what it predicts are true heights."""
 
     def __init__(self, whole: TriangleMesh, resolution: int) -> None:
         self.whole = whole
         self.resolution = resolution
+
+    def fitted_to(self, undamaged: UndamagedSurface) -> "Truth":
+        return self
 
     def predict(self, patches: Patches, base_heights: FloatArray) -> FloatArray:
         seeds = Seeds(patches.origins, patches.frames, np.zeros(len(patches), np.int64))
@@ -58,7 +65,7 @@ def learned(scale: PatchScale, options: DictionaryOptions, *meshes: TriangleMesh
 
 @pytest.fixture(scope="module")
 def repaired() -> Repair:
-    return inpaint_as_paper(RELIEF, None, OPTIONS, learn=True)
+    return inpaint_as_paper(RELIEF, SELF, OPTIONS)
 
 
 def new_vertices(repair: Repair) -> FloatArray:
@@ -149,14 +156,14 @@ def test_faults_are_named_and_handed_out_all_the_same() -> None:
 
 def test_every_stage_is_gone_through_in_the_order_of_the_paper() -> None:
     stages = Stages()
-    inpaint_as_paper(punched(bumpy_plate(50, 2.0), (0, 0, 0), radius=0.2), None, OPTIONS, stages, learn=True)
+    inpaint_as_paper(punched(bumpy_plate(50, 2.0), (0, 0, 0), radius=0.2), SELF, OPTIONS, stages)
     assert list(stages.seconds) == [
         *("holes", "fill", "smooth", "quadrangulate", "patchify", "learn", "inpaint", "reconstruct", "judge")
     ]
 
 
 def test_the_same_mesh_and_options_give_the_same_bytes(repaired: Repair) -> None:
-    again = inpaint_as_paper(RELIEF, None, OPTIONS, learn=True)
+    again = inpaint_as_paper(RELIEF, SELF, OPTIONS)
     assert again.filled.mesh.vertices.tobytes() == repaired.filled.mesh.vertices.tobytes()
     assert again.filled.mesh.triangles.tobytes() == repaired.filled.mesh.triangles.tobytes()
 
@@ -188,7 +195,7 @@ def test_a_mesh_too_small_for_a_patch_gives_none() -> None:
 
 def test_a_mesh_too_small_to_learn_from_is_closed_with_a_warning() -> None:
     mesh = punched(bumpy_plate(20, 2.0), (0, 0, 0), radius=0.22)
-    repair = inpaint_as_paper(mesh, None, replace(OPTIONS, patches=PatchOptions(length=1.0, overlap=0)), learn=True)
+    repair = inpaint_as_paper(mesh, SELF, replace(OPTIONS, patches=PatchOptions(length=1.0, overlap=0)))
     assert repair.completion is None
     (warning,) = repair.warnings
     assert "the holes were closed, nothing more" in warning
@@ -207,7 +214,7 @@ def test_a_hole_that_no_patch_sees_stays_as_it_was_closed() -> None:
 
 
 def test_a_mesh_without_holes_comes_back() -> None:
-    repair = inpaint_as_paper(sphere(3), None, OPTIONS, learn=True)
+    repair = inpaint_as_paper(sphere(3), SELF, OPTIONS)
     assert (repair.results, repair.completion, repair.warnings) == ([], None, [])
     assert repair.filled.mesh.vertices.tobytes() == sphere(3).vertices.tobytes()
 
