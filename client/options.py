@@ -1,5 +1,6 @@
 """Options that several commands share, and how those of a repair become a job spec."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -8,8 +9,8 @@ import typer
 from pydantic import ValidationError
 
 from client.errors import UsageError
-from client.rule_text import read_rule
 from jobkit.schema import SELF, JobSpec, Recipe, conflict_of
+from shared_rules.rule_text import RuleTextError, read_rule
 
 DEFAULT_URL = "http://127.0.0.1:8000"
 MethodName = Literal["dictionary", "cnn", "smooth"]
@@ -126,7 +127,7 @@ def make_spec(mesh_id: str, holes: HoleChoice, method: MethodChoice, **rest: Any
     UsageError
         If an option is out of its range, or does not go with the method or with another option.
     """
-    chosen = _given({**vars(holes), "rules": [read_rule(text) for text in holes.rules or ()]})
+    chosen = _given({**vars(holes), "rules": _rules(holes.rules)})
     values = {"mesh_id": mesh_id, "holes": chosen, "method": _method(method), **_given(rest)}
     try:
         spec = JobSpec.model_validate(values)
@@ -164,3 +165,10 @@ def _method(choice: MethodChoice) -> dict[str, Any]:
 
 def _given(values: dict[str, Any]) -> dict[str, Any]:
     return {name: value for name, value in values.items() if value not in (None, [], {})}
+
+
+def _rules(texts: Sequence[str] | None) -> list[dict[str, Any]]:
+    try:
+        return [read_rule(text) for text in texts or ()]
+    except RuleTextError as error:
+        raise UsageError(str(error)) from error

@@ -41,7 +41,7 @@
     └── StaleAttemptError           stale_attempt         the job has moved on; this attempt may write no more
 """
 
-from jobkit.text import printable
+from shared_rules.text import printable
 
 
 class JobkitError(Exception):

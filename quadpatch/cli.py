@@ -23,8 +23,17 @@ from rich.text import Text
 from quadpatch import types
 from quadpatch.errors import OptionError, QuadpatchError
 from quadpatch.formats.output_files import check_folder, check_outputs, is_stream, write_whole
-from quadpatch.options import Cap, DictionaryOptions, HoleOptions, NetworkOptions, PatchOptions, Recipe, RepairOptions
-from quadpatch.rule_text import read_rule
+from quadpatch.options import (
+    DictionaryOptions,
+    HoleOptions,
+    HoleRule,
+    NetworkOptions,
+    PatchOptions,
+    Recipe,
+    RepairOptions,
+)
+from shared_rules.hole_selection import Cap
+from shared_rules.rule_text import RuleTextError, read_rule
 
 if TYPE_CHECKING:
     from quadpatch.repair import RepairedFile
@@ -109,7 +118,7 @@ def fill(  # noqa: PLR0913, PLR0917  one argument per flag
                 tuple(hole) if hole else None,
                 include_borders,
                 cap,
-                tuple(read_rule(text) for text in rule or ()),
+                tuple(_rule(text) for text in rule or ()),
             ),
             PatchOptions(patch_length, resolution, overlap),
             seed,
@@ -166,6 +175,14 @@ def _centre(row: dict[str, Any]) -> str:
     """Write the centre of a hole to a thousandth of its diameter."""
     digits = 3 - math.floor(math.log10(row["diameter"])) if row["diameter"] > 0 else 3
     return " ".join(f"{round(coordinate, digits) + 0.0:.7g}" for coordinate in row["centre"])
+
+
+def _rule(text: str) -> HoleRule:
+    """Read one `--rule`; what is no rule raises OptionError."""
+    try:
+        return HoleRule.from_dict(read_rule(text))
+    except RuleTextError as error:
+        raise OptionError(str(error)) from error
 
 
 def _tolerance(word: str) -> float | Literal["auto"]:

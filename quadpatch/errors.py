@@ -19,7 +19,7 @@
         └── NoQuadsError        no_quads              the base surface is too small or too thin for one quad
 """
 
-from quadpatch.printable import printable
+from shared_rules.text import printable
 
 
 class QuadpatchError(Exception):

@@ -3,10 +3,10 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from functools import cached_property
 from typing import Any, Literal, get_args
 
 from quadpatch.errors import OptionError
+from shared_rules.hole_selection import MODEL_FILLS_ONLY, Cap, HoleKind, RuleAction, names_fills
 
 RESOLUTION_RANGE = (8, 128)
 OVERLAP_RANGE = (0, 8)
@@ -19,16 +19,6 @@ _NESTED = ("holes", "patches", "dictionary", "network")
 
 # How a model's patches become surface: `default` is this project's own way, `paper` that of the paper, step by step.
 Recipe = Literal["default", "paper"]
-
-# What a boundary loop is (`quadpatch.mesh.hole_kinds`).
-HoleKind = Literal["hole", "slit", "open_end", "border"]
-
-# How a hole is closed: by the model of the repair, by geometry alone, or by a plane patch.
-HoleAction = Literal["model", "smooth", "flat"]
-RuleAction = Literal["skip", "model", "smooth", "flat"]
-Cap = Literal["flat"]
-
-MODEL_FILLS_ONLY = "holes.cap and the actions smooth and flat of holes.rules go with the recipe default only"
 
 
 @dataclass(frozen=True)
@@ -62,15 +52,10 @@ class HoleRule:
         for name in ("min_diameter", "max_diameter", "max_perimeter"):
             _check_length(f"holes.rules.{name}", getattr(self, name))
 
-    @cached_property
-    def id_set(self) -> frozenset[int] | None:
-        """The ids, for look-ups; None where it names none."""
-        return None if self.ids is None else frozenset(self.ids)
-
-    @property
-    def limits_size(self) -> bool:
-        """Whether it says which sizes it is about, by a maximum or by ids: then no automatic limit holds beside it."""
-        return self.ids is not None or self.max_diameter is not None or self.max_perimeter is not None
+    @classmethod
+    def from_dict(cls, values: Mapping[str, Any]) -> "HoleRule":
+        """Build from plain values; an unknown name raises TypeError."""
+        return cls(**_with_ids(values))
 
 
 @dataclass(frozen=True)
@@ -114,24 +99,8 @@ class HoleOptions:
     @classmethod
     def from_dict(cls, values: Mapping[str, Any]) -> "HoleOptions":
         """Build from plain values; an unknown name raises TypeError."""
-        rules = tuple(HoleRule(**_with_ids(rule)) for rule in values.get("rules") or ())
+        rules = tuple(HoleRule.from_dict(rule) for rule in values.get("rules") or ())
         return cls(**{**_with_ids(values), "rules": rules})
-
-    @cached_property
-    def id_set(self) -> frozenset[int] | None:
-        """The ids, for look-ups; None where none were given."""
-        return None if self.ids is None else frozenset(self.ids)
-
-    @property
-    def names_fills(self) -> bool:
-        """Whether some holes are to be closed in another way than by the model."""
-        return self.cap is not None or any(rule.action in ("smooth", "flat") for rule in self.rules)
-
-    @property
-    def is_automatic(self) -> bool:
-        """Whether sizes are left to the automatic rule: the user chose none, and no loops."""
-        given = (self.max_diameter, self.max_perimeter, self.ids)
-        return not self.all_but_largest and all(value is None for value in given)
 
 
 def _with_ids(values: Mapping[str, Any]) -> dict[str, Any]:
@@ -239,7 +208,7 @@ class RepairOptions:
         check_weld_tolerance(self.weld_tolerance)
         if self.recipe not in get_args(Recipe):
             raise OptionError(f"recipe must be one of {', '.join(get_args(Recipe))}; it is {self.recipe!r}")
-        if self.recipe == "paper" and self.holes.names_fills:
+        if self.recipe == "paper" and names_fills(self.holes):
             raise OptionError(MODEL_FILLS_ONLY)
         if self.recipe != "paper" and self.dictionary != DictionaryOptions():
             raise OptionError("dictionary.atoms and dictionary.nonzero go with the recipe paper only")

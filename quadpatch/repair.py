@@ -18,14 +18,14 @@ from quadpatch.inpainters.dictionary import DictionaryInpainter, SelfDictionary
 from quadpatch.inpainters.inpainter import Inpainter
 from quadpatch.inpainters.model_file import Model, load_model, shipped_model
 from quadpatch.inpainters.paper_dictionary import HeightsInpainter, SelfHeights
-from quadpatch.mesh.holes import find_holes, select_holes
+from quadpatch.mesh.holes import find_holes
 from quadpatch.mesh.measures import diagonal
 from quadpatch.mesh.near_vertices import Tolerance
 from quadpatch.mesh.orientation import triangles_facing_flipped
 from quadpatch.mesh.weld import Weld, weld
 from quadpatch.options import DictionaryOptions, NetworkOptions, RepairOptions, check_weld_tolerance
 from quadpatch.recipes.default import inpaint
-from quadpatch.recipes.paper import NOTHING_TO_DO, inpaint_as_paper
+from quadpatch.recipes.paper import inpaint_as_paper
 from quadpatch.recipes.result import Repair
 from quadpatch.report import (
     UNKNOWN_UNIT,
@@ -38,6 +38,7 @@ from quadpatch.report import (
 )
 from quadpatch.stages import Stages, harmless
 from quadpatch.types import Progress, TriangleMesh, no_progress
+from shared_rules.hole_selection import Choice, choose_holes, join_islands
 
 SMOOTH = "smooth"
 SELF = "self"
@@ -45,6 +46,10 @@ SELF_NETWORK = "self-network"
 
 # The network that is fitted to a mesh where `SELF_NETWORK` is asked for.
 BASE_NETWORK = "general-residual"
+
+NOTHING_TO_DO = (
+    "the recipe paper is a way to use a learned model; with smooth there is none: drop the recipe or take self"
+)
 
 # Formats whose lengths have a unit by definition, or by the default that our writer leaves standing.
 IMPLIED_UNITS = {".glb": "meter", ".gltf": "meter", ".3mf": "millimeter"}
@@ -152,11 +157,9 @@ def inspect_file(source: Path, weld_tolerance: Tolerance = "auto") -> dict[str, 
     scan, welded = _read(source, weld_tolerance)
     mesh = welded.mesh
     holes = find_holes(mesh)
-    selection = select_holes(holes, RepairOptions().holes, diagonal(mesh))
     hosts = hosts_of(mesh, holes, [hole for hole in holes if hole.is_manifold])
-    host_of = {i: chosen[0] for i, found in hosts.items() if (chosen := [j for j in found if j in selection.actions])}
-    reasons = {i: reason for i, (_, reason) in selection.skipped.items()}
-    reasons |= {island: f"joined to hole {host}, in which it lies" for island, host in host_of.items()}
+    lies_in = [hosts.get(hole.id, []) for hole in holes]
+    choices = join_islands(lies_in, choose_holes(holes, RepairOptions().holes, diagonal(mesh)))
     facts: dict[str, Any] = json_ready(
         {
             **describe_mesh(scan, mesh),
@@ -166,16 +169,20 @@ def inspect_file(source: Path, weld_tolerance: Tolerance = "auto") -> dict[str, 
             "holes": [
                 {
                     **describe_hole(hole),
-                    "chosen": hole.id not in selection.skipped or hole.id in host_of,
-                    "action": selection.actions.get(host_of.get(hole.id, hole.id)),
+                    "chosen": choice.action is not None,
+                    "action": choice.action,
                     "lies_in": hosts.get(hole.id, []),
-                    "reason": reasons.get(hole.id),
+                    "reason": _reason(choice),
                 }
-                for hole in holes
+                for hole, choice in zip(holes, choices, strict=True)
             ],
         }
     )
     return facts
+
+
+def _reason(choice: Choice) -> str | None:
+    return choice.reason if choice.joined_to is None else f"joined to hole {choice.joined_to}, in which it lies"
 
 
 def _read(source: Path, weld_tolerance: Tolerance) -> tuple[Scan, Weld]:

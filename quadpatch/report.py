@@ -16,10 +16,10 @@ from quadpatch.mesh.holes import Hole
 from quadpatch.mesh.measures import mean_edge_length
 from quadpatch.mesh.weld import Weld, WeldCounts
 from quadpatch.options import RepairOptions
-from quadpatch.printable import printable
 from quadpatch.recipes.result import HoleResult, Repair
 from quadpatch.stages import Stages
 from quadpatch.types import TriangleMesh
+from shared_rules.text import printable
 
 VERDICTS = ("filled", "filled_smooth", "skipped", "refused")
 UNKNOWN_UNIT = "mesh units"

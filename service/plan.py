@@ -3,7 +3,7 @@
 from jobkit.errors import UnknownHoleError
 from jobkit.schema import DictionaryMethod, HoleSelection, JobSpec, Limits, MeshFacts, Plan, PlannedHole, ResolvedModel
 from jobkit.settings import Settings
-from service.hole_selection import choose_holes, join_islands
+from shared_rules.hole_selection import choose_holes, join_islands, unknown_hole
 
 
 def make_plan(spec: JobSpec, facts: MeshFacts, model: ResolvedModel, settings: Settings) -> Plan:
@@ -17,9 +17,15 @@ def make_plan(spec: JobSpec, facts: MeshFacts, model: ResolvedModel, settings: S
     check_hole_ids(spec.holes, facts)
     choices = choose_holes(facts.holes, spec.holes, facts.diagonal)
     if not (isinstance(spec.method, DictionaryMethod) and spec.method.recipe == "paper"):
-        choices = join_islands(facts.holes, choices)  # the paper knows no islands
+        choices = join_islands([hole.lies_in for hole in facts.holes], choices)  # the paper knows no islands
     holes = [
-        PlannedHole(**hole.model_dump(), selected=choice.reason is None, **vars(choice))
+        PlannedHole(
+            **hole.model_dump(),
+            selected=choice.action is not None,
+            reason=choice.code,
+            action=choice.action,
+            joined_to=choice.joined_to,
+        )
         for hole, choice in zip(facts.holes, choices, strict=True)
     ]
     limits = Limits(
@@ -38,9 +44,6 @@ def make_plan(spec: JobSpec, facts: MeshFacts, model: ResolvedModel, settings: S
 
 def check_hole_ids(selection: HoleSelection, facts: MeshFacts) -> None:
     """Raise UnknownHoleError if an explicit id names no hole."""
-    named = {i for ids in (selection.ids, *(rule.ids for rule in selection.rules)) for i in ids or ()}
-    unknown = sorted(named - {hole.id for hole in facts.holes})
-    if unknown:
-        raise UnknownHoleError(
-            f"no hole has the id {unknown[0]}; this mesh has {len(facts.holes)} holes, counted from 0"
-        )
+    message = unknown_hole(facts.holes, selection)
+    if message is not None:
+        raise UnknownHoleError(message)

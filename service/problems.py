@@ -13,7 +13,7 @@ from starlette.responses import JSONResponse
 from jobkit import errors
 from jobkit.models import errors as model_errors
 from jobkit.schema import PROBLEM_MEDIA_TYPE, FieldError, Problem
-from jobkit.text import printable
+from shared_rules.text import printable
 
 # The narrowest class decides; classes that are not here are faults of this service.
 STATUS_BY_ERROR: Mapping[type[errors.JobkitError], HTTPStatus] = {

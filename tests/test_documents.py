@@ -113,7 +113,7 @@ def test_every_state_verdict_and_stage_is_explained() -> None:
 
 def test_every_reason_of_a_hole_is_explained() -> None:
     method = read("docs/method.md")
-    source = read("quadpatch/mesh/holes.py") + read("quadpatch/recipes/assessment.py")
+    source = read("shared_rules/hole_selection.py") + read("quadpatch/recipes/assessment.py")
     # A code is followed by a sentence, or stands behind its verdict.
     reasons = re.findall(r'"([a-z_]+)",\s*f?"[^"]* [^"]*"', source)
     reasons += re.findall(r'"(?:filled_smooth|refused)", "(\w+)"', source)

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from quadpatch.inpainters.model_file import Card
 from quadpatch.patches.normalisation import HEIGHTS, NORMALISATION
+from shared_rules.dictionary_file import Card
 from training.dictionary import Learned, LearningOptions
 from training.patterns import PATTERNS
 from training.sources import Source, corpus_sha256

@@ -27,7 +27,7 @@ import enum
 import errno
 from dataclasses import dataclass
 
-from jobkit.text import printable
+from shared_rules.text import printable
 
 _LONGEST_CODE = 64
 # A full disk or a store that is away comes back by itself or by an operator's hand; asking every moment helps neither.

@@ -28,7 +28,7 @@ from sqlalchemy.orm import Session
 
 from jobkit.database.write_queue import BUSY_TIMEOUT_MS, WriteQueue
 from jobkit.errors import DatabaseUnavailableError, SettingsError
-from jobkit.text import encodable
+from shared_rules.text import encodable
 
 # Any number will do, as long as all processes of this project take the same one.
 _MIGRATION_LOCK = 0x51554144

@@ -20,12 +20,13 @@ from jobkit.database.session import Database
 from jobkit.database.tables import AliasRow, DeletedModelRow, ModelRow
 from jobkit.errors import ModelKindError, NameTakenError
 from jobkit.models.errors import ModelDeprecatedError
-from jobkit.models.header import Card, artifact_format, read_dictionary_card, to_wire_card
+from jobkit.models.header import artifact_format, dictionary_card, to_wire_card
 from jobkit.models.network_header import check_network, read_network_card
 from jobkit.models.rows import check_proven, meant_row, to_alias, to_model, to_version, version_row
 from jobkit.schema import SELF, Alias, Model, ModelKind, ModelList, ModelState, ModelVersion
 from jobkit.storage.base import CHUNK_BYTES, ObjectStore, StoredObject
 from jobkit.storage.removals import assure
+from shared_rules.dictionary_file import Card
 
 MODEL_PREFIX = "models"
 # Of one name, published at the same moment.
@@ -224,7 +225,7 @@ class Registry:
             if kind_of_file == "onnx":
                 check_network(path)
                 return "autoencoder", artifact, card or read_network_card(path) or {}
-            return "dictionary", artifact, read_dictionary_card(path)
+            return "dictionary", artifact, dictionary_card(path)
 
     def _insert(self, row: ModelRow, version: int | None) -> tuple[ModelVersion, bool]:
         with self._database.write() as session:

@@ -41,8 +41,6 @@ from jobkit.schema.spec import (
     DictionaryMethod,
     Fitting,
     Format,
-    HoleAction,
-    HoleKind,
     HoleRule,
     HoleSelection,
     JobSpec,
@@ -74,6 +72,7 @@ from jobkit.schema.webhooks import (
     WebhookList,
     WebhookWithSecret,
 )
+from shared_rules.hole_selection import HoleAction, HoleKind
 
 __all__ = [
     "DEFAULT_MODEL",

@@ -7,8 +7,9 @@ from pydantic import Field
 from jobkit.schema.base import JobId, MeshId, Moment, Response, Sha256
 from jobkit.schema.meshes import Hole
 from jobkit.schema.models import ResolvedModel
-from jobkit.schema.spec import HoleAction, JobSpec, Limits, OutputFormat
+from jobkit.schema.spec import JobSpec, Limits, OutputFormat
 from jobkit.schema.states import JobState
+from shared_rules.hole_selection import HoleAction
 
 FileRole = Literal["result", "report", "preview", "closeups"]
 STAGES = (

@@ -5,8 +5,9 @@ from typing import Annotated, Any
 from pydantic import Field, model_validator
 
 from jobkit.schema.base import MeshId, Moment, Response
-from jobkit.schema.spec import Format, HoleKind
+from jobkit.schema.spec import Format
 from jobkit.schema.states import MeshState
+from shared_rules.hole_selection import HoleKind
 
 Point = Annotated[list[float], Field(min_length=3, max_length=3)]
 
@@ -51,6 +52,11 @@ class Hole(Response):
         description="Ids of the holes that it lies in as the border of an island, the narrowest first, at most 16.",
         examples=[[0]],
     )
+
+    @property
+    def n_edges(self) -> int:
+        """Edges of the rim."""
+        return self.edges
 
     @model_validator(mode="before")
     @classmethod

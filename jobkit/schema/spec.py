@@ -5,6 +5,7 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import Field, model_validator
 
 from jobkit.schema.base import REFERENCE_PATTERN, TEXT_PATTERN, WHOLE, MeshId, Request
+from shared_rules.hole_selection import MODEL_FILLS_ONLY, Cap, HoleKind, RuleAction, names_fills
 
 Format = Literal["ply", "stl", "obj", "off", "glb", "gltf", "3mf"]
 OutputFormat = Literal["ply", "stl", "obj", "off", "glb", "3mf"]
@@ -105,8 +106,6 @@ class SmoothMethod(Request):
 Method = Annotated[DictionaryMethod | CnnMethod | SmoothMethod, Field(discriminator="method")]
 
 
-HoleKind = Literal["hole", "slit", "open_end", "border"]
-HoleAction = Literal["model", "smooth", "flat"]
 HoleIds = Annotated[list[HoleId], Field(min_length=1, max_length=100_000)]
 
 
@@ -116,7 +115,7 @@ class HoleRule(Request):
     A rule that names neither `ids` nor a `kind` passes by the borders and open ends that no other option asks for.
     """
 
-    action: Literal["skip", "model", "smooth", "flat"] = Field(
+    action: RuleAction = Field(
         description="`skip` leaves them open. `model`: as `method` says. `smooth`: by geometry alone. `flat`: by a "
         "plane patch.",
         examples=["flat"],
@@ -159,7 +158,7 @@ class HoleSelection(Request):
     include_borders: bool = Field(
         default=False, description="Treat outer borders of pieces like holes; else they stay open, whatever their size."
     )
-    cap: Literal["flat"] | None = Field(
+    cap: Cap | None = Field(
         default=None,
         description="`flat`: close open ends (of tubes, of cut-off bases) by a plane patch; null: leave them open.",
         examples=["flat"],
@@ -238,12 +237,11 @@ def conflict_of(spec: RepairSpec) -> str | None:
     It is asked where a job is made, and not part of reading a spec: jobs that were stored before a rule came up are
     still read.
     """
-    rules = spec.holes.rules
-    if spec.weld_tolerance != "auto" and any(rule.ids is not None for rule in rules):
+    if spec.weld_tolerance != "auto" and any(rule.ids is not None for rule in spec.holes.rules):
         return "ids of holes.rules name holes found with the weld_tolerance auto: drop one of the two"
     is_paper = isinstance(spec.method, DictionaryMethod) and spec.method.recipe == "paper"
-    if is_paper and (spec.holes.cap is not None or any(rule.action in ("smooth", "flat") for rule in rules)):
-        return "holes.cap and the actions smooth and flat of holes.rules go with the recipe default only"
+    if is_paper and names_fills(spec.holes):
+        return MODEL_FILLS_ONLY
     return None
 
 

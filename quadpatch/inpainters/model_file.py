@@ -20,11 +20,10 @@ from quadpatch.options import Recipe
 from quadpatch.patches.normalisation import HEIGHTS, NORMALISATION
 from quadpatch.sparse.dictionary import Dictionary
 from quadpatch.types import FloatArray
+from shared_rules.dictionary_file import MAX_HEADER_BYTES, Card, DictionaryFileError, read_dictionary_card
 
 SHIPPED_MODELS = Path(__file__).parent.parent / "shipped_models"
 SUFFIXES = (".safetensors", ".onnx")
-MAX_FILE_BYTES = 256 * 1024**2
-MAX_HEADER_BYTES = 1024**2
 MAX_RESOLUTION = 128
 MAX_ATOMS = 16384
 # Files may round atoms to float32, or keep a few digits less; further from 1 they are no atoms.
@@ -32,8 +31,6 @@ FILE_NORM_TOLERANCE = 1e-3
 
 # What dictionaries say of their signals, and the recipe that makes such signals.
 RECIPES: dict[str, Recipe] = {NORMALISATION: "default", HEIGHTS: "paper"}
-
-Card = dict[str, Any]
 
 
 @dataclass(frozen=True)
@@ -139,20 +136,14 @@ def model_card(path: str | Path) -> Card:
         If the file is no dictionary file, or its card is missing or no JSON object.
     """
     path = Path(path)
-    _check_container(path)
+    if not path.is_file():
+        raise ModelError(f"no model file {path}")
+    if path.suffix != ".safetensors":
+        raise ModelError(f"a model file ends in .safetensors or .onnx; got {path.name}")
     try:
-        with safe_open(path, framework="numpy") as file:
-            text = (file.metadata() or {}).get("card")
-        if text is None:
-            raise ModelError(f"{path.name} has no card in its metadata")
-        card = json.loads(text)
-    except (SafetensorError, OSError) as error:
-        raise ModelError(f"{path.name} is no safetensors file: {error}") from error
-    except (ValueError, RecursionError) as error:
-        raise ModelError(f"the card of {path.name} is no JSON: {error}") from error
-    if not isinstance(card, dict) or card.get("kind") != "dictionary":
-        raise ModelError(f"the card of {path.name} is not that of a dictionary")
-    return card
+        return read_dictionary_card(path)
+    except DictionaryFileError as error:
+        raise ModelError(f"{path.name}: {error}") from error
 
 
 def shipped_model(name: str) -> Path:
@@ -177,32 +168,13 @@ def shipped_model(name: str) -> Path:
     return shipped[max(matching, key=lambda key: versions[key])]
 
 
-def _check_container(path: Path) -> None:
-    """Bound what the safetensors reader is asked to take in."""
-    if not path.is_file():
-        raise ModelError(f"no model file {path}")
-    if path.suffix != ".safetensors":
-        raise ModelError(f"a model file ends in .safetensors or .onnx; got {path.name}")
-    size = path.stat().st_size
-    if size > MAX_FILE_BYTES:
-        raise ModelError(f"{path.name} has {size} bytes; the limit is {MAX_FILE_BYTES}")
-    with path.open("rb") as file:
-        header_bytes = int.from_bytes(file.read(8), "little")
-    if header_bytes > min(MAX_HEADER_BYTES, size):
-        raise ModelError(f"{path.name} claims a header of {header_bytes} bytes; the limit is {MAX_HEADER_BYTES}")
-
-
 def _read_atoms(path: Path) -> FloatArray:
     """Read the atoms and bring them from the file's precision to unit norm."""
     try:
         with safe_open(path, framework="numpy") as file:
-            if list(file.keys()) != ["atoms"]:
-                raise ModelError(f"{path.name} must hold the tensor 'atoms' alone; it holds {list(file.keys())[:5]}")
-            view = file.get_slice("atoms")
-            shape, dtype = view.get_shape(), view.get_dtype()
-            is_sized = len(shape) == 2 and 1 <= shape[0] <= MAX_RESOLUTION**2 and 1 <= shape[1] <= MAX_ATOMS
-            if not is_sized or dtype not in ("F32", "F64"):
-                raise ModelError(f"atoms must be a float matrix of sane size; got {dtype} {shape}")
+            n_atoms = file.get_slice("atoms").get_shape()[1]
+            if n_atoms > MAX_ATOMS:
+                raise ModelError(f"{path.name} has {n_atoms} atoms; the limit is {MAX_ATOMS}")
             stored = file.get_tensor("atoms")
     except (SafetensorError, OSError) as error:
         raise ModelError(f"{path.name} is no safetensors file: {error}") from error

@@ -10,8 +10,8 @@ from quadpatch.mesh.loop_shapes import LoopShapes, measure_loops, perimeter
 from quadpatch.mesh.normals import unit
 from quadpatch.mesh.pieces import find_pieces
 from quadpatch.mesh.rims import Rims, rims_of
-from quadpatch.options import HoleKind
 from quadpatch.types import FloatArray, IntArray, TriangleMesh
+from shared_rules.hole_selection import HoleKind
 
 Vector = tuple[float, float, float]
 _ORIGIN: Vector = (0.0, 0.0, 0.0)
@@ -73,12 +73,6 @@ class Hole:
     def n_edges(self) -> int:
         """Edges, and vertices, of the loop."""
         return len(self.loop)
-
-    @property
-    def n_expected_vertices(self) -> int:
-        """About as many new vertices as a fill will have: equilateral triangles as large as the rim's edges."""
-        edge = self.perimeter / max(self.n_edges, 1)
-        return round(self.area / (np.sqrt(0.75) * edge**2)) if edge > 0 else 0
 
 
 def find_holes(mesh: TriangleMesh) -> list[Hole]:

@@ -17,13 +17,14 @@ from quadpatch.filling.islands import JoinedRims, join_islands
 from quadpatch.inpainters.inpainter import Inpainter
 from quadpatch.mesh.holes import Selection, find_holes, select_holes
 from quadpatch.mesh.measures import diagonal, mean_edge_length
-from quadpatch.options import HoleAction, RepairOptions
+from quadpatch.options import RepairOptions
 from quadpatch.recipes.assessment import assess
 from quadpatch.recipes.learned_detail import CompletionInput, complete
 from quadpatch.recipes.result import Repair
 from quadpatch.recipes.verification import limited_to, verified_results, without_faults
 from quadpatch.stages import Stages
 from quadpatch.types import BoolArray, TriangleMesh, Triangles
+from shared_rules.hole_selection import HoleAction
 
 # From rough to smooth: a noisy or sharp-edged surface is continued best by the first, a smooth one by the last.
 FAIRING_ENERGIES = (

@@ -23,7 +23,7 @@ from quadpatch.mesh.holes import Hole, Selection, find_holes, select_holes
 from quadpatch.mesh.measures import diagonal, mean_edge_length
 from quadpatch.mesh.raycast import RayScene
 from quadpatch.mesh.smoothing import laplacian_smooth
-from quadpatch.options import MODEL_FILLS_ONLY, PatchOptions, RepairOptions
+from quadpatch.options import PatchOptions, RepairOptions
 from quadpatch.patches.height_map import sample_height_maps
 from quadpatch.patches.layout import lay_out, pick_patches, seeds_near, take
 from quadpatch.patches.scale import PatchScale
@@ -35,6 +35,7 @@ from quadpatch.reconstruction.displacement import rim_vertices
 from quadpatch.reconstruction.placement import place
 from quadpatch.stages import Stages
 from quadpatch.types import BoolArray, FloatArray, Patches, TriangleMesh, Triangles
+from shared_rules.hole_selection import MODEL_FILLS_ONLY
 
 # The paper gives patch length, resolution and overlap for each of its objects. Where none are given, patches are twice
 # as wide as the holes, nearly, with bins as in the paper's networks and every vertex in about nine patches.
@@ -44,10 +45,6 @@ OVERLAP = 2
 SMOOTHING_ITERATIONS = 30
 # Bins much finer than the mesh show its triangles.
 LEAST_EDGES_PER_BIN = 0.5
-
-NOTHING_TO_DO = (
-    "the recipe paper is a way to use a learned model; with smooth there is none: drop the recipe or take self"
-)
 
 # Nothing is faired.
 NO_FAIRING = EnergyBlend.of_one(Energy())

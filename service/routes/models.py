@@ -8,12 +8,10 @@ from starlette.concurrency import run_in_threadpool
 from starlette.responses import Response
 
 from jobkit.database.idempotency import note_request, refuse_conflict
-from jobkit.models.header import Card
 from jobkit.models.proofs import reference_of
 from jobkit.models.registry import MODEL_PREFIX, MOST_VERSIONS
 from jobkit.schema import Alias, AliasTarget, Model, ModelList, ModelState, ModelVersion
 from jobkit.schema.base import NAME_PATTERN
-from jobkit.strict_json import StrictJsonError, read_json
 from service.content import OCTETS, Content, content_response
 from service.idempotency import note_replayed
 from service.problems import RETRY_AFTER_S, ProblemError, invalid_request
@@ -38,6 +36,8 @@ from service.strict_validation import StrictRoute
 from service.submission import request_proof
 from service.uploads import UploadRules, receive_upload
 from service.waiting import PreferHeader, note_applied, preferred_wait_s
+from shared_rules.dictionary_file import Card
+from shared_rules.strict_json import StrictJsonError, read_json
 
 router = APIRouter(tags=["models"], route_class=StrictRoute)
 

@@ -8,7 +8,6 @@ from starlette.concurrency import run_in_threadpool
 from starlette.responses import Response
 
 from jobkit.schema import JobSpec, RepairSpec
-from jobkit.strict_json import StrictJsonError, read_json
 from service.formats import clean_filename
 from service.problems import invalid_request
 from service.routes.common import FILE, IdempotencyKey, problems
@@ -19,6 +18,7 @@ from service.strict_validation import StrictRoute
 from service.submission import Submission
 from service.uploads import UploadRules, receive_upload
 from service.waiting import PreferHeader
+from shared_rules.strict_json import StrictJsonError, read_json
 
 router = APIRouter(tags=["jobs"], route_class=StrictRoute)
 

@@ -9,14 +9,6 @@ from quadpatch.options import DictionaryOptions, HoleOptions, NetworkOptions, Pa
 def test_nothing_given_means_every_automatic_rule() -> None:
     assert RepairOptions.from_dict({}) == RepairOptions()
     assert RepairOptions.from_dict({"holes": None, "patches": {}}) == RepairOptions()
-    assert RepairOptions().holes.is_automatic
-
-
-@pytest.mark.parametrize(
-    "holes", [{"max_diameter": 1.0}, {"max_perimeter": 1.0}, {"all_but_largest": True}, {"ids": []}, {"ids": [0]}]
-)
-def test_any_rule_about_holes_ends_the_automatic_one(holes: dict[str, Any]) -> None:
-    assert not RepairOptions.from_dict({"holes": holes}).holes.is_automatic
 
 
 def test_plain_values_become_options() -> None:

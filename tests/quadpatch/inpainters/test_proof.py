@@ -154,7 +154,7 @@ def test_a_network_may_leave_the_sides_of_its_output_open(tmp_path: Path) -> Non
         ({"normalisation": "none of ours"}, "normalisation"),
         ({"scale": 2.0}, "unit norm"),
         ({"scale": np.nan}, "unit norm"),
-        ({"kind": "autoencoder"}, "not that of a dictionary"),
+        ({"kind": "autoencoder"}, "not 'dictionary'"),
         ({"patch_resolution": 7}, "."),
     ],
 )

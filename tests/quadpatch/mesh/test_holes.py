@@ -2,10 +2,11 @@ import numpy as np
 import pytest
 
 from quadpatch.errors import OptionError
-from quadpatch.mesh.holes import AUTO_DIAMETER_SHARE, Hole, find_holes, select_holes
+from quadpatch.mesh.holes import Hole, find_holes, select_holes
 from quadpatch.mesh.measures import diagonal
-from quadpatch.options import HoleKind, HoleOptions, HoleRule
+from quadpatch.options import HoleOptions, HoleRule
 from quadpatch.types import TriangleMesh
+from shared_rules.hole_selection import AUTO_DIAMETER_SHARE, HoleKind
 from tests.quadpatch.shapes import joined, open_grid, punched
 
 

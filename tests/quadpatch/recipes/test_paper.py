@@ -3,7 +3,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from quadpatch.errors import OptionError
 from quadpatch.filling.fill import close_flat
 from quadpatch.inpainters.inpainter import UndamagedSurface
 from quadpatch.inpainters.paper_dictionary import LOCAL_ATOMS, HeightsInpainter, SelfHeights, learn_heights
@@ -231,15 +230,10 @@ def test_holes_that_were_not_chosen_stay_open() -> None:
     assert verdicts(repair) == [("skipped", "not_chosen"), ("filled", "")]
 
 
-def test_without_a_model_there_is_nothing_to_do() -> None:
-    with pytest.raises(OptionError, match="drop the recipe or take self"):
-        inpaint_as_paper(RELIEF, None, OPTIONS)
-
-
 def test_what_is_asked_for_beats_the_rule_of_thumb_and_the_model_beats_both() -> None:
     chosen = PatchOptions(length=0.3, resolution=20, overlap=0)
     assert paper_scale([0.1, 0.2], 0.001, chosen) == PatchScale(0.3, 20, 0)
-    assert paper_scale([0.1, 0.2], 0.001, chosen, Truth(RELIEF, 12)).resolution == 12
+    assert paper_scale([0.1, 0.2], 0.001, chosen, 12).resolution == 12
     automatic = paper_scale([0.1, 0.2], 0.001, PatchOptions())
     assert (automatic.resolution, automatic.overlap) == (RESOLUTION, OVERLAP)
     assert 0.1 < automatic.length < 0.4
@@ -248,6 +242,6 @@ def test_what_is_asked_for_beats_the_rule_of_thumb_and_the_model_beats_both() ->
 
 
 def test_the_finest_networks_see_as_much_surface_as_the_others() -> None:
-    coarse, fine = (paper_scale([0.1], 1.0, PatchOptions(), Truth(RELIEF, n)) for n in (RESOLUTION, 100))
+    coarse, fine = (paper_scale([0.1], 1.0, PatchOptions(), n) for n in (RESOLUTION, 100))
     assert fine == PatchScale(coarse.length, 100, coarse.overlap)
     assert paper_scale([0.1], 1.0, PatchOptions(resolution=48)).length == 2 * coarse.length

@@ -3,7 +3,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from quadpatch.errors import QuadpatchError, ReadError
-from quadpatch.printable import LONGEST, printable
+from shared_rules.text import LONGEST_MESSAGE, printable
 
 
 @pytest.mark.parametrize(
@@ -26,9 +26,9 @@ def test_messages_of_errors_are_one_line_in_every_encoding_of_unicode(text: str)
     message = str(QuadpatchError(text * 3))
     message.encode("utf-8")
     assert message.isprintable()
-    assert len(message) <= 12 * LONGEST
+    assert len(message) <= 12 * LONGEST_MESSAGE
 
 
 def test_long_messages_are_cut() -> None:
-    assert len(printable("x" * 10_000)) == LONGEST
-    assert len(printable("\n" * 10_000)) == LONGEST
+    assert len(printable("x" * 10_000)) == LONGEST_MESSAGE
+    assert len(printable("\n" * 10_000)) == LONGEST_MESSAGE

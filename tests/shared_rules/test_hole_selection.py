@@ -1,4 +1,4 @@
-"""The service may not import the method, so its copy of the selection rule is held to the original here."""
+"""Plans and repairs apply one rule to holes and options of their own types: here they are held together."""
 
 import json
 from dataclasses import asdict
@@ -6,14 +6,14 @@ from typing import Any, get_args
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 import jobkit.schema as wire
 from quadpatch.errors import OptionError
 from quadpatch.mesh import holes as method
-from quadpatch.options import Cap, HoleAction, HoleKind, HoleOptions, HoleRule, Recipe, RepairOptions, RuleAction
-from service.hole_selection import choose_holes
+from quadpatch.options import HoleOptions, HoleRule, Recipe, RepairOptions
+from shared_rules.hole_selection import Cap, Choice, HoleAction, HoleKind, RuleAction, choose_holes, join_islands
 
 LENGTHS = st.floats(0.1, 100.0)
 MAYBE_LENGTHS = st.none() | LENGTHS
@@ -65,7 +65,6 @@ def with_all_ids(measures: list[dict[str, Any]]) -> list[dict[str, Any]]:
     return [measures[i % len(measures)] for i in range(8)]
 
 
-@settings(max_examples=400)
 @given(measures=HOLES, diagonal=LENGTHS, options=OPTIONS)
 def test_a_plan_selects_what_the_method_selects(
     measures: list[dict[str, Any]], diagonal: float, options: HoleOptions
@@ -77,7 +76,7 @@ def test_a_plan_selects_what_the_method_selects(
     selection = method.select_holes(theirs, options, diagonal)
     expected = [(selection.skipped.get(hole.id, (None, ""))[0], selection.actions.get(hole.id)) for hole in theirs]
     choices = choose_holes(ours, on_the_wire(options), diagonal)
-    assert [(choice.reason, choice.action) for choice in choices] == expected
+    assert [(choice.code, choice.action) for choice in choices] == expected
 
 
 @given(options=OPTIONS, recipe=st.sampled_from(get_args(Recipe)))
@@ -98,3 +97,37 @@ def test_words_of_the_contract_are_those_of_the_method() -> None:
     assert get_args(wire.HoleAction) == get_args(HoleAction)
     assert set(wire.HoleRule.model_fields) == set(vars(HoleRule("skip")))
     assert set(wire.HoleSelection.model_fields) == set(vars(HoleOptions()))
+
+
+@pytest.mark.parametrize(
+    ("options", "action"),
+    [
+        (HoleOptions(), None),
+        (HoleOptions(max_diameter=50.0), "model"),
+        (HoleOptions(max_perimeter=500.0), "model"),
+        (HoleOptions(all_but_largest=True), "model"),
+        (HoleOptions(ids=(1,)), "model"),
+        (HoleOptions(rules=(HoleRule("flat", ids=(1,)),)), "flat"),
+        (HoleOptions(rules=(HoleRule("smooth", max_diameter=50.0),)), "smooth"),
+        (HoleOptions(rules=(HoleRule("smooth", kind="hole"),)), None),
+        (HoleOptions(rules=(HoleRule("smooth", min_diameter=1.0),)), None),
+    ],
+)
+def test_any_size_that_is_chosen_takes_the_place_of_the_automatic_limit(
+    options: HoleOptions, action: HoleAction | None
+) -> None:
+    wide = [wire.Hole(id=i, planarity=0.0, edges=40, perimeter=120.0, diameter=40.0, area=1e3) for i in range(2)]
+    choice = choose_holes(wide, options, 100.0)[1]
+    assert (choice.action, choice.code) == (action, None if action else "too_wide")
+
+
+@pytest.mark.parametrize(
+    ("hosts", "joined_to"),
+    [([[], [0]], [None, 0]), ([[], [9, 0]], [None, 0]), ([[], [9]], [None, None]), ([[1], []], [None, None])],
+)
+def test_an_island_is_joined_to_the_first_of_its_hosts_that_is_filled(
+    hosts: list[list[int]], joined_to: list[int | None]
+) -> None:
+    joined = join_islands(hosts, [Choice("flat"), Choice(None, "border", "outer border")])
+    assert [choice.joined_to for choice in joined] == joined_to
+    assert [choice.action for choice in joined] == ["flat", None if joined_to[1] is None else "flat"]

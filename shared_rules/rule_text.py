@@ -2,9 +2,11 @@
 
 from typing import Any
 
-from client.errors import UsageError
-
 _LENGTHS = ("min_diameter", "max_diameter", "max_perimeter")
+
+
+class RuleTextError(ValueError):
+    """The text is no rule; the message says how one is written."""
 
 
 def read_rule(text: str) -> dict[str, Any]:
@@ -12,9 +14,14 @@ def read_rule(text: str) -> dict[str, Any]:
 
     The conditions are `min_diameter=`, `max_diameter=`, `max_perimeter=` and `kind=`, and `id=`, which may be repeated.
 
+    Returns
+    -------
+    dict
+        `action`, and the conditions that are given; `ids` as a list.
+
     Raises
     ------
-    UsageError
+    RuleTextError
         If a condition can't be read.
     """
     conditions, _, action = text.rpartition(":")
@@ -24,7 +31,7 @@ def read_rule(text: str) -> dict[str, Any]:
         try:
             _add(values, name, value)
         except (KeyError, ValueError) as error:
-            raise UsageError(
+            raise RuleTextError(
                 f"{condition.strip()!r} is no condition of a rule; write it like max_diameter=5 or kind=slit or id=3"
             ) from error
     return values

@@ -9,7 +9,7 @@ import math
 from itertools import chain
 from typing import Any, NoReturn
 
-from jobkit.text import has_surrogate, printable
+from shared_rules.text import has_surrogate, printable
 
 MOST_LEVELS = 32
 

@@ -1,0 +1,236 @@
+"""Which holes a repair fills, and how: the rules of the user, or the automatic one.
+
+The service plans by it, on the hole list of an analysis; a repair chooses by it, on the holes of its mesh.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from math import inf, sqrt
+from typing import Literal, Protocol
+
+HoleKind = Literal["hole", "slit", "open_end", "border"]
+# How a hole is closed: by the model of the repair, by geometry alone, or by a plane patch.
+HoleAction = Literal["model", "smooth", "flat"]
+RuleAction = Literal["skip", "model", "smooth", "flat"]
+Cap = Literal["flat"]
+
+# An open scan has an outer border that is not to be closed: without a limit from the user, loops wider than this share
+# of the bounding box's diagonal stay open.
+AUTO_DIAMETER_SHARE = 0.25
+
+# Vertices grow with the square of the rim; such a fill would take minutes and gigabytes.
+MAX_NEW_VERTICES = 200_000
+
+MODEL_FILLS_ONLY = "holes.cap and the actions smooth and flat of holes.rules go with the recipe default only"
+
+
+class Hole(Protocol):
+    """A boundary loop; lengths in mesh units, the area in square mesh units."""
+
+    @property
+    def id(self) -> int: ...  # noqa: D102
+    @property
+    def n_edges(self) -> int: ...  # noqa: D102
+    @property
+    def perimeter(self) -> float: ...  # noqa: D102
+    @property
+    def diameter(self) -> float: ...  # noqa: D102
+    @property
+    def area(self) -> float: ...  # noqa: D102
+    @property
+    def kind(self) -> HoleKind: ...  # noqa: D102
+    @property
+    def is_manifold(self) -> bool: ...  # noqa: D102
+
+
+class HoleRule(Protocol):
+    """What to do with the holes that meet all of some conditions."""
+
+    @property
+    def action(self) -> RuleAction: ...  # noqa: D102
+    @property
+    def ids(self) -> Sequence[int] | None: ...  # noqa: D102
+    @property
+    def kind(self) -> HoleKind | None: ...  # noqa: D102
+    @property
+    def min_diameter(self) -> float | None: ...  # noqa: D102
+    @property
+    def max_diameter(self) -> float | None: ...  # noqa: D102
+    @property
+    def max_perimeter(self) -> float | None: ...  # noqa: D102
+
+
+class HoleSelection(Protocol):
+    """Which holes to fill, and how."""
+
+    @property
+    def max_diameter(self) -> float | None: ...  # noqa: D102
+    @property
+    def max_perimeter(self) -> float | None: ...  # noqa: D102
+    @property
+    def all_but_largest(self) -> bool: ...  # noqa: D102
+    @property
+    def ids(self) -> Sequence[int] | None: ...  # noqa: D102
+    @property
+    def include_borders(self) -> bool: ...  # noqa: D102
+    @property
+    def cap(self) -> Cap | None: ...  # noqa: D102
+    @property
+    def rules(self) -> Sequence[HoleRule]: ...  # noqa: D102
+
+
+@dataclass(frozen=True)
+class Choice:
+    """What becomes of one hole.
+
+    Attributes
+    ----------
+    action : str or None
+        How it is closed; None where it stays open.
+    code, reason : str or None
+        Why it stays open: a stable code, and a sentence for people.
+    joined_to : int or None
+        Id of the hole that it lies in, where it is the border of an island that is filled with that hole.
+    """
+
+    action: HoleAction | None
+    code: str | None = None
+    reason: str | None = None
+    joined_to: int | None = None
+
+
+def choose_holes(holes: Sequence[Hole], selection: HoleSelection, diagonal: float) -> list[Choice]:
+    """Apply a selection to every hole of a mesh.
+
+    Parameters
+    ----------
+    holes : sequence of Hole
+    selection : HoleSelection
+    diagonal : float
+        Of the mesh's bounding box, in mesh units; the automatic rule is relative to it.
+    """
+    # A look-up in a long list, once for every hole, takes minutes.
+    chosen_ids = _id_set(selection.ids)
+    rules = [(number, rule, _id_set(rule.ids)) for number, rule in enumerate(selection.rules, 1)]
+    choices = []
+    for hole in holes:
+        number, rule = next(((n, rule) for n, rule, ids in rules if _meets(hole, rule, ids, selection)), (0, None))
+        is_listed = chosen_ids is None or hole.id in chosen_ids
+        reasons = (
+            (
+                not hole.is_manifold,
+                "non_manifold_rim",
+                "its rim touches faces of opposite direction, or three at one edge",
+            ),
+            (not is_listed, "not_chosen", "not among the chosen ids"),
+            *_reasons_to_skip(hole, selection, rule, number),
+            *_limits(hole, selection, rule, diagonal),
+        )
+        code, reason = next(((code, text) for applies, code, text in reasons if applies), (None, None))
+        choices.append(Choice(None, code, reason) if code else Choice(_action(hole, selection, rule)))
+    return choices
+
+
+def join_islands(hosts: Sequence[Sequence[int]], choices: Sequence[Choice]) -> list[Choice]:
+    """Join each island to the narrowest hole around it that is filled.
+
+    Parameters
+    ----------
+    hosts : sequence of sequences of int
+        For each hole, the ids of those that it lies in as the border of an island, the narrowest first.
+    choices : sequence of Choice
+        One for each hole, by its own selection; their position is the id.
+    """
+    actions = {i: choice.action for i, choice in enumerate(choices) if choice.action is not None}
+    narrowest = [next((i for i in ids if i in actions), None) for ids in hosts]
+    return [
+        choice if host is None else Choice(actions[host], joined_to=host)
+        for host, choice in zip(narrowest, choices, strict=True)
+    ]
+
+
+def unknown_hole(holes: Sequence[Hole], selection: HoleSelection) -> str | None:
+    """Say in a sentence which explicit id names no hole; None where all do."""
+    named = {i for ids in (selection.ids, *(rule.ids for rule in selection.rules)) for i in ids or ()}
+    unknown = sorted(named - {hole.id for hole in holes})
+    return f"no hole has the id {unknown[0]}; this mesh has {len(holes)} holes, counted from 0" if unknown else None
+
+
+def names_fills(selection: HoleSelection) -> bool:
+    """Whether some holes are to be closed in another way than by the model; see `MODEL_FILLS_ONLY`."""
+    return selection.cap is not None or any(rule.action in ("smooth", "flat") for rule in selection.rules)
+
+
+def expected_vertices(hole: Hole) -> int:
+    """Estimate the new vertices that a fill will have: equilateral triangles as large as the rim's edges."""
+    edge = hole.perimeter / max(hole.n_edges, 1)
+    return round(hole.area / (sqrt(0.75) * edge**2)) if edge > 0 else 0
+
+
+def _id_set(ids: Sequence[int] | None) -> frozenset[int] | None:
+    return None if ids is None else frozenset(ids)
+
+
+def _meets(hole: Hole, rule: HoleRule, ids: frozenset[int] | None, selection: HoleSelection) -> bool:
+    by_name = rule.ids is not None or rule.kind is not None
+    return (
+        (by_name or _is_asked_for(hole, selection))
+        and (ids is None or hole.id in ids)
+        and rule.kind in (None, hole.kind)
+        and (rule.min_diameter is None or hole.diameter >= rule.min_diameter)
+        and (rule.max_diameter is None or hole.diameter <= rule.max_diameter)
+        and (rule.max_perimeter is None or hole.perimeter <= rule.max_perimeter)
+    )
+
+
+def _is_asked_for(hole: Hole, selection: HoleSelection) -> bool:
+    """Whether loops of this kind are closed: holes and slits always, others where an option asks for them."""
+    if hole.kind == "border":
+        return selection.include_borders or selection.ids is not None
+    if hole.kind == "open_end":
+        return selection.cap is not None or selection.ids is not None
+    return True
+
+
+def _action(hole: Hole, selection: HoleSelection, rule: HoleRule | None) -> HoleAction:
+    if rule is not None and rule.action != "skip":
+        return rule.action
+    return "flat" if hole.kind == "open_end" and selection.cap == "flat" else "model"
+
+
+def _reasons_to_skip(
+    hole: Hole, selection: HoleSelection, rule: HoleRule | None, number: int
+) -> Iterator[tuple[bool, str, str]]:
+    """Yield what may keep a hole open, in order, each with its code and sentence: the first that applies counts."""
+    is_left_out = rule is None and not _is_asked_for(hole, selection)
+    is_largest = selection.all_but_largest and hole.id == 0
+    n_vertices = expected_vertices(hole)
+    yield is_largest, "largest", "the largest loop is taken for the border of the scan"
+    yield rule is not None and rule.action == "skip", "rule", f"rule {number} leaves it open"
+    yield is_left_out and hole.kind == "border", "border", "outer border of a piece of the scan"
+    yield is_left_out, "open_end", "open end of a piece of the scan, like that of a tube"
+    yield (
+        n_vertices > MAX_NEW_VERTICES,
+        "too_many_vertices",
+        f"a fill as dense as its rim takes about {n_vertices} new vertices, over {MAX_NEW_VERTICES}",
+    )
+
+
+def _limits(
+    hole: Hole, selection: HoleSelection, rule: HoleRule | None, diagonal: float
+) -> Iterator[tuple[bool, str, str]]:
+    """Compare a hole's sizes with the limits of the user, or its diameter with the automatic one."""
+    widest, longest = selection.max_diameter or inf, selection.max_perimeter or inf
+    said_by = "the given maximum"
+    if _has_automatic_limit(hole, selection, rule):
+        widest, said_by = AUTO_DIAMETER_SHARE * diagonal, "a quarter of the scan's diagonal"
+    yield hole.diameter > widest, "too_wide", f"diameter {hole.diameter:.6g} is over {widest:.6g}, {said_by}"
+    yield hole.perimeter > longest, "too_long", f"perimeter {hole.perimeter:.6g} is over {longest:.6g}, {said_by}"
+
+
+def _has_automatic_limit(hole: Hole, selection: HoleSelection, rule: HoleRule | None) -> bool:
+    """Whether the user left its size open. Slits may be as long as the object, and open ends are asked for by kind."""
+    if hole.kind not in ("hole", "border") or selection.all_but_largest:
+        return False
+    sources = (selection,) if rule is None else (selection, rule)
+    return all(s.max_diameter is None and s.max_perimeter is None and s.ids is None for s in sources)
