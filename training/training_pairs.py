@@ -19,7 +19,7 @@ from quadpatch.options import PatchOptions
 from quadpatch.patches.layout import lay_out
 from quadpatch.patches.residual_input import RESOLUTION
 from quadpatch.patches.scale import base_surface_iterations, choose_scale
-from quadpatch.recipes.default import suitable_rule
+from quadpatch.recipes.default import suitable_blend
 from quadpatch.types import TriangleMesh
 from training.shards import Arrays
 
@@ -57,12 +57,12 @@ def cut_training_pairs(mesh: TriangleMesh, most: int, rng: np.random.Generator) 
 def _of_diameter(mesh: TriangleMesh, diameter: float, most: int, rng: np.random.Generator) -> TrainingPairs:
     edge_length = mean_edge_length(mesh)
     scale = choose_scale([diameter], edge_length, PatchOptions(), RESOLUTION)
-    rule, _ = suitable_rule(cut_calibration_set(mesh, diameter, edge_length, rng))
+    blend, _ = suitable_blend(cut_calibration_set(mesh, diameter, edge_length, rng))
     try:
         seeds = lay_out(laplacian_smooth(mesh, base_surface_iterations(scale.length, edge_length)), scale)
     except NoQuadsError:
         return TrainingPairs.joined([], RESOLUTION)
-    training_surface = TrainingSurface(mesh, seeds, scale, rule, np.array([diameter]), edge_length)
+    training_surface = TrainingSurface(mesh, seeds, scale, blend, np.array([diameter]), edge_length)
     parts: list[TrainingPairs] = []
     for part in islice(make_training_pairs(training_surface, rng), ROUNDS):
         parts.append(part)

@@ -109,18 +109,18 @@ def cut_calibration_set(
     )
 
 
-def choose_energy(errors: FloatArray, diameter: float, energies: Sequence[Energy], usual: Energy) -> Energy:
+def choose_energy(errors: FloatArray, diameter: float, energies: Sequence[Energy], default: Energy) -> Energy:
     """Choose the energy that leaves the calibration holes, of some diameter, closest to the truth.
 
     Takes errors (n_energies, n_holes) as `error_per_hole` measures them, in mesh units as the diameter.
 
-    The usual one stays unless the best is better by more than a standard error: a few dozen holes can't tell more
+    The default one stays unless the best is better by more than a standard error: a few dozen holes can't tell more
     (L. Breiman et al., "Classification and Regression Trees", 1984, the rule of one standard error).
     """
     best = int(errors.mean(axis=1).argmin())
-    lost = errors[energies.index(usual)] - errors[best]
+    lost = errors[energies.index(default)] - errors[best]
     is_tie = float(lost.mean()) <= float(lost.std()) / np.sqrt(len(lost)) + ROUNDING * diameter
-    return usual if is_tie else energies[best]
+    return default if is_tie else energies[best]
 
 
 def blend_factor(calibration: CalibrationSet, filled: FilledMesh, displacement: FloatArray) -> float:

@@ -70,7 +70,7 @@ class EnergyBlend:
 
 
 def learn_energy_blend(
-    calibration: CalibrationSet, energies: Sequence[Energy], usual: Energy
+    calibration: CalibrationSet, energies: Sequence[Energy], default: Energy
 ) -> tuple[EnergyBlend, FilledMesh]:
     """Learn from calibration holes how to fill: by one energy, as `choose_energy` picks it, unless weighing beats it.
 
@@ -83,14 +83,14 @@ def learn_energy_blend(
     fills = [fair_holes(calibration.closed, energy) for energy in energies]
     errors = np.array([error_per_hole(calibration, fill) for fill in fills])
     misses = leave_one_ring_out(calibration.closed.mesh, calibration.loops, energies)
-    best = energies.index(choose_energy(errors, calibration.diameter, energies, usual))
+    best = energies.index(choose_energy(errors, calibration.diameter, energies, default))
     typical = np.nanmean(misses, axis=0) if np.isfinite(misses).any() else np.ones(len(energies))
     tiny = np.finfo(np.float64).tiny
-    rule = EnergyBlend(energies, np.log(errors.mean(axis=1) + tiny), np.log(typical + tiny))
-    blended = _blended(fills, rule.weights(misses))
+    blend = EnergyBlend(energies, np.log(errors.mean(axis=1) + tiny), np.log(typical + tiny))
+    blended = _blended(fills, blend.weights(misses))
     gain = errors[best].mean() - error_per_hole(calibration, blended).mean()
     if gain > ROUNDING * calibration.diameter:
-        return rule, blended
+        return blend, blended
     return EnergyBlend.of_one(energies[best]), fills[best]
 
 

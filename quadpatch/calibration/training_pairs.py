@@ -38,7 +38,7 @@ class TrainingSurface:
     seeds : Seeds
         Where patches may lie.
     scale : PatchScale
-    rule : EnergyBlend
+    blend : EnergyBlend
         That the holes are filled by.
     diameters : (k,) float64
         Of the holes to prepare for, in mesh units.
@@ -49,7 +49,7 @@ class TrainingSurface:
     mesh: TriangleMesh
     seeds: Seeds
     scale: PatchScale
-    rule: EnergyBlend
+    blend: EnergyBlend
     diameters: FloatArray
     edge_length: float
 
@@ -108,8 +108,8 @@ def make_training_pairs(training_surface: TrainingSurface, rng: np.random.Genera
 def _round(training_surface: TrainingSurface, diameter: float, rng: np.random.Generator) -> TrainingPairs:
     scale = training_surface.scale
     spacing = Spacing(training_surface.edge_length, _MARGIN_EDGES * training_surface.edge_length)
-    punched = cut_holes(training_surface.mesh, diameter, spacing, rng)
-    filled = training_surface.rule.fill(punched.mesh, punched.loops)
+    cut = cut_holes(training_surface.mesh, diameter, spacing, rng)
+    filled = training_surface.blend.fill(cut.mesh, cut.loops)
     base_surface = laplacian_smooth(filled.mesh, base_surface_iterations(scale.length, training_surface.edge_length))
     invented = filled.mesh.vertices[filled.n_measured_vertices :]
     near = take(training_surface.seeds, seeds_near(training_surface.seeds, invented, scale.length))

@@ -55,6 +55,10 @@ class FilledMesh:
         vertices = np.concatenate([self.mesh.vertices[: self.n_measured_vertices], invented])
         return replace(self, mesh=TriangleMesh(vertices, self.mesh.triangles))
 
+    def displaced(self, displacement: FloatArray) -> "FilledMesh":
+        """Return the same mesh with its invented vertices moved by (n_invented_vertices, 3)."""
+        return self.with_vertices(self.mesh.vertices[self.n_measured_vertices :] + displacement)
+
     def without(self, loops: IntArray) -> "FilledMesh":
         """Return the mesh with some loops (k,) open again."""
         new_vertices = self.mesh.vertices[self.n_measured_vertices :]

@@ -4,13 +4,15 @@ The stages are those of Sarkar, Varanasi and Stricker, "Learning Quadrangulated 
 geometric fill, base surface, quads, patches, learning, completion, reconstruction, verdicts.
 """
 
+from dataclasses import replace
+
 import numpy as np
 
 from quadpatch.calibration.calibration_set import CalibrationSet, cut_calibration_set, expect
 from quadpatch.calibration.energy_selection import EnergyBlend, learn_energy_blend
-from quadpatch.calibration.error_model import PRIOR, ErrorModel
+from quadpatch.calibration.error_model import PRIOR
 from quadpatch.errors import NoQuadsError
-from quadpatch.filling.checked_fill import CheckedFill, LoopsToFill, fill_checked
+from quadpatch.filling.checked_fill import LoopsToFill, fill_checked
 from quadpatch.filling.fairing import THIN_PLATE, Energy
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.filling.islands import JoinedRims, join_islands
@@ -19,9 +21,9 @@ from quadpatch.mesh.holes import Selection, find_holes, select_holes
 from quadpatch.mesh.measures import diagonal, mean_edge_length
 from quadpatch.options import RepairOptions
 from quadpatch.recipes.assessment import assess
-from quadpatch.recipes.learned_detail import CompletionInput, complete
+from quadpatch.recipes.learned_detail import Calibration, complete
 from quadpatch.recipes.result import Repair
-from quadpatch.recipes.verification import limited_to, verified_results, without_faults
+from quadpatch.recipes.verification import verified_results, without_faults
 from quadpatch.stages import Stages
 from quadpatch.types import BoolArray, TriangleMesh, Triangles
 from shared_rules.hole_selection import HoleAction
@@ -77,27 +79,28 @@ def inpaint(
         selection = select_holes(holes, options.holes, diagonal(mesh))
         rims = join_islands(mesh, holes, selection.chosen)
     with stages.stage("fill"):
-        problem, error_model, checked = _fill(mesh, rims, _loops_to_fill(rims, selection), obstacles, rng)
+        wanted = _loops_to_fill(rims, selection)
+        calibration = _calibrate(mesh, rims, wanted, rng)
+        checked = fill_checked(mesh, wanted, calibration.blend.fill, obstacles)
     completion, warnings = None, []
     by_model = _with_action(rims, selection, "model")
-    if inpainter is not None and by_model[problem.filled.vertex_hole].any():
+    if inpainter is not None and by_model[checked.filled.vertex_hole].any():
         try:
-            completion = complete(problem, inpainter, options, rng, stages)
+            completion = complete(checked.filled, calibration, inpainter, options, rng, stages)
             if completion is None:
                 warnings.append("too little undamaged surface to learn from; the holes were filled by geometry alone")
         except NoQuadsError as error:
             warnings.append(f"{error}; the holes were filled by geometry alone")
     with stages.stage("judge"):
-        if completion:
-            completion = limited_to(completion, checked.filled, by_model)
-        verified = without_faults(completion, checked, obstacles)
-        completion = verified.completion
-        if completion and completion.error_model is not None:
-            error_model = completion.error_model
-        results = assess(holes, _filled_ones(selection, rims), problem.filled, completion, error_model)
-        results = verified_results(results, rims, checked, verified.faults, diagonal(mesh))
-    filled = completion.filled if completion else problem.filled
-    return Repair(filled, rims.chosen, results, problem.rule, completion, warnings)
+        if completion and not by_model.all():
+            completion = replace(completion.limited_to(by_model, checked.filled), left_out=~by_model)
+        completion, faults = without_faults(completion, checked, obstacles)
+        of_model = completion.error_model if completion else None
+        error_model = of_model or calibration.error_model
+        results = assess(holes, _filled_ones(selection, rims), checked.filled, completion, error_model)
+        results = verified_results(results, rims, checked, faults, diagonal(mesh))
+    filled = completion.apply(checked.filled) if completion else checked.filled
+    return Repair(filled, rims.chosen, results, calibration.blend, completion, warnings)
 
 
 def _loops_to_fill(rims: JoinedRims, selection: Selection) -> LoopsToFill:
@@ -116,24 +119,19 @@ def _filled_ones(selection: Selection, rims: JoinedRims) -> Selection:
     return Selection(rims.chosen, {**selection.skipped, **joined}, selection.actions)
 
 
-def _fill(
-    mesh: TriangleMesh, rims: JoinedRims, wanted: LoopsToFill, obstacles: Triangles | None, rng: np.random.Generator
-) -> tuple[CompletionInput, ErrorModel, CheckedFill]:
-    """Fill the holes as suits this surface, and check it; also the error to expect of that."""
+def _calibrate(mesh: TriangleMesh, rims: JoinedRims, wanted: LoopsToFill, rng: np.random.Generator) -> Calibration:
+    """Learn from calibration holes how to fill, and how large an error to expect of that."""
     edge = mean_edge_length(mesh)
     diameters = [hole.diameter for hole in rims.chosen]
     curved = [diameters[i] for i in np.flatnonzero(~wanted.flat)]
-    calibration = cut_calibration_set(mesh, float(np.median(curved)), edge, rng) if curved else None
-    rule, filled_again = suitable_rule(calibration)
-    error_model = PRIOR
-    if calibration is not None and filled_again is not None:
-        error_model = expect(calibration, filled_again)
-    checked = fill_checked(mesh, wanted, rule.fill, obstacles)
-    return CompletionInput(checked.filled, rule, diameters, edge, calibration, filled_again), error_model, checked
+    holes = cut_calibration_set(mesh, float(np.median(curved)), edge, rng) if curved else None
+    blend, filled = suitable_blend(holes)
+    error_model = PRIOR if holes is None or filled is None else expect(holes, filled)
+    return Calibration(diameters, edge, blend, error_model, holes, filled)
 
 
-def suitable_rule(calibration: CalibrationSet | None) -> tuple[EnergyBlend, FilledMesh | None]:
+def suitable_blend(holes: CalibrationSet | None) -> tuple[EnergyBlend, FilledMesh | None]:
     """Learn how this surface is continued best, as far as calibration tells; also the calibration holes, filled."""
-    if calibration is None:
+    if holes is None:
         return EnergyBlend.of_one(PRIOR_ENERGY), None
-    return learn_energy_blend(calibration, FAIRING_ENERGIES, DEFAULT_ENERGY)
+    return learn_energy_blend(holes, FAIRING_ENERGIES, DEFAULT_ENERGY)

@@ -31,29 +31,31 @@ _MAX_SEEDS_TO_LEARN_FROM = 2000
 
 
 @dataclass(frozen=True)
-class CompletionInput:
-    """What is to be completed.
+class Calibration:
+    """What calibration says of a surface.
 
     Attributes
     ----------
-    filled : FilledMesh
-    rule : EnergyBlend
-        That it was faired by.
     diameters : list of float
-        Of the filled holes, in mesh units.
+        Of the real holes, in mesh units.
     edge_length : float
-        Mean edge length, in mesh units.
-    calibration : CalibrationSet or None
-    calibration_filled : FilledMesh or None
+        Mean of the mesh, in mesh units.
+    blend : EnergyBlend
+        What its holes are faired by.
+    error_model : ErrorModel
+        How large an error of that to expect.
+    holes : CalibrationSet or None
+        None where the surface has no room for calibration holes.
+    filled : FilledMesh or None
         The calibration holes, filled like the real ones.
     """
 
-    filled: FilledMesh
-    rule: EnergyBlend
     diameters: list[float]
     edge_length: float
-    calibration: CalibrationSet | None
-    calibration_filled: FilledMesh | None
+    blend: EnergyBlend
+    error_model: ErrorModel
+    holes: CalibrationSet | None = None
+    filled: FilledMesh | None = None
 
 
 @dataclass(frozen=True)
@@ -66,7 +68,8 @@ class _Model:
 
 
 def complete(
-    problem: CompletionInput,
+    filled: FilledMesh,
+    calibration: Calibration,
     inpainter: Inpainter,
     options: RepairOptions,
     rng: np.random.Generator,
@@ -76,7 +79,8 @@ def complete(
 
     Parameters
     ----------
-    problem : CompletionInput
+    filled : FilledMesh
+    calibration : Calibration
     inpainter : Inpainter
     options : RepairOptions
     rng : numpy.random.Generator
@@ -92,10 +96,9 @@ def complete(
     NoQuadsError
         If the base surface can't carry one quad.
     """
-    filled = problem.filled
-    scale = choose_scale(problem.diameters, problem.edge_length, options.patches, inpainter.resolution)
+    scale = choose_scale(calibration.diameters, calibration.edge_length, options.patches, inpainter.resolution)
     with stages.stage("smooth"):
-        base_surface = _base_surface(filled, scale, problem.edge_length)
+        base_surface = _base_surface(filled, scale, calibration.edge_length)
     with stages.stage("quadrangulate"):
         seeds = lay_out(base_surface, scale)
     with stages.stage("patchify"):
@@ -104,49 +107,46 @@ def complete(
         everywhere = patchify(filled, base_surface, take(seeds, wanted), scale)
         sampled = pick(everywhere, near[wanted] & is_unfolded(everywhere.patches))
     with stages.stage("learn"):
-        known_patches = _without_calibration_holes(everywhere.patches, problem)
-        training_surface = partial(_training_surface, problem, seeds, scale)
+        known_patches = _without_calibration_holes(everywhere.patches, filled, calibration)
+        training_surface = partial(_training_surface, filled, calibration, seeds, scale)
         fitted = inpainter.fitted_to(UndamagedSurface(known_patches, everywhere.base_heights, training_surface))
         if fitted is None:
             return None
-        blend_factor, error_model = _calibrate(problem, _Model(fitted, seeds, scale))
+        blend_factor, error_model = _calibrate(calibration, _Model(fitted, seeds, scale))
     with stages.stage("inpaint"):
         # A model with a blend factor of 0 need not be asked.
         predicted = fitted.predict(sampled.patches, sampled.base_heights) if blend_factor else None
     with stages.stage("reconstruct"):
         evidence, trust = None, np.zeros(len(filled.disagreement), bool)
+        displacement = np.zeros((len(filled.vertex_hole), 3))
         if predicted is not None:
             joined, evidence = _displacements(filled, sampled.patches, predicted)
             trust = trusted_holes(evidence)
-            filled = _moved(filled, blend_factor * np.where(trust[filled.vertex_hole][:, None], joined, 0.0))
-    return Completion(filled, evidence, trust, blend_factor, error_model, scale, len(sampled.patches))
-
-
-def _moved(filled: FilledMesh, displacement: FloatArray) -> FilledMesh:
-    return filled.with_vertices(filled.mesh.vertices[filled.n_measured_vertices :] + displacement)
+            displacement = blend_factor * np.where(trust[filled.vertex_hole][:, None], joined, 0.0)
+    return Completion(displacement, evidence, trust, blend_factor, error_model, scale, len(sampled.patches))
 
 
 def _base_surface(filled: FilledMesh, scale: PatchScale, edge_length: float) -> TriangleMesh:
     return laplacian_smooth(filled.mesh, base_surface_iterations(scale.length, edge_length))
 
 
-def _without_calibration_holes(patches: Patches, problem: CompletionInput) -> Patches:
+def _without_calibration_holes(patches: Patches, filled: FilledMesh, calibration: Calibration) -> Patches:
     """Hide what calibration holes took, or a model would be tried on patches that it was learned from."""
-    if problem.calibration is None:
+    if calibration.holes is None:
         return patches
-    cut_away = np.zeros(len(problem.filled.mesh.triangles), bool)
-    cut_away[: len(problem.calibration.cut_away)] = problem.calibration.cut_away
+    cut_away = np.zeros(len(filled.mesh.triangles), bool)
+    cut_away[: len(calibration.holes.cut_away)] = calibration.holes.cut_away
     hidden = (patches.triangle >= 0) & cut_away[patches.triangle]
     return replace(patches, known=patches.known & ~hidden)
 
 
-def _training_surface(problem: CompletionInput, seeds: Seeds, scale: PatchScale) -> TrainingSurface:
+def _training_surface(filled: FilledMesh, calibration: Calibration, seeds: Seeds, scale: PatchScale) -> TrainingSurface:
     """Measured surface, without what calibration holes took."""
-    filled, calibration = problem.filled, problem.calibration
     measured = filled.mesh.triangles[: filled.n_measured_triangles]
-    triangles = measured if calibration is None else measured[~calibration.cut_away]
+    triangles = measured if calibration.holes is None else measured[~calibration.holes.cut_away]
     mesh = TriangleMesh(filled.mesh.vertices[: filled.n_measured_vertices], triangles)
-    return TrainingSurface(mesh, seeds, scale, problem.rule, np.array(problem.diameters), problem.edge_length)
+    diameters = np.array(calibration.diameters)
+    return TrainingSurface(mesh, seeds, scale, calibration.blend, diameters, calibration.edge_length)
 
 
 def _some(count: int, rng: np.random.Generator) -> BoolArray:
@@ -156,12 +156,12 @@ def _some(count: int, rng: np.random.Generator) -> BoolArray:
     return chosen
 
 
-def _calibrate(problem: CompletionInput, model: _Model) -> tuple[float, ErrorModel | None]:
+def _calibrate(calibration: Calibration, model: _Model) -> tuple[float, ErrorModel | None]:
     """Complete the calibration holes: the share of the displacement to believe, and the error to expect."""
-    filled = problem.calibration_filled
-    if problem.calibration is None or filled is None:
+    filled = calibration.filled
+    if calibration.holes is None or filled is None:
         return PRIOR_BLEND_FACTOR, None
-    base_surface = _base_surface(filled, model.scale, problem.edge_length)
+    base_surface = _base_surface(filled, model.scale, calibration.edge_length)
     new = filled.mesh.vertices[filled.n_measured_vertices :]
     near = take(model.seeds, seeds_near(model.seeds, new, model.scale.length))
     sampled = patchify(filled, base_surface, near, model.scale)
@@ -169,8 +169,8 @@ def _calibrate(problem: CompletionInput, model: _Model) -> tuple[float, ErrorMod
     predicted = model.inpainter.predict(sampled.patches, sampled.base_heights)
     joined, evidence = _displacements(filled, sampled.patches, predicted)
     joined = np.where(trusted_holes(evidence)[filled.vertex_hole][:, None], joined, 0.0)
-    share = blend_factor(problem.calibration, filled, joined)
-    return share, expect(problem.calibration, filled.with_vertices(new + share * joined))
+    share = blend_factor(calibration.holes, filled, joined)
+    return share, expect(calibration.holes, filled.displaced(share * joined))
 
 
 def _displacements(filled: FilledMesh, patches: Patches, predicted: FloatArray) -> tuple[FloatArray, PatchAgreement]:

@@ -117,7 +117,7 @@ def inpaint_as_paper(
                 warnings.append("too little undamaged surface to learn from; the holes were closed, nothing more")
         except NoQuadsError as error:
             warnings.append(f"{error}; the holes were closed, nothing more")
-    placed = completion.filled if completion else filled
+    placed = completion.apply(filled) if completion else filled
     with stages.stage("judge"):
         results = _results(holes, selection, filled, completion)
         # The paper checks nothing: what is wrong is named, and handed out all the same.
@@ -188,13 +188,11 @@ def _undamaged(patches: Patches) -> UndamagedSurface:
 
 def _reconstruct(filled: FilledMesh, patches: Patches, predicted: FloatArray, scale: PatchScale) -> Completion:
     """Place every new vertex; look at the rim as well, where it is known what should come out."""
-    new = filled.mesh.vertices[filled.n_measured_vertices :]
     rim, rim_hole = rim_vertices(filled)
     placed = place(filled, np.flatnonzero(filled.invented_vertices), patches, predicted)
     at_rim = place(filled, rim, patches, predicted)
     evidence = measure_agreement(filled, placed, placed.mean, rim_hole, at_rim)
-    moved = filled.with_vertices(new + placed.mean)
-    return Completion(moved, evidence, evidence.coverage > 0, 1.0, None, scale, len(patches))
+    return Completion(placed.mean, evidence, evidence.coverage > 0, 1.0, None, scale, len(patches))
 
 
 def _results(

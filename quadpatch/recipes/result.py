@@ -1,6 +1,8 @@
 """What comes out of a repair: of each hole, of the model, and as a whole."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+
+import numpy as np
 
 from quadpatch.calibration.energy_selection import EnergyBlend
 from quadpatch.calibration.error_model import ErrorModel
@@ -64,11 +66,12 @@ class PatchAgreement:
 
 @dataclass(frozen=True)
 class Completion:
-    """The fill, displaced by what the model says.
+    """What a model says of the fill.
 
     Attributes
     ----------
-    filled : FilledMesh
+    displacement : (n_invented_vertices, 3) float64
+        Of the fill's new vertices, in mesh units; 0 in holes that are not displaced.
     evidence : PatchAgreement or None
         None where the blend factor is 0, and the model was not asked.
     trust : (n_holes,) bool
@@ -85,7 +88,7 @@ class Completion:
         Holes that a rule keeps the model out of.
     """
 
-    filled: FilledMesh
+    displacement: FloatArray
     evidence: PatchAgreement | None
     trust: BoolArray
     blend_factor: float
@@ -94,6 +97,15 @@ class Completion:
     n_patches: int
     undone: BoolArray | None = None
     left_out: BoolArray | None = None
+
+    def apply(self, filled: FilledMesh) -> FilledMesh:
+        """Displace the fill."""
+        return filled.displaced(self.displacement) if self.trust.any() else filled
+
+    def limited_to(self, holes: BoolArray, filled: FilledMesh) -> "Completion":
+        """Take the displacement back in all but some holes (n_holes,) of the fill."""
+        displacement = np.where(holes[filled.vertex_hole][:, None], self.displacement, 0.0)
+        return replace(self, displacement=displacement, trust=self.trust & holes)
 
 
 @dataclass(frozen=True)
@@ -108,7 +120,7 @@ class Repair:
         In the order of the filled loops.
     results : list of HoleResult
         One per hole, by id.
-    rule : EnergyBlend
+    blend : EnergyBlend
         What the fill was faired by.
     completion : Completion or None
         None where geometry alone filled the holes.
@@ -118,6 +130,6 @@ class Repair:
     filled: FilledMesh
     chosen: list[Hole]
     results: list[HoleResult]
-    rule: EnergyBlend
+    blend: EnergyBlend
     completion: Completion | None
     warnings: list[str]

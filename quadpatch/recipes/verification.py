@@ -1,36 +1,23 @@
 """What the check of a repair found, put into the results of its holes."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from quadpatch.filling.checked_fill import CheckedFill
 from quadpatch.filling.faults import Faults, find_faults
-from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.filling.islands import JoinedRims
 from quadpatch.mesh.holes import Hole
 from quadpatch.recipes.assessment import confidence
 from quadpatch.recipes.result import Completion, HoleResult
-from quadpatch.types import BoolArray, Triangles
+from quadpatch.types import Triangles
 
 _NO_PLANE_PATCH = "no_plane_patch", "in its plane the rim crosses itself, or encloses no area"
 
 
-@dataclass(frozen=True)
-class Verified:
-    """A completion whose faults were undone, and the faults that are left.
-
-    Attributes
-    ----------
-    completion : Completion or None
-    faults : Faults
-    """
-
-    completion: Completion | None
-    faults: Faults
-
-
-def without_faults(completion: Completion | None, checked: CheckedFill, obstacles: Triangles | None) -> Verified:
+def without_faults(
+    completion: Completion | None, checked: CheckedFill, obstacles: Triangles | None
+) -> tuple[Completion | None, Faults]:
     """Take the displacement back in holes where it brought in folds or crossings.
 
     Parameters
@@ -40,42 +27,25 @@ def without_faults(completion: Completion | None, checked: CheckedFill, obstacle
         The fill before it was displaced.
     obstacles : (k, 3) int64, optional
         Triangles of the file that the mesh leaves out.
+
+    Returns
+    -------
+    completion : Completion or None
+    faults : Faults
+        Those that are left.
     """
     if completion is None or not completion.trust.any():
-        return Verified(completion, checked.faults)
-    faults = find_faults(completion.filled, obstacles=obstacles)
+        return completion, checked.faults
+    faults = find_faults(completion.apply(checked.filled), obstacles=obstacles)
     undone = np.zeros(len(completion.trust), bool)
     worse = completion.trust & (faults.severity > checked.faults.severity)
     # Taking one hole back may make it cross the displaced fill of another.
     while worse.any():
         undone |= worse
-        completion = replace(
-            completion,
-            filled=_taken_back(completion.filled, checked.filled, undone),
-            trust=completion.trust & ~undone,
-            undone=undone,
-        )
-        faults = find_faults(completion.filled, obstacles=obstacles)
+        completion = replace(completion.limited_to(~undone, checked.filled), undone=undone)
+        faults = find_faults(completion.apply(checked.filled), obstacles=obstacles)
         worse = completion.trust & (faults.severity > checked.faults.severity)
-    return Verified(completion, faults)
-
-
-def _taken_back(displaced: FilledMesh, before: FilledMesh, holes: BoolArray) -> FilledMesh:
-    new = displaced.mesh.vertices[displaced.n_measured_vertices :]
-    old = before.mesh.vertices[before.n_measured_vertices :]
-    return displaced.with_vertices(np.where(holes[displaced.vertex_hole][:, None], old, new))
-
-
-def limited_to(completion: Completion, before: FilledMesh, holes: BoolArray) -> Completion:
-    """Take the displacement back in all but some holes (n_holes,)."""
-    if holes.all():
-        return completion
-    return replace(
-        completion,
-        filled=_taken_back(completion.filled, before, ~holes),
-        trust=completion.trust & holes,
-        left_out=~holes,
-    )
+    return completion, faults
 
 
 def verified_results(

@@ -102,11 +102,11 @@ def test_smaller_holes_are_tried_where_there_is_no_room_for_large_ones() -> None
     assert calibration.diameter < 0.8
 
 
-def chosen_for(calibration: CalibrationSet, usual: Energy = DEFAULT_ENERGY) -> Energy:
+def chosen_for(calibration: CalibrationSet, default: Energy = DEFAULT_ENERGY) -> Energy:
     errors = np.array(
         [error_per_hole(calibration, fair_holes(calibration.closed, energy)) for energy in FAIRING_ENERGIES]
     )
-    return choose_energy(errors, calibration.diameter, FAIRING_ENERGIES, usual)
+    return choose_energy(errors, calibration.diameter, FAIRING_ENERGIES, default)
 
 
 def test_a_smooth_surface_is_continued_by_a_smooth_energy() -> None:
@@ -121,8 +121,8 @@ def test_a_noisy_surface_is_continued_by_an_energy_that_carries_no_curvature_on(
 
 
 def test_the_usual_energy_stays_where_practice_can_not_tell() -> None:
-    for usual in FAIRING_ENERGIES:
-        assert chosen_for(some_practice(FLAT), usual) == usual
+    for default in FAIRING_ENERGIES:
+        assert chosen_for(some_practice(FLAT), default) == default
 
 
 def test_a_flat_surface_is_filled_without_error() -> None:

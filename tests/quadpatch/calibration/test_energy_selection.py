@@ -15,7 +15,7 @@ SMOOTH = Energy(plate=1.0, variation=40.0)
 PAIR = (THIN_PLATE, SMOOTH)
 
 
-def rule_of(log_error: list[float], log_miss: list[float]) -> EnergyBlend:
+def blend_of(log_error: list[float], log_miss: list[float]) -> EnergyBlend:
     return EnergyBlend(PAIR, np.array(log_error), np.array(log_miss))
 
 
@@ -33,15 +33,15 @@ def roof(n: int = 100) -> TriangleMesh:
 
 
 def test_without_a_rim_that_tells_weights_follow_practice_alone() -> None:
-    weights = rule_of([np.log(1.0), np.log(1.1)], [0.0, 0.0]).weights(np.full((3, 2), np.nan))
+    weights = blend_of([np.log(1.0), np.log(1.1)], [0.0, 0.0]).weights(np.full((3, 2), np.nan))
     assert weights.sum(axis=1) == pytest.approx(1.0)
     assert weights[0, 1] / weights[0, 0] == pytest.approx(1.1**-SHARPNESS)
     assert (weights == weights[0]).all()
 
 
 def test_an_energy_that_misses_its_rim_by_more_than_usual_counts_less() -> None:
-    rule = rule_of([0.0, 0.0], [np.log(2.0), np.log(1.0)])
-    as_usual, worse, unknown = rule.weights(np.array([[0.02, 0.01], [0.02, 0.02], [np.nan, np.nan]]))
+    blend = blend_of([0.0, 0.0], [np.log(2.0), np.log(1.0)])
+    as_usual, worse, unknown = blend.weights(np.array([[0.02, 0.01], [0.02, 0.02], [np.nan, np.nan]]))
     assert as_usual == pytest.approx([0.5, 0.5])
     assert worse[0] > 0.99
     assert unknown == pytest.approx([0.5, 0.5])
@@ -49,13 +49,16 @@ def test_an_energy_that_misses_its_rim_by_more_than_usual_counts_less() -> None:
 
 def test_weights_do_not_depend_on_the_unit_of_length() -> None:
     misses = np.abs(np.random.default_rng(0).normal(1, 0.2, (20, 2)))
-    rule = rule_of([0.1, 0.0], [0.0, 0.1])
-    metres, millimetres = rule.weights(misses), rule_of([0.1, 0.0], np.log(1000) + rule.log_miss).weights(1000 * misses)
+    blend = blend_of([0.1, 0.0], [0.0, 0.1])
+    metres, millimetres = (
+        blend.weights(misses),
+        blend_of([0.1, 0.0], np.log(1000) + blend.log_miss).weights(1000 * misses),
+    )
     assert metres == pytest.approx(millimetres)
 
 
 def test_a_rim_that_no_energy_misses_tells_nothing() -> None:
-    weights = rule_of([0.0, 0.0], [0.0, 0.0]).weights(np.array([[0.0, 0.0], [0.1, 0.1]]))
+    weights = blend_of([0.0, 0.0], [0.0, 0.0]).weights(np.array([[0.0, 0.0], [0.1, 0.1]]))
     assert weights == pytest.approx(0.5)
 
 
@@ -82,8 +85,8 @@ def test_holes_on_a_rough_and_on_a_smooth_half_are_filled_by_other_weights() -> 
     calibration = cut_calibration_set(mesh, 0.3, mean_edge_length(mesh), np.random.default_rng(0))
     assert calibration is not None
     misses = leave_one_ring_out(calibration.closed.mesh, calibration.loops, FAIRING_ENERGIES)
-    rule = EnergyBlend(FAIRING_ENERGIES, np.zeros(len(FAIRING_ENERGIES)), np.log(np.nanmean(misses, axis=0)))
-    weights = rule.weights(misses)
+    blend = EnergyBlend(FAIRING_ENERGIES, np.zeros(len(FAIRING_ENERGIES)), np.log(np.nanmean(misses, axis=0)))
+    weights = blend.weights(misses)
     middles = np.array([mesh.vertices[loop, 0].mean() for loop in calibration.loops])
     on_smooth, on_rough = weights[middles < -0.2].mean(axis=0), weights[middles > 0.2].mean(axis=0)
     # A plate under tension cuts off what is curved; of noise no energy knows more than another.
@@ -107,8 +110,8 @@ def test_where_weighing_gains_nothing_one_energy_fills_all_holes() -> None:
     mesh = open_grid(100, 2.0)
     calibration = cut_calibration_set(mesh, 0.3, mean_edge_length(mesh), np.random.default_rng(0))
     assert calibration is not None
-    rule, _ = learn_energy_blend(calibration, FAIRING_ENERGIES, DEFAULT_ENERGY)
-    assert tuple(rule.energies) == (DEFAULT_ENERGY,)
+    blend, _ = learn_energy_blend(calibration, FAIRING_ENERGIES, DEFAULT_ENERGY)
+    assert tuple(blend.energies) == (DEFAULT_ENERGY,)
 
 
 def corners(mesh: TriangleMesh) -> FloatArray:
@@ -118,7 +121,7 @@ def corners(mesh: TriangleMesh) -> FloatArray:
 def test_a_weighed_fill_keeps_what_was_measured_and_lies_between_the_fills() -> None:
     mesh = punched(bumpy_plate(50, 2.0), (0.4, 0.4, 0), (-0.4, 0.2, 0), radius=0.2)
     loops = [hole.loop for hole in find_holes(mesh) if hole.diameter < 1.0]
-    filled = rule_of([0.0, 0.0], [0.0, 0.0]).fill(mesh, loops)
+    filled = blend_of([0.0, 0.0], [0.0, 0.0]).fill(mesh, loops)
     assert filled.mesh.vertices[: len(mesh.vertices)].tobytes() == mesh.vertices.tobytes()
     assert corners(filled.mesh)[: len(mesh.triangles)].tobytes() == corners(mesh).tobytes()
     closed = close_holes(mesh, loops)
@@ -138,4 +141,4 @@ def test_one_energy_alone_is_that_energy() -> None:
 
 def test_without_holes_nothing_is_filled() -> None:
     mesh = sphere(2)
-    assert rule_of([0.0, 0.0], [0.0, 0.0]).fill(mesh, []).n_measured_triangles == len(mesh.triangles)
+    assert blend_of([0.0, 0.0], [0.0, 0.0]).fill(mesh, []).n_measured_triangles == len(mesh.triangles)

@@ -79,7 +79,7 @@ def test_a_fill_without_error_leaves_nothing_to_correct() -> None:
 
 def test_the_true_surface_of_a_ball_lies_above_a_fill_that_is_drawn_tight() -> None:
     ball = ground_of(sphere(5), 0.4)
-    (given,) = rounds(replace(ball, rule=EnergyBlend.of_one(Energy(membrane=1.0))), 1)
+    (given,) = rounds(replace(ball, blend=EnergyBlend.of_one(Energy(membrane=1.0))), 1)
     corrections = given.correction[given.loss_mask > 0]
     assert np.mean(corrections > 0) > 0.97
     assert np.median(corrections) > 0.5

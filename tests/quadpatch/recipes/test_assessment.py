@@ -52,7 +52,9 @@ EXPECTATION = ErrorModel(0.3, 0.7)
 def completion(says: Says, blend_factor: float = 1.0, error_model: ErrorModel | None = EXPECTATION) -> Completion:
     evidence = says.evidence()
     trust = trusted_holes(evidence) & (blend_factor > 0)
-    return Completion(FILLED, evidence, trust, blend_factor, error_model, PatchScale(0.5, 24, 2), 100)
+    return Completion(
+        np.zeros((len(FILLED.vertex_hole), 3)), evidence, trust, blend_factor, error_model, PatchScale(0.5, 24, 2), 100
+    )
 
 
 @pytest.mark.parametrize(

@@ -110,7 +110,7 @@ def test_measured_vertices_and_triangles_come_first_bit_for_bit(
 def test_a_smooth_repair_moves_with_its_mesh(smooth_small_relief: Repair) -> None:
     mesh, rotation, shift = moved(SMALL_RELIEF, 1)
     there, here = inpaint(mesh, None, RepairOptions()), smooth_small_relief
-    assert there.rule.energies == here.rule.energies
+    assert there.blend.energies == here.blend.energies
     assert (there.filled.mesh.triangles == here.filled.mesh.triangles).all()
     expected = here.filled.mesh.vertices @ rotation.T + shift
     assert np.abs(there.filled.mesh.vertices - expected).max() < 1e-9

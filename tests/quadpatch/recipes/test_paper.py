@@ -117,7 +117,7 @@ def test_nothing_is_faired_gated_or_joined() -> None:
     atoms = np.full((256, 1), 1 / 16)
     mesh = punched(sphere(4), (0, 0, 1), radius=0.3)
     repair = inpaint_as_paper(mesh, HeightsInpainter(Dictionary(atoms, 16, 1)), RepairOptions())
-    assert repair.rule is NO_FAIRING
+    assert repair.blend is NO_FAIRING
     assert repair.completion is not None
     assert repair.completion.blend_factor == 1.0
     assert verdicts(repair) == [("filled", "")]

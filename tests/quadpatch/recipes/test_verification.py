@@ -14,7 +14,7 @@ from quadpatch.mesh.holes import Hole, Selection, find_holes
 from quadpatch.patches.scale import PatchScale
 from quadpatch.recipes.assessment import assess, confidence
 from quadpatch.recipes.result import Completion, HoleResult
-from quadpatch.recipes.verification import limited_to, verified_results, with_named_faults, without_faults
+from quadpatch.recipes.verification import verified_results, with_named_faults, without_faults
 from quadpatch.types import FloatArray, IntArray, TriangleMesh
 from tests.quadpatch.filling.fills import assert_keeps
 from tests.quadpatch.filling.handmade import as_holes
@@ -36,17 +36,13 @@ CHECKED = fill_checked(MESH, as_holes(RIMS.loops), plate)
 
 def displaced(displacement: FloatArray, trust: tuple[bool, bool, bool] = (True, True, True)) -> Completion:
     """A completion that moves the new vertices of trusted holes."""
-    filled = CHECKED.filled
-    new = filled.mesh.vertices[filled.n_measured_vertices :]
-    moved = np.where(np.array(trust)[filled.vertex_hole][:, None], new + displacement, new)
-    return Completion(
-        filled.with_vertices(moved), None, np.array(trust), 1.0, ErrorModel(0.3, 0.7), PatchScale(0.5, 24, 2), 9
-    )
+    moved = np.where(np.array(trust)[CHECKED.filled.vertex_hole][:, None], displacement, 0.0)
+    return Completion(moved, None, np.array(trust), 1.0, ErrorModel(0.3, 0.7), PatchScale(0.5, 24, 2), 9)
 
 
 def ripple(height: float) -> FloatArray:
     n = len(CHECKED.filled.vertex_hole)
-    return height * np.random.default_rng(0).normal(size=(n, 1)) * [0.0, 0.0, 1.0]
+    return height * np.random.default_rng(0).normal(size=(n, 1)) * np.array([0.0, 0.0, 1.0])
 
 
 def noise(size: float, *holes: int) -> FloatArray:
@@ -62,9 +58,9 @@ def new_of(filled: FilledMesh, hole: int) -> bytes:
 
 def test_a_displacement_without_faults_is_left_as_it_is() -> None:
     completion = displaced(ripple(0.002))
-    verified = without_faults(completion, CHECKED, None)
-    assert verified.completion is completion
-    assert verified.faults.severity.tolist() == [0, 0, 0]
+    done, faults = without_faults(completion, CHECKED, None)
+    assert done is completion
+    assert faults.severity.tolist() == [0, 0, 0]
 
 
 @pytest.mark.parametrize("crumpled", [(0,), (1, 2), (0, 1, 2)])
@@ -72,18 +68,19 @@ def test_a_displacement_that_crumples_its_fill_is_taken_back_there_alone(
     crumpled: tuple[int, ...],
 ) -> None:
     completion = displaced(noise(0.05, *crumpled))
-    assert (find_faults(completion.filled).severity > 0).tolist() == [i in crumpled for i in range(3)]
-    verified = without_faults(completion, CHECKED, None)
-    done = verified.completion
+    crumpled_mesh = completion.apply(CHECKED.filled)
+    assert (find_faults(crumpled_mesh).severity > 0).tolist() == [i in crumpled for i in range(3)]
+    done, faults = without_faults(completion, CHECKED, None)
     assert done is not None
     assert done.undone is not None
     assert done.undone.tolist() == [i in crumpled for i in range(3)]
     assert done.trust.tolist() == [i not in crumpled for i in range(3)]
-    assert_keeps(done.filled, MESH)
-    assert verified.faults.severity.tolist() == [0, 0, 0]
+    mesh = done.apply(CHECKED.filled)
+    assert_keeps(mesh, MESH)
+    assert faults.severity.tolist() == [0, 0, 0]
     for hole in range(3):
-        source = CHECKED.filled if hole in crumpled else completion.filled
-        assert new_of(done.filled, hole) == new_of(source, hole)
+        source = CHECKED.filled if hole in crumpled else crumpled_mesh
+        assert new_of(mesh, hole) == new_of(source, hole)
 
 
 def test_a_displacement_into_an_obstacle_is_taken_back() -> None:
@@ -96,10 +93,9 @@ def test_a_displacement_into_an_obstacle_is_taken_back() -> None:
     checked = fill_checked(mesh, as_holes(RIMS.loops), plate, obstacle)
     assert checked.faults.severity.tolist() == [0, 0, 0]
     lift = np.where(checked.filled.vertex_hole == 0, 0.1, 0.001)[:, None] * [0.0, 0, 1]
-    lifted = checked.filled.with_vertices(checked.filled.mesh.vertices[len(mesh.vertices) :] + lift)
-    completion = replace(displaced(ripple(0.0)), filled=lifted)
-    assert without_faults(completion, checked, None).completion is completion
-    done = without_faults(completion, checked, obstacle).completion
+    completion = replace(displaced(ripple(0.0)), displacement=lift)
+    assert without_faults(completion, checked, None)[0] is completion
+    done, _ = without_faults(completion, checked, obstacle)
     assert done is not None
     assert done.trust.tolist() == [False, True, True]
 
@@ -109,15 +105,15 @@ def test_faults_that_the_fill_had_before_are_no_reason_to_take_a_displacement_ba
         CHECKED.filled.mesh.vertices[CHECKED.filled.n_measured_vertices :] + noise(0.05, 1)
     )
     before = replace(CHECKED, filled=crumpled, faults=find_faults(crumpled))
-    completion = replace(displaced(ripple(0.0)), filled=crumpled)
-    assert without_faults(completion, before, None).completion is completion
+    completion = displaced(ripple(0.0))
+    assert without_faults(completion, before, None)[0] is completion
 
 
 @pytest.mark.parametrize("completion", [None, displaced(noise(0.05, 0, 1, 2), (False, False, False))])
 def test_where_no_hole_was_displaced_the_check_of_the_fill_holds(completion: Completion | None) -> None:
-    verified = without_faults(completion, CHECKED, None)
-    assert verified.completion is completion
-    assert verified.faults is CHECKED.faults
+    done, faults = without_faults(completion, CHECKED, None)
+    assert done is completion
+    assert faults is CHECKED.faults
 
 
 def judged(
@@ -147,8 +143,8 @@ def test_a_refused_hole_says_why_and_claims_nothing() -> None:
 
 
 def test_a_displacement_that_was_undone_is_told_by_the_verdict() -> None:
-    verified = without_faults(displaced(noise(0.05, 1)), CHECKED, None)
-    assert [(r.verdict, r.code) for r in judged(completion=verified.completion)[1:]] == [
+    done, _ = without_faults(displaced(noise(0.05, 1)), CHECKED, None)
+    assert [(r.verdict, r.code) for r in judged(completion=done)[1:]] == [
         ("filled", ""),
         ("filled_smooth", "model_faulty"),
         ("filled", ""),
@@ -188,7 +184,7 @@ def test_an_island_in_a_hole_that_was_refused_is_refused_with_it() -> None:
 
 
 def test_faults_are_named_for_filled_holes_and_no_others() -> None:
-    crumpled = displaced(noise(0.05, 1)).filled
+    crumpled = displaced(noise(0.05, 1)).apply(CHECKED.filled)
     faults = find_faults(crumpled)
     results = [HoleResult(hole, "skipped" if hole.is_border else "filled", measures={"gap": 1.0}) for hole in HOLES]
     results[3] = replace(results[3], verdict="refused")
@@ -219,8 +215,9 @@ def test_a_plane_patch_expects_no_error_and_says_why_where_there_is_none() -> No
 
 def test_a_rule_may_keep_the_model_out_of_a_hole() -> None:
     completion = displaced(noise(0.001, 2))
-    limited = limited_to(completion, CHECKED.filled, np.array([True, False, True]))
-    moved = np.linalg.norm(limited.filled.mesh.vertices - CHECKED.filled.mesh.vertices, axis=1)
+    by_model = np.array([True, False, True])
+    limited = replace(completion.limited_to(by_model, CHECKED.filled), left_out=~by_model)
+    moved = np.linalg.norm(limited.apply(CHECKED.filled).mesh.vertices - CHECKED.filled.mesh.vertices, axis=1)
     hole = CHECKED.filled.vertex_hole
     new = moved[CHECKED.filled.n_measured_vertices :]
     assert (new[hole == 1] == 0).all()
