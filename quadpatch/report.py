@@ -133,6 +133,7 @@ def _hole(result: HoleResult) -> dict[str, Any]:
         "confidence": result.confidence,
         "expected_error": result.expected_error,
         "fill": result.fill or None,
+        "energies": [{**asdict(energy), "share": share} for energy, share in result.energies] or None,
         "new_vertices": result.n_new_vertices,
         "new_triangles": result.n_new_triangles,
         "measures": result.measures,

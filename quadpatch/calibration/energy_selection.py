@@ -7,7 +7,7 @@ of a hole are blended by weights that fall with the expected error, a product of
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -55,8 +55,9 @@ class EnergyBlend:
         closed = close_holes(mesh, loops)
         fills = [fair_holes(closed, energy) for energy in self.energies]
         if len(fills) == 1 or not loops:
-            return fills[0]
-        return _blended(fills, self.weights(leave_one_ring_out(mesh, loops, self.energies)))
+            return replace(fills[0], energy_weights=np.ones((len(loops), len(fills))))
+        weights = self.weights(leave_one_ring_out(mesh, loops, self.energies))
+        return replace(_blended(fills, weights), energy_weights=weights)
 
     def weights(self, misses: FloatArray) -> FloatArray:
         """Turn misses (n_holes, n_energies), NaN where unknown, into weights of the fills: rows sum to 1."""

@@ -136,6 +136,10 @@ def _first_fill(mesh: TriangleMesh, loops: list[IntArray], fill: Fill, flat: Boo
     disagreement, rim_variation = np.zeros(len(loops)), np.zeros(len(loops))
     disagreement[curved], rim_variation[curved] = faired.disagreement, faired.rim_variation
     whole = replace(faired.as_part_of(curved, faired), disagreement=disagreement, rim_variation=rim_variation)
+    if faired.energy_weights is not None:
+        weights = np.zeros((len(loops), faired.energy_weights.shape[1]))
+        weights[curved] = faired.energy_weights
+        whole = replace(whole, energy_weights=weights)
     caps = flat_caps(mesh, [[loops[i]] for i in plane])
     return whole.with_fills(caps.as_part_of(plane, whole), plane)
 

@@ -22,6 +22,8 @@ class FilledMesh:
         See `quadpatch.filling.fill.ClosedMesh`.
     unfilled : list of int
         Positions of loops that could not be closed without giving an edge a third face.
+    energy_weights : (n_loops, n_energies) float64, optional
+        Shares of fairing energies in the fills, see `quadpatch.calibration.energy_selection`.
     """
 
     mesh: TriangleMesh
@@ -32,6 +34,7 @@ class FilledMesh:
     disagreement: FloatArray
     rim_variation: FloatArray
     unfilled: list[int]
+    energy_weights: FloatArray | None = None
 
     @property
     def measured(self) -> TriangleMesh:
@@ -101,6 +104,7 @@ class FilledMesh:
             vertex_hole=loops[self.vertex_hole],
             disagreement=whole.disagreement,
             rim_variation=whole.rim_variation,
+            energy_weights=whole.energy_weights,
             unfilled=loops[self.unfilled].tolist(),
         )
 

@@ -98,7 +98,7 @@ def inpaint(
         of_model = completion.error_model if completion else None
         error_model = of_model or calibration.error_model
         results = assess(holes, _filled_ones(selection, rims), checked.filled, completion, error_model)
-        results = verified_results(results, rims, checked, faults, diagonal(mesh))
+        results = verified_results(results, rims, checked, calibration.blend, faults, diagonal(mesh))
     filled = completion.apply(checked.filled) if completion else checked.filled
     return Repair(filled, rims.chosen, results, calibration.blend, completion, warnings)
 

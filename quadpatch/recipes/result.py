@@ -1,11 +1,13 @@
 """What comes out of a repair: of each hole, of the model, and as a whole."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from quadpatch.calibration.energy_selection import EnergyBlend
 from quadpatch.calibration.error_model import ErrorModel
+from quadpatch.filling.fairing import Energy
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.mesh.holes import Hole
 from quadpatch.patches.scale import PatchScale
@@ -32,6 +34,8 @@ class HoleResult:
         Which geometric fill carries it: `energies` (what suits the surface), `flat` (a plane patch), or a plainer one,
         `thin_plate` or `constrained`, where others fold or run through other surface. Empty
         where nothing was filled.
+    energies : sequence of (Energy, float)
+        Where the fill is `energies`: which ones, each with its share.
     """
 
     hole: Hole
@@ -44,6 +48,7 @@ class HoleResult:
     n_new_triangles: int = 0
     measures: dict[str, float] = field(default_factory=dict)
     fill: str = ""
+    energies: Sequence[tuple[Energy, float]] = ()
 
 
 @dataclass(frozen=True)

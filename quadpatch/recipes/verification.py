@@ -4,13 +4,18 @@ from dataclasses import replace
 
 import numpy as np
 
+from quadpatch.calibration.energy_selection import EnergyBlend
 from quadpatch.filling.checked_fill import CheckedFill
+from quadpatch.filling.fairing import Energy
 from quadpatch.filling.faults import Faults, find_faults
 from quadpatch.filling.islands import JoinedRims
 from quadpatch.mesh.holes import Hole
 from quadpatch.recipes.assessment import confidence
 from quadpatch.recipes.result import Completion, HoleResult
 from quadpatch.types import Triangles
+
+# Energies with a smaller share in a fill are not named.
+_LEAST_SHARE = 0.005
 
 _NO_PLANE_PATCH = "no_plane_patch", "in its plane the rim crosses itself, or encloses no area"
 
@@ -49,7 +54,12 @@ def without_faults(
 
 
 def verified_results(
-    results: list[HoleResult], rims: JoinedRims, checked: CheckedFill, faults: Faults, size: float
+    results: list[HoleResult],
+    rims: JoinedRims,
+    checked: CheckedFill,
+    blend: EnergyBlend,
+    faults: Faults,
+    size: float,
 ) -> list[HoleResult]:
     """Add to every hole's result how it was filled and what the check found.
 
@@ -59,6 +69,8 @@ def verified_results(
         One per hole, by id.
     rims : JoinedRims
     checked : CheckedFill
+    blend : EnergyBlend
+        What was tried first.
     faults : Faults
         Of the mesh that is handed out.
     size : float
@@ -72,10 +84,23 @@ def verified_results(
         elif result.verdict == "refused" and checked.fill[i] == "flat":
             by_id[hole.id] = HoleResult(hole, "refused", *_NO_PLANE_PATCH)
         elif result.verdict.startswith("filled"):
-            by_id[hole.id] = _verified(result, checked, faults, i, size)
+            energies = energies_of(i, checked, blend)
+            by_id[hole.id] = replace(_verified(result, checked, faults, i, size), energies=energies)
     for island, host in rims.host_of.items():
         by_id[island] = _joined(by_id[island], by_id[host])
     return [by_id[result.hole.id] for result in results]
+
+
+def energies_of(i: int, checked: CheckedFill, blend: EnergyBlend) -> list[tuple[Energy, float]]:
+    """Name the energies that one loop is filled by, each with its share; none where a plainer fill took their place."""
+    weights = checked.filled.energy_weights
+    if weights is None or checked.fill[i] != "energies":
+        return []
+    return [
+        (energy, share)
+        for energy, share in zip(blend.energies, weights[i].tolist(), strict=True)
+        if share >= _LEAST_SHARE
+    ]
 
 
 def _joined(island: HoleResult, host: HoleResult) -> HoleResult:

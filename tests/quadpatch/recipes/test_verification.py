@@ -3,9 +3,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from quadpatch.calibration.energy_selection import EnergyBlend
 from quadpatch.calibration.error_model import PRIOR, ErrorModel
 from quadpatch.filling.checked_fill import CheckedFill, fill_checked
-from quadpatch.filling.fairing import THIN_PLATE
+from quadpatch.filling.fairing import THIN_PLATE, Energy
 from quadpatch.filling.faults import find_faults
 from quadpatch.filling.fill import close_holes, fair_holes
 from quadpatch.filling.filled_mesh import FilledMesh
@@ -14,7 +15,7 @@ from quadpatch.mesh.holes import Hole, Selection, find_holes
 from quadpatch.patches.scale import PatchScale
 from quadpatch.recipes.assessment import assess, confidence
 from quadpatch.recipes.result import Completion, HoleResult
-from quadpatch.recipes.verification import verified_results, with_named_faults, without_faults
+from quadpatch.recipes.verification import energies_of, verified_results, with_named_faults, without_faults
 from quadpatch.types import FloatArray, IntArray, TriangleMesh
 from tests.quadpatch.filling.fills import assert_keeps
 from tests.quadpatch.filling.handmade import as_holes
@@ -25,6 +26,9 @@ HOLES = find_holes(MESH)
 CHOSEN = [hole for hole in HOLES if not hole.is_border]
 RIMS = JoinedRims([hole.loop for hole in CHOSEN], CHOSEN, {})
 SIZE = 2.9
+
+
+BLEND = EnergyBlend.of_one(THIN_PLATE)
 
 
 def plate(mesh: TriangleMesh, loops: list[IntArray]) -> FilledMesh:
@@ -122,7 +126,7 @@ def judged(
     chosen = {hole.id for hole in rims.chosen}
     selection = Selection(rims.chosen, {hole.id: ("not_chosen", "") for hole in HOLES if hole.id not in chosen})
     results = assess(HOLES, selection, checked.filled, completion, PRIOR)
-    return verified_results(results, rims, checked, checked.faults, SIZE)
+    return verified_results(results, rims, checked, BLEND, checked.faults, SIZE)
 
 
 def test_every_filled_hole_names_its_fill_and_its_faults() -> None:
@@ -223,3 +227,19 @@ def test_a_rule_may_keep_the_model_out_of_a_hole() -> None:
     assert (new[hole == 1] == 0).all()
     assert (new[hole != 1] > 0).any()
     assert [result.code for result in judged(completion=limited)[1:]] == ["", "geometry", ""]
+
+
+def test_the_energies_of_a_fill_are_named_with_their_shares_and_those_of_other_fills_are_not() -> None:
+    energies = (Energy(membrane=0.3, plate=1.0), THIN_PLATE, Energy(plate=1.0, variation=2.0))
+    blend = EnergyBlend(energies, np.zeros(3), np.zeros(3))
+    checked = fill_checked(MESH, as_holes(RIMS.loops), blend.fill)
+    weights = checked.filled.energy_weights
+    assert weights is not None
+    np.testing.assert_allclose(weights.sum(axis=1), 1.0)
+    named = energies_of(1, checked, blend)
+    assert dict(named) == {e: w for e, w in zip(energies, weights[1].tolist(), strict=True) if w >= 0.005}
+    assert energies_of(1, replace(checked, fill=["energies", "thin_plate", "energies"]), blend) == []
+    # Where a loop is closed by a plane patch, the others keep their own energies.
+    loops = as_holes(RIMS.loops)
+    beside_flat = fill_checked(MESH, replace(loops, flat=np.array([True, False, False])), blend.fill)
+    assert [bool(energies_of(i, beside_flat, blend)) for i in range(3)] == [False, True, True]
