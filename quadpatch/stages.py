@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 
 from quadpatch.errors import QuadpatchError
 from quadpatch.types import Progress, no_progress
+from shared_rules.stages import Stage
 
 _log = logging.getLogger(__name__)
 
@@ -24,7 +25,7 @@ class Stages:
     seconds: dict[str, float] = field(default_factory=dict)
 
     @contextmanager
-    def stage(self, name: str) -> Iterator[None]:
+    def stage(self, name: Stage) -> Iterator[None]:
         """Time what happens inside."""
         self.progress(name, 0.0)
         start = time.perf_counter()

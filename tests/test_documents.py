@@ -16,8 +16,7 @@ from PIL import Image
 import jobkit.errors
 import quadpatch.errors
 from client.exits import MEANINGS
-from jobkit.schema import JobState
-from jobkit.schema.jobs import STAGES
+from jobkit.schema import STAGES, JobState
 from jobkit.settings import settings_table
 from quadpatch.calibration import calibration_set, error_model
 from quadpatch.filling import fill, triangulation

@@ -2,7 +2,6 @@
 
 from jobkit.schema.base import Request, Response, rfc3339
 from jobkit.schema.jobs import (
-    STAGES,
     Event,
     EventPage,
     EventType,
@@ -73,6 +72,7 @@ from jobkit.schema.webhooks import (
     WebhookWithSecret,
 )
 from shared_rules.hole_selection import HoleAction, HoleKind
+from shared_rules.stages import STAGES
 
 __all__ = [
     "DEFAULT_MODEL",

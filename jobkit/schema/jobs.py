@@ -12,19 +12,6 @@ from jobkit.schema.states import JobState
 from shared_rules.hole_selection import HoleAction
 
 FileRole = Literal["result", "report", "preview", "closeups"]
-STAGES = (
-    "read",
-    "holes",
-    "fill",
-    "smooth",
-    "quadrangulate",
-    "patchify",
-    "learn",
-    "inpaint",
-    "reconstruct",
-    "judge",
-    "write",
-)
 
 
 class JobError(Response):

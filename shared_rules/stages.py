@@ -1,0 +1,18 @@
+"""Stages of a repair, in order: the names in progress, events and reports."""
+
+from typing import Literal, get_args
+
+Stage = Literal[
+    "read",
+    "holes",
+    "fill",
+    "smooth",
+    "quadrangulate",
+    "patchify",
+    "learn",
+    "inpaint",
+    "reconstruct",
+    "judge",
+    "write",
+]
+STAGES: tuple[Stage, ...] = get_args(Stage)
