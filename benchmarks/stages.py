@@ -22,7 +22,7 @@ from quadpatch.mesh.raycast import RayScene
 from quadpatch.mesh.smoothing import laplacian_smooth
 from quadpatch.mesh.weld import weld
 from quadpatch.patches.connectivity import vertices_in_patches
-from quadpatch.patches.folding import fold_fraction, is_height_map
+from quadpatch.patches.folding import is_unfolded
 from quadpatch.patches.height_map import sample_height_maps
 from quadpatch.patches.seeds import project_seeds, seed_points
 from quadpatch.quads.frames import quad_frames
@@ -78,9 +78,7 @@ def measure(name: str, mesh: TriangleMesh, arguments: argparse.Namespace) -> Tab
         lambda: sample_height_maps(scene, mesh, measured, seeds, length, resolution),
         lambda made: f"{made.heights.size:,} bins, {made.seen.mean():.1%} seen",
     )
-    watch.time(
-        "folding", lambda: fold_fraction(patches), lambda _: f"{is_height_map(patches).mean():.1%} are height maps"
-    )
+    watch.time("folding", lambda: is_unfolded(patches), lambda unfolded: f"{unfolded.mean():.1%} are height maps")
     normals = vertex_normals(mesh.vertices, mesh.triangles)
     watch.time(
         "connectivity",

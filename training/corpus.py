@@ -11,18 +11,17 @@ from pathlib import Path
 import numpy as np
 
 from quadpatch.errors import NoQuadsError
+from quadpatch.filling.fill import close_flat
 from quadpatch.formats.reading import read_scan
 from quadpatch.mesh.measures import mean_edge_length
 from quadpatch.mesh.raycast import RayScene
 from quadpatch.mesh.smoothing import laplacian_smooth
 from quadpatch.mesh.weld import weld
-from quadpatch.patches.folding import is_height_map
+from quadpatch.patches.folding import is_unfolded
 from quadpatch.patches.height_map import sample_height_maps
+from quadpatch.patches.layout import lay_out, patchify, take
 from quadpatch.patches.normalisation import HEIGHTS, NORMALISATION, to_signals
-from quadpatch.patches.scale import EDGES_PER_BIN, base_surface_iterations
-from quadpatch.patches.seeds import Seeds, seed_points
-from quadpatch.quads.frames import quad_frames
-from quadpatch.quads.mesher import quadrangulate
+from quadpatch.patches.scale import EDGES_PER_BIN, PatchScale, base_surface_iterations
 from quadpatch.types import BoolArray, FloatArray, Patches, TriangleMesh
 
 # Patches that vary less than this part of their side show noise, not a pattern worth an atom.
@@ -124,35 +123,41 @@ def cut_patches(mesh: TriangleMesh, recipe: PatchRecipe, rng: np.random.Generato
     edge_length = mean_edge_length(mesh)
     length = recipe.length or EDGES_PER_BIN * recipe.resolution * edge_length
     try:
-        base_surface = laplacian_smooth(mesh, base_surface_iterations(length, edge_length))
-        quad_mesh = quadrangulate(base_surface, length / QUADS_PER_LENGTH)
+        base_surface = _base_surface(mesh, length, edge_length)
+        seeds = lay_out(base_surface, PatchScale(length / QUADS_PER_LENGTH, recipe.resolution, recipe.overlap))
     except NoQuadsError:
         return TrainingPatches.joined([], recipe.resolution)
-    seeds = seed_points(quad_mesh, quad_frames(quad_mesh), recipe.overlap)
     if len(seeds) > recipe.max_seeds:
-        chosen = np.sort(rng.choice(len(seeds), recipe.max_seeds, replace=False))
-        seeds = Seeds(seeds.origins[chosen], seeds.frames[chosen], seeds.quad[chosen])
+        chosen = np.zeros(len(seeds), np.bool_)
+        chosen[rng.choice(len(seeds), recipe.max_seeds, replace=False)] = True
+        seeds = take(seeds, chosen)
+    unfilled = close_flat(mesh, [])
     cut = []
-    nothing_invented = np.zeros(len(mesh.triangles), dtype=np.bool_)
     for side in (scale * length for scale in recipe.scales):
-        # As in a repair, wider patches lie over a smoother base surface.
-        under = base_surface if side == length else laplacian_smooth(mesh, base_surface_iterations(side, edge_length))
-        surface, smooth = (
-            sample_height_maps(RayScene(m), m, nothing_invented, seeds, side, recipe.resolution) for m in (mesh, under)
-        )
-        cut.append(_worth_learning(surface, smooth if recipe.over_base_surface else None))
+        scale = PatchScale(side, recipe.resolution, recipe.overlap)
+        if recipe.over_base_surface:
+            # As in a repair, wider patches lie over a smoother base surface.
+            under = base_surface if side == length else _base_surface(mesh, side, edge_length)
+            sampled = patchify(unfilled, under, seeds, scale)
+            cut.append(_worth_learning(sampled.patches, sampled.base_heights))
+        else:
+            nothing_invented = np.zeros(len(mesh.triangles), dtype=np.bool_)
+            patches = sample_height_maps(RayScene(mesh), mesh, nothing_invented, seeds, side, recipe.resolution)
+            cut.append(_worth_learning(patches, np.zeros_like(patches.heights)))
     return TrainingPatches.joined(cut, recipe.resolution)
 
 
-def _worth_learning(surface: Patches, smooth: Patches | None) -> TrainingPatches:
-    """Keep the patches that are height maps, known almost everywhere and not flat."""
-    known = surface.known if smooth is None else surface.known & smooth.seen
-    base = 0.0 if smooth is None else smooth.heights
-    detail = np.where(known, surface.heights - base, 0.0)
-    _, scaling = to_signals(detail, known)
-    keep = is_height_map(surface) & (known.mean(axis=(1, 2)) >= LEAST_KNOWN)
-    keep &= scaling.deviation > LEAST_RELIEF * surface.length
-    return TrainingPatches(detail[keep], known[keep])
+def _base_surface(mesh: TriangleMesh, length: float, edge_length: float) -> TriangleMesh:
+    return laplacian_smooth(mesh, base_surface_iterations(length, edge_length))
+
+
+def _worth_learning(patches: Patches, base_heights: FloatArray) -> TrainingPatches:
+    """Keep the patches that a repair would code, known almost everywhere and not flat."""
+    detail = np.where(patches.known, patches.heights - base_heights, 0.0)
+    _, scaling = to_signals(detail, patches.known)
+    keep = is_unfolded(patches) & (patches.known.mean(axis=(1, 2)) >= LEAST_KNOWN)
+    keep &= scaling.deviation > LEAST_RELIEF * patches.length
+    return TrainingPatches(detail[keep], patches.known[keep])
 
 
 def turn_at_random(patches: TrainingPatches, rng: np.random.Generator) -> TrainingPatches:

@@ -6,42 +6,20 @@ however well it is completed, so later stages leave such patches out.
 
 import numpy as np
 
-from quadpatch.types import BoolArray, FloatArray, Patches
+from quadpatch.types import BoolArray, Patches
 
 # Between neighbouring bins a surface may climb this many bins; more is a step to another layer.
 STEEPEST = 3.0
-# A patch with a larger share of bad bins is no height map.
+# A patch with a larger share of its seen bins at steps is no height map.
 MOST_FOLDED = 0.2
 # A patch that shows less than this share of its square has nothing to go by.
 LEAST_SEEN = 0.4
 
 
-def fold_fraction(patches: Patches) -> FloatArray:
-    """Share of bins of each patch that see no surface facing z, or stand at a step to another layer.
-
-    Parameters
-    ----------
-    patches : Patches
-
-    Returns
-    -------
-    (n_patches,) float64
-        In 0..1.
-    """
-    is_bad = ~patches.seen | _at_step(patches)
-    return np.asarray(is_bad.mean(axis=(1, 2)))
-
-
-def is_height_map(patches: Patches, most_folded: float = MOST_FOLDED) -> BoolArray:
-    """Say which patches (n_patches,) show one connected surface over all but a few of their bins."""
-    return fold_fraction(patches) <= most_folded
-
-
 def is_unfolded(patches: Patches) -> BoolArray:
     """Say which patches (n_patches,) show one connected surface, as far as they show any.
 
-    Unlike `is_height_map`, what lies beyond the border of an open scan counts as unknown, not as folded: completion
-    can do with part of a patch, learning can't.
+    What lies beyond the border of an open scan counts as unknown, not as folded.
     """
     n_seen = patches.seen.sum(axis=(1, 2))
     n_steps = (_at_step(patches) & patches.seen).sum(axis=(1, 2))
