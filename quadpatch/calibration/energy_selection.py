@@ -13,11 +13,11 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from quadpatch.calibration.calibration_set import ROUNDING, CalibrationSet, choose_energy, error_per_hole
+from quadpatch.calibration.synthetic_holes import new_loops
 from quadpatch.filling.fairing import Energy, triangles_around
 from quadpatch.filling.fill import close_holes, fair_holes
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.mesh.averages import mean_by
-from quadpatch.mesh.boundary import boundary_loops
 from quadpatch.mesh.distance import distance_to_mesh
 from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh
 
@@ -118,7 +118,7 @@ def leave_one_ring_out(mesh: TriangleMesh, loops: list[IntArray], energies: Sequ
     remaining = mesh.triangles[~ring]
     removed = np.flatnonzero(_used(mesh.triangles, n_vertices) & ~_used(remaining, n_vertices))
     rim_tree = cKDTree(mesh.vertices[rim])
-    wider_loops = _new_loops(mesh, remaining)
+    wider_loops = new_loops(mesh, remaining)
     closed = close_holes(TriangleMesh(mesh.vertices, remaining), wider_loops)
     opened = np.zeros(len(loops), bool)
     for number, loop in enumerate(wider_loops):
@@ -144,16 +144,6 @@ def _blended(fills: list[FilledMesh], weights: FloatArray) -> FilledMesh:
     invented = np.stack([fill.mesh.vertices[fill.n_measured_vertices :] for fill in fills], axis=1)
     of_vertex = weights[fills[0].vertex_hole]
     return fills[0].with_vertices(np.einsum("vek,ve->vk", invented, of_vertex))
-
-
-def _new_loops(mesh: TriangleMesh, remaining: IntArray) -> list[IntArray]:
-    """Find simple loops of what is left that touch no border that was there before."""
-    before = np.zeros(len(mesh.vertices), bool)
-    for loop in boundary_loops(mesh.triangles).loops:
-        before[loop] = True
-    boundary = boundary_loops(remaining)
-    pairs = zip(boundary.loops, boundary.is_manifold, strict=True)
-    return [loop for loop, is_manifold in pairs if is_manifold and not before[loop].any()]
 
 
 def _used(triangles: IntArray, n_vertices: int) -> BoolArray:

@@ -5,8 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
-from quadpatch.mesh.boundary import boundary_edge_mask, boundary_loops, directed_edges
+from quadpatch.mesh.boundary import boundary_edge_mask, boundary_loops
 from quadpatch.mesh.normals import vertex_normals
+from quadpatch.mesh.topology import directed_edges
 from quadpatch.types import BoolArray, IntArray, TriangleMesh, Triangles
 
 # The rim of a cut lies so much outside the disk of vertices that it takes, in mean edge lengths.
@@ -69,7 +70,7 @@ def cut_holes(mesh: TriangleMesh, diameter: float, spacing: Spacing, rng: np.ran
     removed = _disks(mesh, radius, spacing, rng)
     cut_away = np.asarray(removed[mesh.triangles].any(axis=1))
     remaining = TriangleMesh(mesh.vertices, mesh.triangles[~cut_away])
-    return MeshWithHoles(remaining, removed, cut_away, _new_loops(mesh, remaining.triangles))
+    return MeshWithHoles(remaining, removed, cut_away, new_loops(mesh, remaining.triangles))
 
 
 def _disks(mesh: TriangleMesh, radius: float, spacing: Spacing, rng: np.random.Generator) -> BoolArray:
@@ -103,7 +104,8 @@ def _far_from_boundary(mesh: TriangleMesh, distance: float) -> BoolArray:
     return far
 
 
-def _new_loops(mesh: TriangleMesh, remaining: Triangles) -> list[IntArray]:
+def new_loops(mesh: TriangleMesh, remaining: Triangles) -> list[IntArray]:
+    """Find the manifold loops of the remaining triangles (k, 3) of a mesh that touch no boundary of the mesh itself."""
     old = np.zeros(len(mesh.vertices), bool)
     old[_boundary_vertices(mesh)] = True
     boundary = boundary_loops(remaining)

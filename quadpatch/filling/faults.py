@@ -5,9 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from quadpatch.filling.filled_mesh import FilledMesh
-from quadpatch.mesh.boundary import directed_edges, edge_keys
 from quadpatch.mesh.intersections import crossing_pairs, heights, touching_boxes
 from quadpatch.mesh.normals import triangle_normals
+from quadpatch.mesh.topology import directed_edges, edge_keys
 from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Triangles
 
 # Two triangles whose normals differ by more fold over each other.

@@ -14,8 +14,8 @@ import numpy as np
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.filling.refinement import Refined, flip_to_delaunay, refine
 from quadpatch.filling.triangulation import EdgeSet
-from quadpatch.mesh.boundary import directed_edges
 from quadpatch.mesh.normals import cross
+from quadpatch.mesh.topology import directed_edges
 from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Triangles, Vertices
 
 # Wanted edge length in that of the rim: refinement splits rather too much, and in a plane there is no shape to follow.

@@ -13,6 +13,7 @@ from quadpatch.filling.triangulation import EdgeSet
 from quadpatch.mesh.edge_groups import group_edges
 from quadpatch.mesh.normals import cross, length, triangle_normals, unit, vertex_normals
 from quadpatch.mesh.smoothing import neighbour_average
+from quadpatch.mesh.topology import edge_keys
 from quadpatch.types import BoolArray, FloatArray, IntArray, Triangles, Vertices
 
 # Liepa's density factor: larger gives more vertices. With his sqrt(2) a fill has fewer vertices than were lost (0.60 to
@@ -163,7 +164,7 @@ def _flip_once(
     """Flip, in place, edges that are not Delaunay, no two in one triangle; return the triangles that changed."""
     n_vertices = len(vertices)
     edges = triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
-    keys = _edge_keys(edges[:, 0], edges[:, 1], n_vertices)
+    keys = edge_keys(edges, n_vertices)
     order = np.argsort(keys, kind="stable")
     ranked = keys[order]
     twin = np.flatnonzero(ranked[1:] == ranked[:-1])
@@ -176,7 +177,7 @@ def _flip_once(
     a, b, c, d, left, right = (row[bad] for row in (a, b, c, d, left, right))
     allowed = _is_unfolded(*(vertices[row] for row in (a, b, c, d))) & (c != d)
     allowed &= ~existing_edges.contains(np.stack([c, d], axis=1)) & ~(shared[c] & shared[d])
-    crossing = _edge_keys(c, d, n_vertices)
+    crossing = edge_keys(np.stack([c, d], axis=1), n_vertices)
     allowed &= ranked[np.searchsorted(ranked, crossing).clip(max=max(len(ranked) - 1, 0))] != crossing
     if rim is not None:
         allowed &= _turns_little(np.concatenate([triangles, rim]), vertices, left, right)
@@ -187,10 +188,6 @@ def _flip_once(
     triangles[left] = np.stack([a, d, c], axis=1)
     triangles[right] = np.stack([d, b, c], axis=1)
     return np.concatenate([left, right])
-
-
-def _edge_keys(start: IntArray, end: IntArray, n_vertices: int) -> IntArray:
-    return np.minimum(start, end) * np.int64(n_vertices) + np.maximum(start, end)
 
 
 def _opposite(triangles: Triangles, half_edges: IntArray) -> IntArray:

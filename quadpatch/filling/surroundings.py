@@ -8,8 +8,8 @@ from quadpatch.filling.fairing import triangles_around
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.filling.refinement import Refined
 from quadpatch.filling.triangulation import EdgeSet, Forbidden, triangulate_loops
-from quadpatch.mesh.boundary import directed_edges
 from quadpatch.mesh.normals import triangle_normals, unit, vertex_normals
+from quadpatch.mesh.topology import directed_edges
 from quadpatch.types import FloatArray, IntArray, TriangleMesh, Triangles
 
 # The minimum variation surface asks for the Laplacian at the rim and at one ring of vertices outside it, and that for

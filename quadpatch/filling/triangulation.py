@@ -11,8 +11,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from quadpatch.filling.division import RimLoop, divide
-from quadpatch.mesh.boundary import directed_edges, edge_keys
 from quadpatch.mesh.normals import cross, length
+from quadpatch.mesh.topology import directed_edges, edge_keys
 from quadpatch.types import BoolArray, FloatArray, IntArray, Triangles, Vertices
 
 # Loops of more vertices are divided.

@@ -7,8 +7,8 @@ materials, texture numbers) are those of the nearest rim vertex or rim triangle;
 import numpy as np
 from scipy.spatial import cKDTree
 
-from quadpatch.formats.harmonic import extend_harmonically
 from quadpatch.formats.scan import Fill, Scan
+from quadpatch.mesh.harmonic import extend_harmonically
 from quadpatch.types import FloatArray, IntArray, Triangles, Vertices
 
 

@@ -6,12 +6,11 @@ never stretched across the atlas from one chart to another.
 """
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from quadpatch.formats.attributes import rim_triangles, triangle_edges
-from quadpatch.formats.harmonic import extend_harmonically
 from quadpatch.formats.scan import Fill, Scan
+from quadpatch.mesh.harmonic import extend_harmonically
+from quadpatch.mesh.topology import components
 from quadpatch.types import FloatArray, IntArray
 
 
@@ -55,9 +54,8 @@ def _charts(corner_vertex: IntArray, corner_value: FloatArray) -> IntArray:
     size = int(point.max(initial=-1)) + 1
     first, second = point[0::3], point[1::3]
     starts, ends = np.concatenate([first, first]), np.concatenate([second, point[2::3]])
-    graph = coo_array((np.ones(len(starts)), (starts, ends)), shape=(size, size))
-    _, chart = connected_components(graph, directed=False)
-    return np.where(textured, chart[point], -1).astype(np.int64)
+    chart = components(np.stack([starts, ends], axis=1), size)
+    return np.where(textured, chart[point], -1)
 
 
 def _corners_in_main_chart(

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from quadpatch.mesh.topology import directed_edges, edge_keys
 from quadpatch.types import BoolArray, IntArray, Triangles
 
 
@@ -53,17 +54,6 @@ def boundary_loops(triangles: Triangles) -> Boundary:
     loops = [(np.roll(loop, -int(np.argmin(loop))), good and not is_bad[loop].any()) for loop, good in loops]
     loops.sort(key=lambda item: tuple(item[0][:2]))
     return Boundary([loop for loop, _ in loops], [good for _, good in loops])
-
-
-def directed_edges(triangles: Triangles) -> IntArray:
-    """Directed edges of all triangles, (3 n_triangles, 2) int64; edge ``3 t + k`` runs from corner k of triangle t."""
-    return triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
-
-
-def edge_keys(edges: IntArray, n_vertices: int) -> IntArray:
-    """One int64 for every edge, the same in both directions; ``n_vertices`` squared must fit 63 bits."""
-    start, end = edges[:, 0], edges[:, 1]
-    return np.minimum(start, end) * np.int64(n_vertices) + np.maximum(start, end)
 
 
 def boundary_edge_mask(triangles: Triangles) -> BoolArray:

@@ -11,7 +11,8 @@ without it along most of the group's outline.
 import numpy as np
 from numpy.typing import NDArray
 
-from quadpatch.mesh.edge_groups import EdgeGroups, components, group_edges
+from quadpatch.mesh.edge_groups import EdgeGroups, group_edges
+from quadpatch.mesh.topology import components
 from quadpatch.types import BoolArray, IntArray, Triangles
 
 

@@ -3,10 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
-from quadpatch.mesh.boundary import directed_edges, edge_keys
+from quadpatch.mesh.topology import directed_edges, edge_keys
 from quadpatch.types import BoolArray, IntArray, Triangles
 
 
@@ -95,9 +93,3 @@ def survey_edges(triangles: Triangles, n_vertices: int) -> EdgeSurvey:
     on_boundary[keys[alone] // n_vertices] = True
     on_boundary[keys[alone] % n_vertices] = True
     return EdgeSurvey(on_boundary, is_crowded, is_divided)
-
-
-def components(links: IntArray, n: int) -> IntArray:
-    """Find the connected component of each of n things that some links (k, 2) join, (n,) int64."""
-    graph = coo_array((np.ones(len(links), bool), (links[:, 0], links[:, 1])), shape=(n, n))
-    return np.asarray(connected_components(graph, directed=False)[1], np.int64)

@@ -8,7 +8,8 @@ Sheets that meet in one edge, none of them small, are no fins: their rims stay n
 
 import numpy as np
 
-from quadpatch.mesh.edge_groups import EdgeGroups, components, group_edges
+from quadpatch.mesh.edge_groups import EdgeGroups, group_edges
+from quadpatch.mesh.topology import components
 from quadpatch.types import BoolArray, FloatArray, IntArray, Triangles, Vertices
 
 # A fin has at most this share of its piece's faces, and at most so many: a larger scrap may be what the scan is about.

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from quadpatch.mesh.boundary import directed_edges
+from quadpatch.mesh.topology import directed_edges
 from quadpatch.types import TriangleMesh
 
 

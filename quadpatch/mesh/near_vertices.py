@@ -11,9 +11,8 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from quadpatch.errors import OptionError
-from quadpatch.mesh.boundary import directed_edges
-from quadpatch.mesh.edge_groups import components
 from quadpatch.mesh.measures import mean_edge_length
+from quadpatch.mesh.topology import components, directed_edges
 from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Triangles, Vertices
 
 # In mesh units, or what the numbers of the file allow.

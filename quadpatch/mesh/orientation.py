@@ -5,8 +5,8 @@ Boundary edges keep the direction of their face, so one face in the wrong direct
 
 import numpy as np
 
-from quadpatch.mesh.boundary import directed_edges, edge_keys
-from quadpatch.mesh.edge_groups import components, group_edges
+from quadpatch.mesh.edge_groups import group_edges
+from quadpatch.mesh.topology import components, directed_edges, edge_keys
 from quadpatch.types import BoolArray, IntArray, Triangles
 
 

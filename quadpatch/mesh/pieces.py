@@ -4,9 +4,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
+from quadpatch.mesh.topology import components
 from quadpatch.types import FloatArray, IntArray, TriangleMesh
 
 
@@ -40,11 +39,8 @@ class Pieces:
 def find_pieces(mesh: TriangleMesh, loops: list[IntArray]) -> Pieces:
     """Find the connected pieces of a mesh, and those of some non-empty loops of vertices."""
     n, triangles = len(mesh.vertices), mesh.triangles
-    start, end = triangles[:, :2].ravel(), triangles[:, 1:].ravel()
-    count, found = connected_components(
-        coo_array((np.ones(len(start), bool), (start, end)), shape=(n, n)), directed=False
-    )
-    piece = found.astype(np.int64)
+    piece = components(np.stack([triangles[:, :2].ravel(), triangles[:, 1:].ravel()], axis=1), n)
+    count = int(piece.max(initial=-1)) + 1
     low, high = np.full((count, 3), np.inf), np.full((count, 3), -np.inf)
     np.minimum.at(low, piece, mesh.vertices)
     np.maximum.at(high, piece, mesh.vertices)

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from quadpatch.mesh.boundary import directed_edges
 from quadpatch.mesh.normals import unit
+from quadpatch.mesh.topology import directed_edges
 from quadpatch.types import FloatArray, IntArray, TriangleMesh, Triangles, Vertices
 
 

@@ -3,11 +3,10 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from quadpatch.mesh.normals import area_vectors
-from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Triangles, Vertices
+from quadpatch.mesh.topology import face_components
+from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Vertices
 
 # Triangles of a part that speak for it when a view is chosen.
 _SAMPLE = 800
@@ -51,7 +50,7 @@ def main_pieces(mesh: TriangleMesh) -> IntArray:
     """Triangles (n,) of all pieces but stray bits, which would make a picture small; none of a mesh without any."""
     if not len(mesh.triangles):
         return np.zeros(0, dtype=np.int64)
-    label = _pieces(mesh.triangles, len(mesh.vertices))
+    label = face_components(mesh.triangles, len(mesh.vertices))
     area = np.linalg.norm(area_vectors(mesh.vertices, mesh.triangles), axis=1)
     share = np.bincount(label, weights=area)
     return np.flatnonzero((share >= _STRAY * share.max())[label])
@@ -77,17 +76,8 @@ def filled_holes(mesh: TriangleMesh, invented: BoolArray, most: int) -> list[Int
     chosen = np.flatnonzero(invented)
     if len(chosen) == 0:
         return []
-    label = _pieces(mesh.triangles[chosen], len(mesh.vertices))
+    label = face_components(mesh.triangles[chosen], len(mesh.vertices))
     vectors = area_vectors(mesh.vertices, mesh.triangles[chosen])
     opening = np.linalg.norm(np.stack([np.bincount(label, weights=vectors[:, axis]) for axis in range(3)]), axis=0)
     largest = np.argsort(-opening, kind="stable")[:most]
     return [chosen[label == k] for k in largest if opening[k] > 0]
-
-
-def _pieces(triangles: Triangles, n_vertices: int) -> IntArray:
-    """Label each triangle (n,) with its group, connected over shared vertices."""
-    n_nodes = len(triangles) + n_vertices
-    rows, columns = np.repeat(np.arange(len(triangles)), 3), len(triangles) + triangles.ravel()
-    graph = coo_array((np.ones(len(rows)), (rows, columns)), shape=(n_nodes, n_nodes))
-    labels = connected_components(graph, directed=False)[1][: len(triangles)]
-    return np.asarray(np.unique(labels, return_inverse=True)[1], dtype=np.int64)

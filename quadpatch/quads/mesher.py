@@ -18,14 +18,13 @@ from contextlib import contextmanager
 
 import numpy as np
 import pynanoinstantmeshes
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from quadpatch.errors import NoQuadsError
+from quadpatch.mesh.topology import face_components
 from quadpatch.quads.frames import quad_normals
 from quadpatch.quads.vertex_clustering import cluster_vertices
-from quadpatch.types import BoolArray, FloatArray, IntArray, QuadMesh, Quads, TriangleMesh, Vertices
+from quadpatch.types import BoolArray, FloatArray, QuadMesh, Quads, TriangleMesh, Vertices
 
 # Cells of the clustered base surface along one side of a quad. Four to eight give the edge lengths, covered area and
 # normals of the full base surface on a dozen scans; two already break the topology of quads.
@@ -151,17 +150,6 @@ def _turn_outwards(vertices: Vertices, quads: Quads, base_surface: TriangleMesh)
     _, nearest = tree.query(vertices[quads].mean(axis=1), k=min(_NEIGHBOURS, len(a)))
     outward = np.cross(b - a, c - a)[nearest.reshape(len(quads), -1)].sum(axis=1)
     vote = np.einsum("ij,ij->i", outward, quad_normals(vertices, quads))
-    piece = _pieces(quads)
+    piece = face_components(quads, int(quads.max()) + 1)
     is_inside_out = (np.bincount(piece, weights=vote) < 0)[piece]
     return np.where(is_inside_out[:, None], quads[:, ::-1], quads)
-
-
-def _pieces(quads: Quads) -> IntArray:
-    """Label each quad with the connected piece, over shared vertices, that it belongs to."""
-    n_quads = len(quads)
-    rows = np.repeat(np.arange(n_quads), 4)
-    columns = n_quads + quads.ravel()
-    n_nodes = n_quads + int(quads.max()) + 1
-    graph = coo_array((np.ones(len(rows)), (rows, columns)), shape=(n_nodes, n_nodes))
-    _, labels = connected_components(graph, directed=False)
-    return np.asarray(labels[:n_quads], dtype=np.int64)

@@ -1,10 +1,9 @@
 """Thin a smooth mesh by joining the vertices of each cell of a grid, for a mesher that trips over broken input."""
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from quadpatch.mesh.normals import vertex_normals
+from quadpatch.mesh.topology import components
 from quadpatch.types import BoolArray, IntArray, TriangleMesh, Triangles, Vertices
 
 # Twice the area over the squared length of two sides: below this three corners lie on a line, in float32.
@@ -77,10 +76,9 @@ def split_fans(triangles: Triangles) -> tuple[IntArray, Triangles]:
     is_opposite = start[one] == end[other]
     one, other = one[is_opposite], other[is_opposite]
     links = np.concatenate([one, following[one]]), np.concatenate([following[other], other])
-    graph = coo_array((np.ones(len(links[0])), links), shape=(n_corners, n_corners))
-    _, fan = connected_components(graph, directed=False)
+    fan = components(np.stack(links, axis=1), n_corners)
     _, first_corner = np.unique(fan, return_index=True)
-    return triangles.ravel()[first_corner], fan.reshape(-1, 3).astype(np.int64)
+    return triangles.ravel()[first_corner], fan.reshape(-1, 3)
 
 
 def _cluster_labels(mesh: TriangleMesh, cell: float) -> IntArray:

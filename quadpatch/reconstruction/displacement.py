@@ -13,8 +13,8 @@ from scipy import sparse
 from scipy.sparse.linalg import splu
 
 from quadpatch.filling.filled_mesh import FilledMesh
-from quadpatch.mesh.boundary import directed_edges
 from quadpatch.mesh.normals import vertex_normals
+from quadpatch.mesh.topology import directed_edges
 from quadpatch.patches.connectivity import bilinear, vertices_in_patches
 from quadpatch.types import FloatArray, IntArray, Patches
 

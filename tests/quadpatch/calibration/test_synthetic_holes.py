@@ -5,9 +5,10 @@ from hypothesis import strategies as st
 from scipy.spatial import cKDTree
 
 from quadpatch.calibration.synthetic_holes import MeshWithHoles, Spacing, cut_holes
-from quadpatch.mesh.boundary import boundary_edge_mask, boundary_loops, directed_edges
+from quadpatch.mesh.boundary import boundary_edge_mask, boundary_loops
 from quadpatch.mesh.loop_diameter import loop_diameter
 from quadpatch.mesh.measures import mean_edge_length
+from quadpatch.mesh.topology import directed_edges
 from quadpatch.types import IntArray, TriangleMesh
 from tests.quadpatch.shapes import bumpy_plate, cylinder, euler_characteristic, open_grid, punched, sphere
 

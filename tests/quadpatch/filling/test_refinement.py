@@ -7,8 +7,9 @@ from hypothesis import strategies as st
 
 from quadpatch.filling.refinement import Refined, flip_to_delaunay, refine, relax
 from quadpatch.filling.triangulation import EdgeSet, Forbidden, triangulate_loops
-from quadpatch.mesh.boundary import boundary_loops, directed_edges
+from quadpatch.mesh.boundary import boundary_loops
 from quadpatch.mesh.normals import area_vectors, vertex_normals
+from quadpatch.mesh.topology import directed_edges
 from quadpatch.types import FloatArray, IntArray, TriangleMesh, Triangles, Vertices
 from tests.quadpatch.shapes import (
     bumpy_plate,

@@ -6,8 +6,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from quadpatch.filling.triangulation import MAX_TABLE_SIZE, EdgeSet, Forbidden, triangulate_loops
-from quadpatch.mesh.boundary import boundary_loops, directed_edges
+from quadpatch.mesh.boundary import boundary_loops
 from quadpatch.mesh.normals import area_vectors, triangle_normals
+from quadpatch.mesh.topology import directed_edges
 from quadpatch.types import FloatArray, IntArray, Triangles
 from tests.quadpatch.shapes import faces_per_edge, is_oriented_manifold
 

@@ -5,7 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from quadpatch.mesh.boundary import Boundary, boundary_edge_mask, boundary_loops, directed_edges
+from quadpatch.mesh.boundary import Boundary, boundary_edge_mask, boundary_loops
+from quadpatch.mesh.topology import directed_edges
 from quadpatch.types import IntArray, Triangles
 from tests.quadpatch.shapes import cylinder, joined, open_grid, punched, sphere
 

@@ -5,8 +5,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from quadpatch.mesh.boundary import boundary_loops, directed_edges
+from quadpatch.mesh.boundary import boundary_loops
 from quadpatch.mesh.fins import fin_triangles
+from quadpatch.mesh.topology import directed_edges
 from quadpatch.mesh.weld import weld
 from quadpatch.types import IntArray, TriangleMesh, Triangles
 from tests.quadpatch.shapes import bumpy_plate, joined, open_grid, punched, sphere

@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from quadpatch.formats.harmonic import extend_harmonically
+from quadpatch.mesh.harmonic import extend_harmonically
 from quadpatch.types import IntArray
 
 

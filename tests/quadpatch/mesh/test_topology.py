@@ -1,0 +1,44 @@
+import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+
+from quadpatch.mesh.topology import components, directed_edges, edge_keys, face_components
+from tests.quadpatch.shapes import joined, moved, open_grid, sphere
+
+
+def test_edge_k_of_a_triangle_runs_from_its_corner_k() -> None:
+    np.testing.assert_array_equal(directed_edges(np.array([[4, 7, 9]])), [[4, 7], [7, 9], [9, 4]])
+
+
+@given(edges=st.lists(st.tuples(st.integers(0, 40), st.integers(0, 40)), min_size=1, max_size=30))
+def test_keys_tell_edges_apart_and_know_no_direction(edges: list[tuple[int, int]]) -> None:
+    keys = edge_keys(np.array(edges), 41)
+    np.testing.assert_array_equal(keys, edge_keys(np.array(edges)[:, ::-1], 41))
+    assert len(np.unique(keys)) == len({frozenset(edge) for edge in edges})
+
+
+@given(links=st.lists(st.tuples(st.integers(0, 11), st.integers(0, 11)), max_size=14))
+def test_components_are_those_of_a_union_find(links: list[tuple[int, int]]) -> None:
+    parent = list(range(12))
+
+    def root(i: int) -> int:
+        while parent[i] != i:
+            i = parent[i]
+        return i
+
+    for one, other in links:
+        parent[root(one)] = root(other)
+    found = components(np.array(links, np.int64).reshape(-1, 2), 12)
+    for i in range(12):
+        for j in range(12):
+            assert (found[i] == found[j]) == (root(i) == root(j))
+    assert sorted(set(found.tolist())) == list(range(found.max() + 1))
+
+
+def test_faces_that_share_a_vertex_are_in_one_component() -> None:
+    grid, ball = open_grid(4), moved(sphere(1), (5.0, 0.0, 0.0))
+    mesh = joined(grid, ball)
+    expected = np.repeat([0, 1], [len(grid.triangles), len(ball.triangles)])
+    np.testing.assert_array_equal(face_components(mesh.triangles, len(mesh.vertices)), expected)
+    quads = np.array([[0, 1, 2, 3], [7, 8, 9, 10], [3, 4, 5, 6]])
+    np.testing.assert_array_equal(face_components(quads, 11), [0, 1, 0])
