@@ -1,7 +1,7 @@
 # One image for every role; the command decides: `python -m service` (the API, default), `python -m dispatcher` or
 # `python -m worker`.
 # 3.11 is the Python that the locks were made for. For a build that can be repeated name the image by digest:
-# --build-arg PYTHON_IMAGE=python:3.11-slim-bookworm@sha256:..., see docs/operations.md.
+# --build-arg PYTHON_IMAGE=python:3.11-slim-bookworm@sha256:..., see docs/operations/deploy.md.
 ARG PYTHON_IMAGE=python:3.11-slim-bookworm
 
 FROM ${PYTHON_IMAGE} AS build

@@ -187,7 +187,7 @@ def test_every_endpoint_is_listed() -> None:
 
 
 def test_the_settings_table_is_that_of_the_code() -> None:
-    assert settings_table() in read("docs/operations.md")
+    assert settings_table() in read("docs/operations/configure.md")
 
 
 def test_make_targets_that_are_named_exist() -> None:

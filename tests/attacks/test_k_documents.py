@@ -20,7 +20,8 @@ from jobkit.schema import HoleCounts, Job, JobResult, Mesh, MeshFacts
 from tests.waiting import GUARD_S, wait_until
 
 ROOT = Path(__file__).resolve().parents[2]
-TEXTS = [ROOT / "README.md", ROOT / "SECURITY.md", *sorted((ROOT / "docs").glob("*.md")), *ROOT.glob("service/**/*.py")]
+PAGES = [ROOT / "README.md", ROOT / "SECURITY.md", *sorted((ROOT / "docs").rglob("*.md"))]
+TEXTS = [*PAGES, *ROOT.glob("service/**/*.py")]
 SOURCES = [
     p for folder in ("quadpatch", "training", "client", "worker", "onebox") for p in ROOT.glob(f"{folder}/**/*.py")
 ]

@@ -112,8 +112,14 @@ def test_every_alert_says_how_bad_it_is_and_what_to_do() -> None:
         assert rule["annotations"].keys() == {"summary", "action"}
 
 
+def test_the_runbook_has_a_section_for_every_alert() -> None:
+    runbook = (ROOT / "docs/operations/runbook.md").read_text("utf-8")
+    rows = re.findall(r"^\| (`Quadpatch[^|]+)\|", runbook, re.MULTILINE)
+    assert {name for row in rows for name in re.findall(r"`(\w+)`", row)} == {rule["alert"] for rule in RULES}
+
+
 def test_every_figure_is_explained_under_its_name(samples: Families, client: TestClient) -> None:
-    document = (ROOT / "docs/operations.md").read_text("utf-8")
+    document = (ROOT / "docs/operations/configure.md").read_text("utf-8")
     families = {f.name: f.type for f in text_string_to_metric_families(client.get("/metrics").text)}
     named = {name + ("_total" if kind == "counter" else "") for name, kind in families.items()}
     ours = {name for name in named if name.startswith("quadpatch") and not name.endswith("_created")}
