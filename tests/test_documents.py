@@ -239,3 +239,24 @@ def test_the_order_inside_a_package_is_that_of_its_contract(package: str) -> Non
     text = (ROOT / "docs" / "architecture.md").read_text("utf-8")
     block = text.partition(f"Inside `{package}`")[2].split("```\n")[1]
     assert [re.split(r"\s{2,}", line)[0] for line in block.splitlines()] == layers
+
+
+@pytest.mark.parametrize("path", DOCUMENTS, ids=lambda path: path.name)
+def test_no_line_of_prose_is_over_120_long(path: Path) -> None:
+    made = re.compile(r"^```.*?^```|^<!-- results: .*?^<!-- end of results -->", re.DOTALL | re.MULTILINE)
+    prose = made.sub("", path.read_text("utf-8"))
+    assert not [line for line in prose.splitlines() if len(line) > 120 and not line.startswith(("|", "    "))]
+
+
+def test_every_decision_is_listed_with_its_date() -> None:
+    listed = dict(re.findall(r"^\| \[.+\]\(decisions/(.+)\) \| (\S+) \|$", read("docs/architecture.md"), re.MULTILINE))
+    pages = {path.name: path.read_text("utf-8") for path in (ROOT / "docs/decisions").glob("*.md")}
+    assert listed == {name: re.findall(r"^Decided (\S+)\.$", page, re.MULTILINE)[0] for name, page in pages.items()}
+
+
+def test_results_name_a_command_for_every_run_that_is_put_into_them() -> None:
+    results = read("docs/results.md").replace("\\\n", "")
+    (assembled,) = re.findall(r"benchmarks\.quality\.assemble docs/results\.md(.+)", results)
+    runs = dict(run.split("=") for run in assembled.split())
+    assert set(runs) == set(re.findall(r"<!-- results: ([\w-]+)/", results))
+    assert set(runs.values()) == set(re.findall(r'make bench-quality .*--output (\S+)"', results))
