@@ -18,6 +18,7 @@ import quadpatch.errors
 from client.exits import MEANINGS
 from jobkit.schema import STAGES, JobState
 from jobkit.settings import settings_table
+from onebox.demo import find_scan
 from quadpatch.calibration import calibration_set, error_model
 from quadpatch.filling import fill, triangulation
 from quadpatch.inpainters import dictionary, paper_dictionary
@@ -260,3 +261,8 @@ def test_results_name_a_command_for_every_run_that_is_put_into_them() -> None:
     runs = dict(run.split("=") for run in assembled.split())
     assert set(runs) == set(re.findall(r"<!-- results: ([\w-]+)/", results))
     assert set(runs.values()) == set(re.findall(r'make bench-quality .*--output (\S+)"', results))
+
+
+def test_the_scan_of_the_first_request_is_that_of_the_demo() -> None:
+    (path,) = re.findall(r"cp \.\./\.venv/lib/python3\*/site-packages/(\S+) scan\.ply", read("README.md"))
+    assert find_scan().as_posix().endswith(f"/site-packages/{path}")
