@@ -12,7 +12,7 @@ from service.auth import public_paths
 
 TITLE = "Quadpatch"
 # That of the project; the version of the contract is in its paths, `/v1`.
-VERSION = "0.1.0"
+VERSION = "0.2.0"
 DESCRIPTION = (
     "Repairs holes in 3D scans. Upload a mesh, start a job, fetch the repaired mesh: measured vertices keep their "
     "bits, invented ones are marked, scored and explained. Names are snake_case, times RFC 3339, lengths in mesh "
