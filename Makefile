@@ -6,7 +6,7 @@ READY  := $(VENV)/.ready
 # Twice quiet: errors only.
 PIP    := $(BIN)/python -m pip --quiet --quiet --disable-pip-version-check
 
-.PHONY: demo test test-slow test-postgres test-lowest explore faults fuzz mutants flood contract check serve openapi samples lock sbom bench bench-quality bench-scans clean
+.PHONY: demo test coverage test-slow test-postgres test-lowest explore faults fuzz mutants flood contract check serve openapi samples lock sbom bench bench-quality bench-scans clean
 
 $(READY): pyproject.toml constraints.txt
 	@echo "setting up $(VENV); this takes a few minutes the first time ..." >&2
@@ -25,9 +25,17 @@ serve: $(READY)           ## one box on http://127.0.0.1:8000 until Ctrl-C
 # One thread for each of the two processes: where four share two cores, each waits for the others. At most 8 minutes on
 # two idle cores: what is slow is listed, so that it is made cheaper or gets a target of its own, such as `faults`.
 # The tests start some hundred interpreters: with PYTHONDONTWRITEBYTECODE each would compile all modules again.
-TEST := PYTHONDONTWRITEBYTECODE= OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadfile
+PYTEST := pytest -n 2 --dist loadfile
+PYTHON_OF_TESTS := PYTHONDONTWRITEBYTECODE= OMP_NUM_THREADS=1 $(BIN)/python -m
+TEST := $(PYTHON_OF_TESTS) $(PYTEST)
 test: $(READY)            ## the tests, with the real Valkey
 	@$(TEST) --durations 10 -m "not slow" $(ARGS)
+
+# What it measures, and how child processes take part, stands in pyproject.toml under [tool.coverage.run].
+coverage: $(READY)        ## lines and branches that `make test` runs: make coverage ARGS="tests/quadpatch/mesh"
+	@rm -rf build/coverage && mkdir -p build/coverage
+	@$(PYTHON_OF_TESTS) coverage run -m $(PYTEST) -m "not slow" $(ARGS); status=$$?; \
+		$(BIN)/python -m coverage combine --quiet && $(BIN)/python -m coverage report && exit $$status
 
 test-slow: $(READY)       ## the tests that take long: whole campaigns, trainings, boxes that are killed
 	@$(TEST) --durations 10 -m slow $(ARGS)
