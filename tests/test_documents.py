@@ -121,63 +121,90 @@ def test_every_reason_of_a_hole_is_explained() -> None:
     assert not [reason for reason in reasons if f"`{reason}`" not in method]
 
 
-def test_the_numbers_of_the_method_are_those_of_the_code() -> None:
-    method = read("docs/method.md")
-    claims = [
-        f"max({scale.HOLES_PER_LENGTH} d, {scale.EDGES_PER_BIN} e · N) with N that of the model, or "
-        f"{scale.RESOLUTION_RANGE[0]} ",
-        "r / ({} e), between {} and {} ".format(scale.EDGES_PER_BIN, *scale.RESOLUTION_RANGE),
-        f"| overlap k | {scale.OVERLAP}: nine patches",
-        f"the {dictionary.PRINCIPAL_ATOMS} principal directions",
-        f"σ² = {gaussian.NOISE}",
-        f"fewer than {dictionary.MIN_TRAINING_PATCHES} usable patches",
-        "b/a = " + ", ".join(f"{energy.variation / energy.plate:g}" for energy in default.FAIRING_ENERGIES[1:-1]),
-        f"fewer than {calibration_set.MIN_HOLES} calibration holes",
-        f"{calibration_set.MAX_HOLES} holes of the median diameter",
-        "one of "
-        + ", ".join(f"{share:g}" for share in calibration_set.SHARES[:-1])
-        + f" and {calibration_set.SHARES[-1]:g}",
-        "the thin plate and the blend b/a = "
-        f"{fill.ALTERNATIVE_ENERGY.variation / fill.ALTERNATIVE_ENERGY.plate:g} through",
-        f"b is pulled to {error_model.PRIOR_SLOPE}",
-        f"a scatter of {error_model.WEIGHT} in ln u",
-        f"without calibration b = {error_model.PRIOR.slope} and A = {error_model.PRIOR.factor}",
-        f"exp(−expected error / ({assessment.DOUBTFUL_SHARE:g} D))",
-        f"{assessment.confidence(0.1 * assessment.DOUBTFUL_SHARE, 1.0):.2f} where the fill is expected to be off by "
-        f"{10 * assessment.DOUBTFUL_SHARE:g} % of the diagonal, "
-        f"{assessment.confidence(assessment.DOUBTFUL_SHARE, 1.0):.2f} at "
-        f"{100 * assessment.DOUBTFUL_SHARE:g} %",
-        f"{100 * assessment.LEAST_COVERAGE:g} % of its new vertices",
-        f"differ by no more than {assessment.MOST_DISAGREEMENT} times",
-        f"over {triangulation.MAX_TABLE_SIZE} vertices",
-        f"2 ({scale.BASE_SURFACE_SHARE} r / e)² uniform Laplacian iterations, "
-        f"between {scale.BASE_SURFACE_ITERATIONS_RANGE[0]} and {scale.BASE_SURFACE_ITERATIONS_RANGE[1]}",
-        f"{paper.SMOOTHING_ITERATIONS} uniform Laplacian iterations",
-        f"normal · z > {ray_visibility.LEAST_FACING}",
-        f"at the rim over {hole_kinds.OUTWARD}",
-        f"isoperimetric quotient is {hole_kinds.LEAST_ROUNDNESS} or more",
-        f"planarity at most {hole_kinds.END_PLANARITY},",
-        f"sine {hole_kinds.END_STEEPNESS},",
-        f"but for {hole_kinds.END_BEYOND} diameters",
-        f"for {100 * slits.SLIT_SHARE:g} % of its rim the other side is at most {slits.SLIT_WIDTH} diameters away",
-        f"{slits.SLIT_WAY} of the perimeter in the mean",
-        f"length {paper.HOLES_PER_LENGTH} d, but at least {paper.LEAST_EDGES_PER_BIN} e · {paper.RESOLUTION} ",
-        f"{paper.RESOLUTION} bins; overlap {paper.OVERLAP}.",
-        f"has up to {paper_dictionary.LOCAL_ATOMS} atoms",
-        f"many up to {paper_dictionary.GLOBAL_ATOMS} as in the paper",
-        f"a patch uses {paper_dictionary.NONZERO} of them",
-        f"{paper_dictionary.ITERATIONS} rounds over up to {paper_dictionary.MAX_TRAINING_PATCHES} patches "
-        f"known in at least {100 * paper_dictionary.LEAST_KNOWN:g} % of their bins",
-    ]
-    prose = " ".join(method.split())
-    assert not [claim for claim in claims if claim.strip() not in prose]
+def sections(document: str, name: str) -> str:
+    """Return the sections that name a file or a word in backticks."""
+    return "\n".join(part for part in re.split(r"^## ", document, flags=re.MULTILINE) if f"`{name}`" in part)
+
+
+def numbers(text: str) -> set[float]:
+    """Return all numbers of a text; a comma parts thousands."""
+    return {float(number.replace(",", "")) for number in re.findall(r"\d+(?:,\d{3})*(?:\.\d+)?", text)}
+
+
+# Where it stands in the document: a file that the section names.
+NUMBERS_OF_THE_METHOD = {
+    "quadpatch/mesh/hole_kinds.py": {
+        hole_kinds.OUTWARD,
+        hole_kinds.LEAST_ROUNDNESS,
+        hole_kinds.END_PLANARITY,
+        hole_kinds.END_STEEPNESS,
+        hole_kinds.END_BEYOND,
+    },
+    "quadpatch/mesh/slits.py": {100 * slits.SLIT_SHARE, slits.SLIT_WIDTH, slits.SLIT_WAY},
+    "quadpatch/filling/triangulation.py": {triangulation.MAX_TABLE_SIZE},
+    "quadpatch/calibration/calibration_set.py": {
+        *(energy.variation / energy.plate for energy in default.FAIRING_ENERGIES[1:-1]),
+        calibration_set.MIN_HOLES,
+        calibration_set.MAX_HOLES,
+    },
+    "quadpatch/recipes/learned_detail.py": set(calibration_set.SHARES),
+    "quadpatch/patches/scale.py": {
+        scale.HOLES_PER_LENGTH,
+        scale.EDGES_PER_BIN,
+        *scale.RESOLUTION_RANGE,
+        scale.OVERLAP,
+        scale.BASE_SURFACE_SHARE,
+        *scale.BASE_SURFACE_ITERATIONS_RANGE,
+    },
+    "quadpatch/patches/height_map.py": {ray_visibility.LEAST_FACING},
+    "quadpatch/sparse/gaussian.py": {
+        gaussian.NOISE,
+        dictionary.PRINCIPAL_ATOMS,
+        dictionary.MIN_TRAINING_PATCHES,
+    },
+    "quadpatch/recipes/assessment.py": {
+        100 * assessment.LEAST_COVERAGE,
+        assessment.MOST_DISAGREEMENT,
+        assessment.DOUBTFUL_SHARE,
+        100 * assessment.DOUBTFUL_SHARE,
+        10 * assessment.DOUBTFUL_SHARE,
+        round(assessment.confidence(assessment.DOUBTFUL_SHARE, 1.0), 2),
+        round(assessment.confidence(0.1 * assessment.DOUBTFUL_SHARE, 1.0), 2),
+    },
+    "quadpatch/calibration/error_model.py": {
+        fill.ALTERNATIVE_ENERGY.variation / fill.ALTERNATIVE_ENERGY.plate,
+        error_model.PRIOR_SLOPE,
+        error_model.WEIGHT,
+        error_model.PRIOR.slope,
+        error_model.PRIOR.factor,
+    },
+    "quadpatch/recipes/paper.py": {
+        paper.SMOOTHING_ITERATIONS,
+        paper.HOLES_PER_LENGTH,
+        paper.LEAST_EDGES_PER_BIN,
+        paper.RESOLUTION,
+        paper.OVERLAP,
+    },
+    "quadpatch/inpainters/paper_dictionary.py": {
+        paper_dictionary.LOCAL_ATOMS,
+        paper_dictionary.GLOBAL_ATOMS,
+        paper_dictionary.NONZERO,
+        paper_dictionary.ITERATIONS,
+        paper_dictionary.MAX_TRAINING_PATCHES,
+        100 * paper_dictionary.LEAST_KNOWN,
+    },
+}
+
+
+@pytest.mark.parametrize("path", NUMBERS_OF_THE_METHOD)
+def test_the_numbers_of_the_method_are_those_of_the_code(path: str) -> None:
+    found = numbers(sections(read("docs/method.md"), path))
+    assert {float(f"{number:g}") for number in NUMBERS_OF_THE_METHOD[path]} <= found
 
 
 def test_the_exit_codes_are_those_of_the_client() -> None:
-    table = rows(read("docs/api.md"))
-    assert {str(code.value): table.get(str(code.value)) for code in MEANINGS} == {
-        str(code.value): [meaning] for code, meaning in MEANINGS.items()
-    }
+    (part,) = [part for part in read("docs/api.md").split("\n## ") if part.startswith("Exit codes")]
+    assert {row for row in rows(part) if row.isdigit()} == {str(code.value) for code in MEANINGS}
 
 
 def test_every_endpoint_is_listed() -> None:
