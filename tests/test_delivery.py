@@ -208,6 +208,7 @@ def test_the_version_is_the_same_everywhere() -> None:
     assert version == VERSION
     citation = yaml.safe_load((ROOT / "CITATION.cff").read_text("utf-8"))
     assert (citation["version"], citation["date-released"].isoformat()) == headings[1]
+    assert f"| {version.rpartition('.')[0]} | yes |" in (ROOT / "SECURITY.md").read_text("utf-8")
 
 
 def test_the_licence_is_the_one_that_is_declared() -> None:
