@@ -215,3 +215,7 @@ def test_the_licence_is_the_one_that_is_declared() -> None:
     assert PROJECT["project"]["license"] == "GPL-3.0-or-later"
     head = (ROOT / "LICENSE").read_text("utf-8")[:200]
     assert re.search(r"GNU GENERAL PUBLIC LICENSE\s+Version 3, 29 June 2007", head)
+
+
+def test_coverage_measures_all_packages() -> None:
+    assert PROJECT["tool"]["coverage"]["run"]["source"] == PROJECT["tool"]["importlinter"]["root_packages"]

@@ -132,7 +132,7 @@ def numbers(text: str) -> set[float]:
 
 
 # Where it stands in the document: a file that the section names.
-NUMBERS_OF_THE_METHOD = {
+NUMBERS_OF_THE_METHOD: dict[str, set[float]] = {
     "quadpatch/mesh/hole_kinds.py": {
         hole_kinds.OUTWARD,
         hole_kinds.LEAST_ROUNDNESS,
