@@ -80,7 +80,10 @@ ReportOption = Annotated[
     Path | None, typer.Option(help="Where to put the JSON report; -: standard output.", rich_help_panel=OUTPUT)
 ]
 PreviewOption = Annotated[
-    Path | None, typer.Option(help="Where to put the before/after picture, a PNG.", rich_help_panel=OUTPUT)
+    Path | None,
+    typer.Option(
+        "--preview", "--picture", help="Where to put the before/after picture, a PNG.", rich_help_panel=OUTPUT
+    ),
 ]
 CloseupsOption = Annotated[
     Path | None,

@@ -71,7 +71,9 @@ def fill(  # noqa: PLR0913, PLR0917  one argument per flag
         Recipe, typer.Option(help="How the model is put to use: our way, or exactly the paper's.")
     ] = "default",
     report: Annotated[Path | None, typer.Option(help="Write the report as JSON; -: standard output.")] = None,
-    picture: Annotated[Path | None, typer.Option(help="Write a before/after picture as PNG.")] = None,
+    preview: Annotated[
+        Path | None, typer.Option("--preview", "--picture", help="Write a before/after picture as PNG.")
+    ] = None,
     closeups: Annotated[
         Path | None,
         typer.Option(metavar="DIR", help="Draw every chosen hole before and after, as hole_<id>.png in this folder."),
@@ -127,7 +129,7 @@ def fill(  # noqa: PLR0913, PLR0917  one argument per flag
             NetworkOptions(fit_steps, fit_seconds),
             _tolerance(weld_tolerance),
         )
-        others = [path for path in (report, picture) if path]
+        others = [path for path in (report, preview) if path]
         check_outputs(source, output, others, may_overwrite=overwrite)
         if closeups:
             check_folder(closeups, [source, output, *others])
@@ -135,7 +137,7 @@ def fill(  # noqa: PLR0913, PLR0917  one argument per flag
         logging.getLogger("quadpatch").addHandler(logging.NullHandler())  # what people read is in the warnings
         if report and not is_stream(report):  # drawing may take the process down
             _write_report(repaired, report)
-        _draw(repaired, picture, closeups)
+        _draw(repaired, preview, closeups)
         _write_report(repaired, report)
     if not quiet:
         _errors.print(Text(summary(repaired.report)))
@@ -218,12 +220,12 @@ def _holes(count: int) -> str:
     return "1 hole" if count == 1 else f"{count} holes"
 
 
-def _draw(repaired: "RepairedFile", picture: Path | None, closeups: Path | None) -> None:
+def _draw(repaired: "RepairedFile", preview: Path | None, closeups: Path | None) -> None:
     """Draw what was asked for; what fails is a warning in the report."""
     from quadpatch.preview.drawing import add_close_ups, add_picture  # noqa: PLC0415  see fill
 
-    if picture:
-        add_picture(repaired, picture)
+    if preview:
+        add_picture(repaired, preview)
     if closeups:
         add_close_ups(repaired, closeups)
 

@@ -43,6 +43,8 @@ from shared_rules.hole_selection import Choice, choose_holes, join_islands
 SMOOTH = "smooth"
 SELF = "self"
 SELF_NETWORK = "self-network"
+# The same, as a job names the kind of its model.
+SELF_NETWORK_KIND = "self_network"
 
 # The network that is fitted to a mesh where `SELF_NETWORK` is asked for.
 BASE_NETWORK = "general-residual"
@@ -209,7 +211,7 @@ def _resolve(
     """Turn a model's name or path into its inpainter, and what the report says of it."""
     if model == SMOOTH and options.recipe == "paper":
         raise OptionError(NOTHING_TO_DO)
-    if model == SELF_NETWORK:
+    if model in (SELF_NETWORK, SELF_NETWORK_KIND):
         return _network_to_fit(options, progress)
     if options.network != NetworkOptions():
         raise OptionError(f"network.steps and network.seconds go with the model {SELF_NETWORK} only")

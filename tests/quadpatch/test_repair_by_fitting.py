@@ -17,7 +17,7 @@ from quadpatch.formats.reading import read_scan
 from quadpatch.inpainters import model_file
 from quadpatch.mesh.distance import distance_to_mesh
 from quadpatch.options import NetworkOptions, PatchOptions, RepairOptions
-from quadpatch.repair import BASE_NETWORK, SELF_NETWORK, repair_file
+from quadpatch.repair import BASE_NETWORK, SELF_NETWORK, SELF_NETWORK_KIND, repair_file
 from tests.quadpatch.shapes import punched, relief, write_ply
 
 pytestmark = pytest.mark.slow
@@ -92,7 +92,7 @@ def test_the_command_line_says_how_long_to_fit_and_what_was_fitted_and_repeats_i
     fitted: Fitted, scan_file: Path, tmp_path: Path
 ) -> None:
     output, told = tmp_path / "out.ply", tmp_path / "report.json"
-    flags = ["--model", SELF_NETWORK, "--fit-steps", "40", "--fit-seconds", "1000000", "--overlap", "1"]
+    flags = ["--model", SELF_NETWORK_KIND, "--fit-steps", "40", "--fit-seconds", "1000000", "--overlap", "1"]
     ended = CliRunner().invoke(app, ["fill", str(scan_file), "-o", str(output), "--report", str(told), *flags])
     assert ended.exit_code == 0, ended.output
     assert f"filled by {BASE_NETWORK}@1, fitted to this mesh" in " ".join(ended.stderr.split())
