@@ -9,10 +9,9 @@ harmonically into the hole and taken off: the displaced fill meets the rim exact
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import sparse
-from scipy.sparse.linalg import splu
 
 from quadpatch.filling.filled_mesh import FilledMesh
+from quadpatch.mesh.harmonic import extend_harmonically
 from quadpatch.mesh.normals import vertex_normals
 from quadpatch.mesh.topology import directed_edges
 from quadpatch.patches.connectivity import bilinear, vertices_in_patches
@@ -100,15 +99,9 @@ def join_at_rim(filled: FilledMesh, invented: FloatArray, rim: IntArray, at_rim:
     local = np.full(len(filled.mesh.vertices), -1)
     local[first:] = np.arange(len(invented))
     local[rim] = len(invented) + np.arange(len(rim))
-    start, end = local[edges].T
-    size = len(invented) + len(rim)
-    ones = np.ones(2 * len(edges))
-    adjacency = sparse.csr_array((ones, (np.r_[start, end], np.r_[end, start])), shape=(size, size))
-    laplacian = (sparse.diags_array(adjacency.sum(axis=1)) - adjacency).tocsr()[: len(invented)].tocsc()
-    inner, outer = laplacian[:, : len(invented)], laplacian[:, len(invented) :]
-    factors = splu(inner.tocsc(), permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True}, diag_pivot_thresh=0.0)
-    joined: FloatArray = invented - factors.solve(-(outer @ at_rim))
-    return joined
+    known = np.arange(len(invented) + len(rim)) >= len(invented)
+    misfit = extend_harmonically(local[edges], known, np.concatenate([np.zeros_like(invented), at_rim]))
+    return np.asarray(invented - misfit[: len(invented)])
 
 
 def rim_vertices(filled: FilledMesh) -> tuple[IntArray, IntArray]:
