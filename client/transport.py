@@ -1,14 +1,13 @@
 """HTTP with patience: what may be repeated is repeated, with growing pauses, until the time is up."""
 
-import math
 import random
-import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any, Self, TypeVar
 
 import httpx
 from pydantic import ValidationError
+from tenacity import RetryCallState, Retrying, retry_if_exception_type, stop_before_delay, wait_exponential
 
 from client.errors import AnswerError, RefusedError, UnreachableError
 from jobkit.schema import PROBLEM_MEDIA_TYPE, Problem
@@ -17,8 +16,7 @@ T = TypeVar("T")
 
 # Statuses that say: not now. A gateway in between may answer these without a problem document.
 _TRY_AGAIN = frozenset({429, 502, 503, 504})
-_FIRST_PAUSE_S = 0.25
-_LONGEST_PAUSE_S = 5.0
+_PAUSE_S = wait_exponential(multiplier=0.25, max=5.0)
 # Where nothing has ever taken a connection, a wrong address is likelier than a dropped line.
 _FIRST_CONTACT_S = 5.0
 _SILENCE_S, _CONNECT_S = 60.0, 5.0
@@ -128,20 +126,32 @@ class Transport:
         done : callable, optional
             How many bytes all attempts together have brought; patience begins anew with each failure after more.
         """
-        failing = _Failing()
-        while True:
-            try:
-                result = attempt()
-            except (httpx.TransportError, TryAgainError) as error:
-                self._was_reached = self._was_reached or not isinstance(error, _NOT_REACHED)
-                patience_s = self._patience_s if self._was_reached else min(self._patience_s, self._first_contact_s)
-                wait_s = failing.next_pause_s(done(), getattr(error, "retry_after_s", None))
-                if failing.seconds() + wait_s > patience_s:
-                    raise self._give_up(error, patience_s) from error
-                time.sleep(wait_s)
-            else:
-                self._was_reached = True
-                return result
+        most = -1
+
+        def note_failure(state: RetryCallState) -> None:
+            nonlocal most
+            self._was_reached = self._was_reached or not isinstance(_error(state), _NOT_REACHED)
+            # Not from the first try: an upload that breaks after minutes is tried again.
+            if done() > most:
+                most, state.attempt_number = done(), 1
+                state.start_time = state.outcome_timestamp or state.start_time
+
+        retrying = Retrying(
+            retry=retry_if_exception_type((httpx.TransportError, TryAgainError)),
+            after=note_failure,
+            wait=_pause_s,
+            stop=self._is_over,
+            reraise=True,
+        )
+        try:
+            result = retrying(attempt)
+        except TryAgainError as error:
+            raise error.final from error
+        except httpx.TransportError as error:
+            within = f"within {self._allowed_s():g} s: {error or type(error).__name__}"
+            raise UnreachableError(f"no answer from {self.base_url} {within}") from error
+        self._was_reached = True
+        return result
 
     def close(self) -> None:
         """Close all connections."""
@@ -155,34 +165,11 @@ class Transport:
         """Close."""
         self.close()
 
-    def _give_up(self, error: Exception, patience_s: float) -> Exception:
-        if isinstance(error, TryAgainError):
-            return error.final
-        return UnreachableError(
-            f"no answer from {self.base_url} within {patience_s:g} s: {error or type(error).__name__}"
-        )
+    def _is_over(self, state: RetryCallState) -> bool:
+        return stop_before_delay(self._allowed_s())(state)
 
-
-class _Failing:
-    """A row of failures: since when, and how long to pause before the next try.
-
-    Counted from the first failure, not from the first try: an upload that breaks after minutes is tried again.
-    """
-
-    def __init__(self) -> None:
-        self._since = math.nan
-        self._pause_s = _FIRST_PAUSE_S
-        self._done = 0
-
-    def seconds(self) -> float:
-        return time.monotonic() - self._since
-
-    def next_pause_s(self, done: int, asked_s: float | None) -> float:
-        if math.isnan(self._since) or done > self._done:
-            self._since, self._pause_s, self._done = time.monotonic(), _FIRST_PAUSE_S, done
-        pause_s = self._pause_s * random.uniform(0.75, 1.25)
-        self._pause_s = min(2 * self._pause_s, _LONGEST_PAUSE_S)
-        return asked_s or pause_s
+    def _allowed_s(self) -> float:
+        return self._patience_s if self._was_reached else min(self._patience_s, self._first_contact_s)
 
 
 class TryAgainError(Exception):
@@ -198,6 +185,15 @@ def retry_after_s(response: httpx.Response) -> float | None:
     """Seconds that the service asks to wait, None where it does not say."""
     text = response.headers.get("Retry-After", "")
     return float(text) if text.isdecimal() else None
+
+
+def _pause_s(state: RetryCallState) -> float:
+    asked_s: float | None = getattr(_error(state), "retry_after_s", None)
+    return asked_s or _PAUSE_S(state) * random.uniform(0.75, 1.25)
+
+
+def _error(state: RetryCallState) -> BaseException | None:
+    return None if state.outcome is None else state.outcome.exception()
 
 
 def _raise_for_problem(response: httpx.Response) -> None:

@@ -4,9 +4,8 @@ A task that comes twice, or too late, does nothing: only one can start an attemp
 """
 
 import logging
-import time
-from collections.abc import Callable
-from typing import TypeVar
+
+from tenacity import Retrying, retry_if_exception_type, stop_after_delay, stop_when_event_set, wait_fixed
 
 from jobkit.errors import DatabaseUnavailableError, NotFoundError, StaleAttemptError
 from jobkit.logs import log_about
@@ -18,7 +17,6 @@ from worker.proofs import prove
 from worker.repairs import repair
 
 _PAUSE_S = 0.5
-T = TypeVar("T")
 
 _log = logging.getLogger("quadpatch.worker.jobs")
 
@@ -27,7 +25,7 @@ def run_job(job_id: str) -> None:
     """Start an attempt at a job and work on it."""
     context = current_context()
     try:
-        started = _patiently(context, lambda: context.attempts.start(job_id, context.name, context.settings.lease_s))
+        started = _patiently(context)(lambda: context.attempts.start(job_id, context.name, context.settings.lease_s))
     except (StaleAttemptError, NotFoundError, DatabaseUnavailableError) as error:
         _log.info("nothing to do: %s", error)
         return
@@ -51,8 +49,8 @@ def inspect_mesh(mesh_id: str) -> None:
     """Analyse an uploaded mesh: format, size, boundary loops."""
     context = current_context()
     try:
-        analysis = _patiently(
-            context, lambda: context.meshes.start_analysis(mesh_id, context.name, context.settings.lease_s)
+        analysis = _patiently(context)(
+            lambda: context.meshes.start_analysis(mesh_id, context.name, context.settings.lease_s)
         )
     except (StaleAttemptError, NotFoundError, DatabaseUnavailableError) as error:
         _log.info("nothing to do: %s", error)
@@ -65,7 +63,7 @@ def prove_model(reference: str) -> None:
     """Prove a published version of a model, `name@version`."""
     context = current_context()
     try:
-        proof = _patiently(context, lambda: context.proofs.start(reference, context.name, context.settings.lease_s))
+        proof = _patiently(context)(lambda: context.proofs.start(reference, context.name, context.settings.lease_s))
     except (StaleAttemptError, NotFoundError, DatabaseUnavailableError) as error:
         _log.info("nothing to do: %s", error)
         return
@@ -73,18 +71,18 @@ def prove_model(reference: str) -> None:
         prove(context, proof)
 
 
-def _patiently(context: Context, start: Callable[[], T]) -> T:
-    """Start, and wait for a database that is away.
+def _patiently(context: Context) -> Retrying:
+    """Return what starts a task, and waits for a database that is away.
 
     Workers that drop their entries would empty the queue in no time; after a while the dispatcher takes the entry for
     lost and puts it into the queue again, so nothing is gained by waiting longer.
     """
-    deadline = time.monotonic() + GRACE_S
-    while True:
-        try:
-            return start()
-        except DatabaseUnavailableError as error:
-            if context.draining.is_set() or time.monotonic() > deadline:
-                raise
-            _log.warning("a task waits to be started: %s", error)
-            time.sleep(_PAUSE_S)
+    return Retrying(
+        retry=retry_if_exception_type(DatabaseUnavailableError),
+        stop=stop_after_delay(GRACE_S) | stop_when_event_set(context.draining),
+        wait=wait_fixed(_PAUSE_S),
+        before_sleep=lambda state: _log.warning(
+            "a task waits to be started: %s", state.outcome and state.outcome.exception()
+        ),
+        reraise=True,
+    )

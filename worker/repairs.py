@@ -8,7 +8,8 @@ import logging
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import TypeVar
+
+from tenacity import Retrying, retry_if_exception_type, stop_after_delay, wait_fixed
 
 from jobkit.errors import (
     DatabaseUnavailableError,
@@ -44,13 +45,19 @@ from worker.spec import repair_request
 
 # A repair that is nearly done may finish when its worker is asked to stop; the others are handed back.
 _DRAIN_GRACE_S = 2.0
-# Between two tries to settle an attempt while the database is away.
-_PAUSE_S = 1.0
 _DRAINED = JobError(code="worker_drained", message="the worker was stopped in the middle of the job", retryable=True)
 
-T = TypeVar("T")
-
 _log = logging.getLogger("quadpatch.worker.repairs")
+# Waits for a database that is away: work that is done is not to be done again for that.
+_patiently = Retrying(
+    retry=retry_if_exception_type(DatabaseUnavailableError),
+    stop=stop_after_delay(PATIENCE_S),
+    wait=wait_fixed(1.0),
+    before_sleep=lambda state: _log.warning(
+        "the attempt waits to be settled: %s", state.outcome and state.outcome.exception()
+    ),
+    reraise=True,
+)
 
 
 @dataclass(frozen=True)
@@ -89,19 +96,6 @@ def _has_published(context: Context, started: StartedAttempt) -> bool:
     except JobNotFoundError:
         return False
     return job.attempt == started.attempt.number and job.state.has_result
-
-
-def _patiently(settle: Callable[[], T]) -> T:
-    """Settle, and wait for a database that is away: work that is done is not to be done again for that."""
-    deadline = time.monotonic() + PATIENCE_S
-    while True:
-        try:
-            return settle()
-        except DatabaseUnavailableError as error:
-            if time.monotonic() > deadline:
-                raise
-            _log.warning("the attempt waits to be settled: %s", error)
-            time.sleep(_PAUSE_S)
 
 
 def _drop(context: Context, started: StartedAttempt) -> None:
