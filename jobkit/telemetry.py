@@ -1,20 +1,21 @@
-"""Traces for OpenTelemetry; nothing happens without the extra `telemetry` and an OTEL_EXPORTER_OTLP_ENDPOINT.
+"""Traces for OpenTelemetry; none are sent without the extra `telemetry` and an OTEL_EXPORTER_OTLP_ENDPOINT.
 
-The trace of a request goes on in the worker: its W3C `traceparent` is stored with the job that the request makes. The
-library is imported here alone, and only where traces are sent.
+The trace of a request goes on in the worker: its W3C `traceparent` is stored with the job that the request makes. Where
+no traces are sent, spans are those of OpenTelemetry's API that do nothing.
 """
 
 import logging
 import os
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from typing import TYPE_CHECKING, Self
 
+from opentelemetry.context import Context
+from opentelemetry.trace import INVALID_SPAN, NoOpTracerProvider, Span, SpanKind, Tracer
+from opentelemetry.trace.propagation.tracecontext import TraceContextTextMapPropagator
+
 if TYPE_CHECKING:
-    from opentelemetry.context import Context
     from opentelemetry.sdk.trace import TracerProvider
-    from opentelemetry.trace import Span as OtelSpan
-    from opentelemetry.trace import Tracer
 
 # The standard's own names: where to send spans, and what to call the sender.
 ENDPOINT_VARIABLES = ("OTEL_EXPORTER_OTLP_ENDPOINT", "OTEL_EXPORTER_OTLP_TRACES_ENDPOINT")
@@ -24,35 +25,6 @@ _SCOPE = "quadpatch"
 Attributes = Mapping[str, str | int | float | bool]
 
 _log = logging.getLogger("quadpatch.telemetry")
-
-
-class Span:
-    """Something that takes time, and what is known of it; no-op where no traces are sent."""
-
-    def __init__(self, span: "OtelSpan | None" = None) -> None:
-        self._span = span
-
-    def note(self, name: str, value: str | int | float | bool) -> None:
-        """Set an attribute."""
-        if self._span is not None:
-            self._span.set_attribute(name, value)
-
-    def rename(self, name: str) -> None:
-        """Give it the name that only its course has shown."""
-        if self._span is not None:
-            self._span.update_name(name)
-
-    def fail(self, reason: str) -> None:
-        """Say that it went wrong."""
-        if self._span is not None:
-            from opentelemetry.trace import Status, StatusCode  # noqa: PLC0415 - an extra
-
-            self._span.set_status(Status(StatusCode.ERROR, reason))
-
-    def end(self) -> None:
-        """End it now."""
-        if self._span is not None:
-            self._span.end()
 
 
 class Telemetry:
@@ -66,46 +38,38 @@ class Telemetry:
 
     def __init__(self, provider: "TracerProvider | None" = None) -> None:
         self._provider = provider
-        self._tracer: Tracer | None = None if provider is None else provider.get_tracer(_SCOPE)
+        self._tracer = (provider or NoOpTracerProvider()).get_tracer(_SCOPE)
 
-    @contextmanager
     def span(
-        self, name: str, kind: str = "internal", parent: str | None = None, attributes: Attributes | None = None
-    ) -> Iterator[Span]:
+        self,
+        name: str,
+        kind: SpanKind = SpanKind.INTERNAL,
+        parent: str | None = None,
+        attributes: Attributes | None = None,
+    ) -> AbstractContextManager[Span]:
         """Make a span for the length of a `with` block; spans within it are its children.
 
         Parameters
         ----------
         name : str
-        kind : str
-            `server`, `consumer` or `internal`.
+        kind : SpanKind
         parent : str, optional
             W3C `traceparent` of the span that it goes on from; one that can't be read starts a new trace. None: goes on
             from the span around it.
         attributes : mapping, optional
         """
-        if self._tracer is None:
-            yield Span()
-            return
-        from opentelemetry.trace import SpanKind  # noqa: PLC0415 - an extra
-
-        with self._tracer.start_as_current_span(
-            name, _context_of(parent), SpanKind[kind.upper()], dict(attributes or {})
-        ) as span:
-            yield Span(span)
+        # A span that does nothing would hand on the trace of its parent.
+        context = None if self._provider is None else _context_of(parent)
+        return self._tracer.start_as_current_span(name, context, kind, attributes)
 
     @contextmanager
     def stages(self) -> Iterator["StageSpans"]:
         """Make spans for stages that follow each other; the last one ends with the `with` block."""
-        stages = StageSpans(self)
+        stages = StageSpans(self._tracer)
         try:
             yield stages
         finally:
             stages.end()
-
-    def child(self, name: str) -> Span:
-        """Start a span that is ended by hand, within the one around it."""
-        return Span() if self._tracer is None else Span(self._tracer.start_span(name))
 
     def close(self) -> None:
         """Send what is left."""
@@ -124,21 +88,21 @@ class Telemetry:
 class StageSpans:
     """One span for each stage of a repair, as they are reached."""
 
-    def __init__(self, telemetry: Telemetry) -> None:
-        self._telemetry = telemetry
+    def __init__(self, tracer: Tracer) -> None:
+        self._tracer = tracer
         self._stage = ""
-        self._span = Span()
+        self._span: Span = INVALID_SPAN
 
     def reach(self, stage: str) -> None:
         """Note that the stage is at work now; does nothing where it already was."""
         if stage != self._stage:
             self._span.end()
-            self._stage, self._span = stage, self._telemetry.child(f"stage {stage}")
+            self._stage, self._span = stage, self._tracer.start_span(f"stage {stage}")
 
     def end(self) -> None:
         """End the stage at work."""
         self._span.end()
-        self._stage, self._span = "", Span()
+        self._stage, self._span = "", INVALID_SPAN
 
 
 def open_telemetry(role: str, environment: Mapping[str, str] = os.environ) -> Telemetry:
@@ -168,21 +132,10 @@ def open_telemetry(role: str, environment: Mapping[str, str] = os.environ) -> Te
 
 def current_traceparent() -> str | None:
     """Return the W3C `traceparent` of the span at work, None where there is none."""
-    try:
-        from opentelemetry.trace.propagation.tracecontext import (  # noqa: PLC0415 - an extra
-            TraceContextTextMapPropagator,
-        )
-    except ImportError:
-        return None
     carrier: dict[str, str] = {}
     TraceContextTextMapPropagator().inject(carrier)
     return carrier.get("traceparent")
 
 
-def _context_of(parent: str | None) -> "Context | None":
-    if parent is None:
-        return None
-    from opentelemetry.context import Context  # noqa: PLC0415 - an extra
-    from opentelemetry.trace.propagation.tracecontext import TraceContextTextMapPropagator  # noqa: PLC0415
-
-    return TraceContextTextMapPropagator().extract({"traceparent": parent}, Context())
+def _context_of(parent: str | None) -> Context | None:
+    return None if parent is None else TraceContextTextMapPropagator().extract({"traceparent": parent}, Context())

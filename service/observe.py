@@ -2,11 +2,12 @@
 
 import time
 
+from opentelemetry.trace import INVALID_SPAN, Span, SpanKind, StatusCode
 from prometheus_client import CollectorRegistry, Histogram
 from starlette.requests import Request
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from jobkit.telemetry import Span, Telemetry
+from jobkit.telemetry import Telemetry
 
 _METHODS = frozenset({"GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS"})
 # Asked every few seconds by machines: spans of them would bury the others.
@@ -45,10 +46,10 @@ class ObserveMiddleware:
         request = Request(scope)
         method = request.method if request.method in _METHODS else "other"
         if scope["path"] in _UNTRACED:
-            await self._observed(method, Span(), scope, receive, send)
+            await self._observed(method, INVALID_SPAN, scope, receive, send)
             return
         parent = request.headers.get("traceparent")
-        with self._telemetry.span(method, "server", parent, {"http.request.method": method}) as span:
+        with self._telemetry.span(method, SpanKind.SERVER, parent, {"http.request.method": method}) as span:
             await self._observed(method, span, scope, receive, send)
 
     async def _observed(self, method: str, span: Span, scope: Scope, receive: Receive, send: Send) -> None:
@@ -70,8 +71,8 @@ def _route(scope: Scope) -> str:
 
 
 def _describe(span: Span, method: str, route: str, status: int) -> None:
-    span.rename(f"{method} {route}")
-    span.note("http.route", route)
-    span.note("http.response.status_code", status)
+    span.update_name(f"{method} {route}")
+    span.set_attribute("http.route", route)
+    span.set_attribute("http.response.status_code", status)
     if status >= 500:
-        span.fail(f"answered with {status}")
+        span.set_status(StatusCode.ERROR, f"answered with {status}")

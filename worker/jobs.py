@@ -5,6 +5,7 @@ A task that comes twice, or too late, does nothing: only one can start an attemp
 
 import logging
 
+from opentelemetry.trace import SpanKind, StatusCode
 from tenacity import Retrying, retry_if_exception_type, stop_after_delay, stop_when_event_set, wait_fixed
 
 from jobkit.errors import DatabaseUnavailableError, NotFoundError, StaleAttemptError
@@ -34,15 +35,15 @@ def run_job(job_id: str) -> None:
         log_about(job_id=attempt.job_id, attempt=attempt.number, request_id=started.request_id),
         context.telemetry.span(
             "attempt",
-            "consumer",
+            SpanKind.CONSUMER,
             started.traceparent,
             {"quadpatch.job_id": attempt.job_id, "quadpatch.attempt": attempt.number},
         ) as span,
     ):
         state = repair(context, started)
-        span.note("quadpatch.state", "taken away" if state is None else state.value)
+        span.set_attribute("quadpatch.state", "taken away" if state is None else state.value)
         if state is None or not (state.has_result or state is JobState.CANCELED):
-            span.fail("the attempt ended without a result")
+            span.set_status(StatusCode.ERROR, "the attempt ended without a result")
 
 
 def inspect_mesh(mesh_id: str) -> None:

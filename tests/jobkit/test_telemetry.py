@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from opentelemetry.sdk.trace import ReadableSpan, TracerProvider
 from opentelemetry.sdk.trace.export import SimpleSpanProcessor
 from opentelemetry.sdk.trace.export.in_memory_span_exporter import InMemorySpanExporter
-from opentelemetry.trace import SpanKind
+from opentelemetry.trace import SpanKind, StatusCode
 
 from jobkit.telemetry import Telemetry, current_traceparent, open_telemetry
 from tests.waiting import GUARD_S
@@ -32,10 +32,10 @@ def recorded() -> Recorded:
 
 
 def test_a_trace_goes_on_from_where_it_was_written_down(recorded: Recorded) -> None:
-    with recorded.telemetry.span("POST /v1/jobs", "server"):
+    with recorded.telemetry.span("POST /v1/jobs", SpanKind.SERVER):
         written = current_traceparent()
     assert current_traceparent() is None
-    with recorded.telemetry.span("attempt", "consumer", written, {"quadpatch.attempt": 2}):
+    with recorded.telemetry.span("attempt", SpanKind.CONSUMER, written, {"quadpatch.attempt": 2}):
         pass
     request, attempt = recorded.spans()["POST /v1/jobs"], recorded.spans()["attempt"]
     assert attempt.parent is not None
@@ -50,8 +50,8 @@ def test_stages_follow_each_other_within_the_attempt(recorded: Recorded) -> None
         with recorded.telemetry.stages() as stages:
             for stage in ("read", "read", "fill", "write"):
                 stages.reach(stage)
-        span.note("quadpatch.state", "failed")
-        span.fail("it was lost")
+        span.set_attribute("quadpatch.state", "failed")
+        span.set_status(StatusCode.ERROR, "it was lost")
     spans = recorded.spans()
     assert list(spans) == ["stage read", "stage fill", "stage write", "attempt"]
     attempt = spans.pop("attempt")
@@ -68,7 +68,7 @@ def test_stages_follow_each_other_within_the_attempt(recorded: Recorded) -> None
 @given(header=st.text(max_size=80))
 def test_a_header_that_nobody_can_read_starts_a_trace_of_its_own(header: str) -> None:
     recorded = Recorded()
-    with recorded.telemetry.span("around"), recorded.telemetry.span("request", "server", header):
+    with recorded.telemetry.span("around"), recorded.telemetry.span("request", SpanKind.SERVER, header):
         pass
     assert recorded.spans()["request"].parent is None
 
@@ -76,9 +76,9 @@ def test_a_header_that_nobody_can_read_starts_a_trace_of_its_own(header: str) ->
 def test_without_an_address_nothing_is_made() -> None:
     with open_telemetry("api", {}) as telemetry, telemetry.span("attempt") as span, telemetry.stages() as stages:
         stages.reach("read")
-        span.note("quadpatch.state", "failed")
-        span.rename("other")
-        span.fail("it was lost")
+        span.set_attribute("quadpatch.state", "failed")
+        span.update_name("other")
+        span.set_status(StatusCode.ERROR, "it was lost")
         assert current_traceparent() is None
 
 
@@ -94,7 +94,7 @@ def test_the_library_is_needed_only_where_traces_are_sent() -> None:
     """Without the extra there is a warning, and no trace."""
     code = """
 import sys, logging
-sys.modules["opentelemetry"] = None
+sys.modules["opentelemetry.sdk"] = None
 from jobkit.telemetry import current_traceparent, open_telemetry
 logging.basicConfig()
 for endpoint in ("", "http://127.0.0.1:1"):

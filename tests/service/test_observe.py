@@ -77,7 +77,8 @@ def test_without_traces_a_job_keeps_the_request_alone(settings: Settings) -> Non
     with TestClient(create_app(settings), base_url="http://127.0.0.1") as client:
         services: Services = client.app.state.services  # type: ignore[attr-defined]
         mesh = client.post("/v1/meshes?filename=a.ply", content=b"ply").json()
-        answer = client.post("/v1/jobs", json={"mesh_id": mesh["id"], "method": {"method": "smooth"}})
+        spec = {"mesh_id": mesh["id"], "method": {"method": "smooth"}}
+        answer = client.post("/v1/jobs", json=spec, headers={"traceparent": SENT})
         started = services.attempts.start(answer.json()["id"], "w", 30)
     assert started.request_id == answer.headers["x-request-id"]
     assert started.traceparent is None
