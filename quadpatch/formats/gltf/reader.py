@@ -58,8 +58,7 @@ def read_gltf(data: bytes, limits: ReadLimits, folder: Path | None = None) -> Sc
     triangles: list[Triangles] = []
     primitives: list[Primitive] = []
     first = n_triangles = 0
-    for node, matrix in placed_nodes(file.document):
-        mesh = _read_mesh(file, get_entry(file.document, "nodes", node).get("mesh"), limits)
+    for node, matrix, mesh in _placed_meshes(file, limits):
         if len(mesh.triangles) == 0:
             continue
         part = Part(first, mesh.positions, matrix)
@@ -82,6 +81,16 @@ def read_gltf(data: bytes, limits: ReadLimits, folder: Path | None = None) -> Sc
     kind = "glb" if file.is_binary else "gltf"
     source = GltfSource(file, parts, nodes, primitives)
     return Scan(all_vertices, all_triangles, kind, "meter", source, next_hole_id(_hole_marks(file, limits)))
+
+
+def _placed_meshes(file: GltfFile, limits: ReadLimits) -> Iterator[tuple[int, FloatArray, _Mesh]]:
+    """Yield nodes with their transform and mesh; a mesh is read once, however often it is placed."""
+    meshes: dict[object, _Mesh] = {}
+    for node, matrix in placed_nodes(file.document):
+        index = get_entry(file.document, "nodes", node).get("mesh")
+        if not isinstance(index, int) or index not in meshes:
+            meshes[index] = _read_mesh(file, index, limits)
+        yield node, matrix, meshes[index]
 
 
 def _read_mesh(file: GltfFile, index: object, limits: ReadLimits) -> _Mesh:

@@ -15,6 +15,7 @@ from quadpatch.errors import (
     ReadError,
     TooLargeError,
 )
+from quadpatch.formats.gltf import reader
 from quadpatch.formats.gltf.reader import read_gltf
 from quadpatch.formats.limits import ReadLimits
 from quadpatch.formats.scan import Scan
@@ -167,6 +168,20 @@ def test_a_small_mesh_placed_often_is_too_large() -> None:
     document, binary = scene(VERTICES, TRIANGLES, *[{"mesh": 0}] * 100)
     with pytest.raises(TooLargeError):
         read_gltf(glb(document, binary), ReadLimits(max_vertices=399))
+
+
+def test_a_mesh_is_read_once_however_often_it_is_placed(monkeypatch: pytest.MonkeyPatch) -> None:
+    indices: list[object] = []
+
+    def counted(file: Any, index: object, limits: ReadLimits) -> Any:
+        indices.append(index)
+        return read_mesh(file, index, limits)
+
+    read_mesh = reader._read_mesh
+    monkeypatch.setattr(reader, "_read_mesh", counted)
+    scan = read(*scene(VERTICES, TRIANGLES, *[{"mesh": 0, "translation": [5.0 * i, 0, 0]} for i in range(50)]))
+    assert indices == [0]
+    np.testing.assert_array_equal(scan.vertices[-4:], VERTICES + np.array([245.0, 0, 0]))
 
 
 @pytest.mark.parametrize("text", [b"[]", b"{", b'{"a": NaN}', b'{"a": 1e999}', b"[" * 100_000, b"\xff\xff", b"3"])
