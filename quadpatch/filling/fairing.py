@@ -3,9 +3,13 @@
 New vertices minimise an energy of the surface while every measured vertex stays where it is. The thin plate
 minimises curvature, ``L M^-1 L x = 0`` with L the cotangent Laplacian and M the vertex areas; the minimum variation
 surface minimises the change of curvature, ``L M^-1 L M^-1 L x = 0``, and so carries the curvature of the rim on into
-the hole (M. Botsch and L. Kobbelt, "An intuitive framework for real-time freeform modeling", 2004). The first needs two
-rings of measured vertices at the rim, the second three. The smoother the energy, the better it continues a smooth
-surface and the worse a rough one, whose noise at the rim it magnifies: `Energy` blends them.
+the hole. The first needs two rings of measured vertices at the rim, the second three. The smoother the energy, the
+better it continues a smooth surface and the worse a rough one, whose noise at the rim it magnifies: `Energy` blends
+them.
+
+References
+----------
+M. Botsch, L. Kobbelt, "An intuitive framework for real-time freeform modeling", ACM SIGGRAPH, 2004.
 """
 
 from dataclasses import dataclass

@@ -1,8 +1,12 @@
 """Refinement of a hole's triangulation to the density of the surface around it.
 
-P. Liepa, "Filling Holes in Meshes", 2003, section 4: a triangle whose centroid lies far from its corners, compared with
+A triangle whose centroid lies far from its corners, compared with
 the edge lengths at the rim, is split there; after every round, interior edges are flipped until they are locally
 Delaunay. All holes are refined at once, so every step is one pass over arrays.
+
+References
+----------
+P. Liepa, "Filling Holes in Meshes", Eurographics Symposium on Geometry Processing, 2003, section 4.
 """
 
 from dataclasses import dataclass, replace

@@ -1,9 +1,12 @@
 """Minimum-weight triangulation of boundary loops.
 
-P. Liepa, "Filling Holes in Meshes", Eurographics Symposium on Geometry Processing 2003: among all triangulations of a
-loop, dynamic programming finds the one whose largest dihedral angle, with the surface around the hole counted in, is
-smallest; equal ones are told apart by their area. The table costs O(n^3) for a loop of n vertices, so a long loop is
-divided by chords first (`quadpatch.filling.division`).
+Among all triangulations of a loop, dynamic programming finds the one whose largest dihedral angle, with the surface
+around the hole counted in, is smallest; equal ones are told apart by their area. The table costs O(n^3) for a loop of n
+vertices, so a long loop is divided by chords first (`quadpatch.filling.division`).
+
+References
+----------
+P. Liepa, "Filling Holes in Meshes", Eurographics Symposium on Geometry Processing, 2003.
 """
 
 from dataclasses import dataclass, field, replace

@@ -4,6 +4,11 @@ Embree works in float32, and reads the buffers it was given for as long as the s
 scaled into the unit ball first, the buffers are kept next to the scene (without them hits go missing and nothing
 says so), and only the *choice* of triangle is embree's: the distance is computed here, in float64, from the plane
 of that triangle.
+
+References
+----------
+I. Wald, S. Woop, C. Benthin, G. Johnson, M. Ernst, "Embree: a kernel framework for efficient CPU ray tracing", ACM
+Transactions on Graphics 33, 2014.
 """
 
 import numpy as np

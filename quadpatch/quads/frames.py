@@ -1,8 +1,13 @@
 """Reference frames of quads, turned to agree with their neighbours.
 
 A quad has a normal but four equally good directions for x. Patches of neighbouring quads look alike to a dictionary
-only if they pick the same one, so the choice is handed on from quad to quad, breadth first (section "Patch
-orientation" of Sarkar et al., 2019). Around an irregular vertex of the quad mesh it can't close without a jump.
+only if they pick the same one, so the choice is handed on from quad to quad, breadth first. Around an irregular vertex
+of the quad mesh it can't close without a jump.
+
+References
+----------
+K. Sarkar, K. Varanasi, D. Stricker, "Learning Quadrangulated Patches For 3D Shape Processing", 2019, section "Patch
+orientation".
 """
 
 import numpy as np

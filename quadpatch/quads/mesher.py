@@ -9,6 +9,11 @@ triangles may also turn its whole field into NaN.
 
 Instant Meshes writes to the C-level standard output. For the time of the call that descriptor points to the null
 device, for the whole process: call this from one thread, in a process that writes nothing else meanwhile.
+
+References
+----------
+W. Jakob, M. Tarini, D. Panozzo, O. Sorkine-Hornung, "Instant Field-Aligned Meshes", ACM Transactions on Graphics 34,
+2015.
 """
 
 import os
@@ -42,7 +47,7 @@ _NEIGHBOURS = 8
 def quadrangulate(mesh: TriangleMesh, edge_length: float) -> QuadMesh:
     """Cover a surface with quads of about one side length.
 
-    Field-aligned remeshing with four-fold symmetry (Jakob et al., "Instant Field-Aligned Meshes", 2015). Open and
+    Field-aligned remeshing with four-fold symmetry. Open and
     non-manifold surfaces, several components, and triangles without area are fine; a component smaller than a
     quarter of a quad may get none. The result may have holes of its own and is deterministic.
 

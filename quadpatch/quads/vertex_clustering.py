@@ -1,4 +1,10 @@
-"""Thin a smooth mesh by joining the vertices of each cell of a grid, for a mesher that trips over broken input."""
+"""Thin a smooth mesh by joining the vertices of each cell of a grid, for a mesher that trips over broken input.
+
+References
+----------
+J. Rossignac, P. Borrel, "Multi-resolution 3D approximations for rendering complex scenes", Modeling in Computer
+Graphics, 1993.
+"""
 
 import numpy as np
 
@@ -15,7 +21,7 @@ _OTHER_SIDE = -0.5
 def cluster_vertices(mesh: TriangleMesh, cell: float) -> TriangleMesh:
     """Join all vertices within one cell of a cubic grid at their mean.
 
-    Vertex clustering (Rossignac and Borrel, 1993), except that the two sides of a wall thinner than a cell stay
+    Vertex clustering, except that the two sides of a wall thinner than a cell stay
     apart. Right for a smooth surface; details smaller than a cell vanish.
 
     Parameters

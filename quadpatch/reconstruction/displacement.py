@@ -4,6 +4,10 @@ The geometric fill carries the new vertices. A patch says, at every vertex it se
 should lie from where it is; the weighted mean over all patches that see the vertex is its displacement. At the rim
 the surface is measured and must stay, so the displacement found there (the misfit of the model) is continued
 harmonically into the hole and taken off: the displaced fill meets the rim exactly.
+
+References
+----------
+K. Sarkar, K. Varanasi, D. Stricker, "Learning Quadrangulated Patches For 3D Shape Processing", 2019, section 3.
 """
 
 from dataclasses import dataclass

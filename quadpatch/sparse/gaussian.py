@@ -8,8 +8,12 @@ likely code of a signal solves
 
 That is ridge regression on the known bins, each atom as free as it is common. Textures are rarely sparse in atoms that
 were learned in seconds, and a sparse code puts all its weight on the atoms that fit the rim best; this one hedges. The
-atoms are the principal directions of the signals: M. Tipping and C. Bishop, "Probabilistic principal component
-analysis" (1999).
+atoms are the principal directions of the signals.
+
+References
+----------
+M. Tipping, C. Bishop, "Probabilistic principal component analysis", Journal of the Royal Statistical Society B 61,
+1999.
 """
 
 import numpy as np

@@ -6,9 +6,12 @@ alternating least squares instead of a singular value decomposition ("approximat
 weighted fit with weights 0 and 1. Neither step can raise the error: where the pursuit, which is greedy, finds a worse
 code than the signal had, the old one stays.
 
-Papers: Aharon, Elad, Bruckstein, "K-SVD: an algorithm for designing overcomplete dictionaries for sparse
-representation" (2006); Rubinstein, Zibulevsky, Elad, "Efficient implementation of the K-SVD algorithm using batch
-orthogonal matching pursuit" (2008).
+References
+----------
+M. Aharon, M. Elad, A. Bruckstein, "K-SVD: an algorithm for designing overcomplete dictionaries for sparse
+representation", IEEE Transactions on Signal Processing 54, 2006.
+R. Rubinstein, M. Zibulevsky, M. Elad, "Efficient implementation of the K-SVD algorithm using batch orthogonal matching
+pursuit", Technion, 2008.
 """
 
 from collections.abc import Callable

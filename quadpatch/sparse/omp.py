@@ -11,8 +11,12 @@ are kept. They hold everything that a step needs: the projections of a new atom 
 compute is :math:`D^T M d_{new}`: one matrix product over the whole batch, or a look-up in the Gram matrix where many
 signals share a mask. No residual is ever formed.
 
-Papers: Pati, Rezaiifar, Krishnaprasad, "Orthogonal matching pursuit" (1993); Rubinstein, Zibulevsky, Elad,
-"Efficient implementation of the K-SVD algorithm using batch orthogonal matching pursuit" (2008).
+References
+----------
+Y. Pati, R. Rezaiifar, P. Krishnaprasad, "Orthogonal matching pursuit: recursive function approximation with
+applications to wavelet decomposition", Asilomar Conference on Signals, Systems and Computers, 1993.
+R. Rubinstein, M. Zibulevsky, M. Elad, "Efficient implementation of the K-SVD algorithm using batch orthogonal matching
+pursuit", Technion, 2008.
 """
 
 from collections.abc import Callable, Iterator
