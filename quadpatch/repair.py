@@ -37,7 +37,7 @@ from quadpatch.report import (
     with_hole_numbers,
 )
 from quadpatch.stages import Stages, harmless
-from quadpatch.types import Progress, TriangleMesh, no_progress
+from quadpatch.types import Progress, no_progress
 from shared_rules.hole_selection import Choice, choose_holes, join_islands
 
 SMOOTH = "smooth"
@@ -68,13 +68,10 @@ class RepairedFile:
     ----------
     report : dict
         JSON-ready. Optional steps that follow add their warnings and seconds to it.
-    measured : TriangleMesh
-        What was repaired, repeated vertices joined.
     repair : Repair
     """
 
     report: dict[str, Any]
-    measured: TriangleMesh
     repair: Repair
 
 
@@ -146,7 +143,7 @@ def repair_and_keep(
     repair = replace(repair, warnings=warnings)
     report = build_report(scan, welded, repair, options, card, stages)
     report = with_hole_numbers(report, scan.next_hole_id if named.suffix.lower() in NUMBERED else None)
-    return RepairedFile(report, welded.mesh, repair)
+    return RepairedFile(report, repair)
 
 
 def inspect_file(source: Path, weld_tolerance: Tolerance = "auto") -> dict[str, Any]:

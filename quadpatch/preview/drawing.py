@@ -43,7 +43,7 @@ def add_picture(repaired: RepairedFile, picture: Path) -> None:
     filled = repaired.repair.filled
     with _stage(repaired.report, "preview"):
         failure = failure_of(
-            lambda: render_before_after(repaired.measured, filled.mesh, filled.invented_triangles, picture)
+            lambda: render_before_after(filled.measured, filled.mesh, filled.invented_triangles, picture)
         )
     if failure is not None:
         repaired.report["warnings"].append(f"there is no picture: {failure}")
@@ -129,7 +129,7 @@ def _draw_each(
     warnings = repaired.report["warnings"]
     if not holes:
         return
-    failure = failure_of(lambda: pairs.append(prepare(repaired.measured, filled.mesh, filled.invented_triangles)))
+    failure = failure_of(lambda: pairs.append(prepare(filled.measured, filled.mesh, filled.invented_triangles)))
     if failure is not None:
         warnings.append(f"there are no close-ups: {failure}")
         return
@@ -141,7 +141,7 @@ def _draw_each(
 
 
 def _close_up(pair: Pair, repaired: RepairedFile, hole: Hole, save: Callable[[str, bytes], None]) -> list[str]:
-    numbered = NumberedHole(hole.id, repaired.measured.vertices[hole.loop])
+    numbered = NumberedHole(hole.id, repaired.repair.filled.mesh.vertices[hole.loop])
     failure = failure_of(lambda: save(f"hole_{hole.id}.png", draw_hole(pair, numbered)))
     return [] if failure is None else [f"there is no close-up of hole {hole.id}: {failure}"]
 

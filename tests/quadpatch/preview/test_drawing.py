@@ -154,7 +154,7 @@ def test_an_archive_is_bounded_in_number_and_in_size_and_says_so(
 
 
 def test_an_archive_of_no_chosen_hole_is_empty_and_no_warning(ball: RepairedFile, tmp_path: Path) -> None:
-    nothing = RepairedFile({"warnings": [], "stages": []}, ball.measured, replace(ball.repair, chosen=[]))
+    nothing = RepairedFile({"warnings": [], "stages": []}, replace(ball.repair, chosen=[]))
     add_close_up_archive(nothing, tmp_path / "none.zip")
     assert nothing.report["warnings"] == []
     with zipfile.ZipFile(tmp_path / "none.zip") as pack:
