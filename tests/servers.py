@@ -18,7 +18,7 @@ import boto3
 import psutil
 import psycopg
 from moto.server import ThreadedMotoServer
-from psycopg.sql import SQL, Composable, Identifier
+from psycopg.sql import SQL, Composed, Identifier
 
 from jobkit.database.session import Database
 from tests.waiting import GUARD_S, wait_until
@@ -122,7 +122,7 @@ class PostgresServer:
         """Remove a database, and whoever is connected to it; nothing happens where there is none."""
         self.execute(SQL("DROP DATABASE IF EXISTS {} WITH (FORCE)").format(Identifier(name)))
 
-    def execute(self, statement: Composable) -> None:
+    def execute(self, statement: SQL | Composed) -> None:
         """Run a statement as the superuser, outside of any transaction."""
         with psycopg.connect(
             host=str(self.folder), port=self.port, user="postgres", dbname="postgres", autocommit=True

@@ -19,7 +19,7 @@ _PAUSE_S = 0.05
 
 
 def wait_until(
-    condition: Callable[[], T], process: "Popen[bytes] | Popen[str] | None" = None, log: Path | None = None
+    condition: Callable[[], T | None], process: "Popen[bytes] | Popen[str] | None" = None, log: Path | None = None
 ) -> T:
     """Ask until the answer is true in the sense of `if`, and return it.
 

@@ -124,7 +124,7 @@ def test_no_text_forges_a_line_of_the_log(formatter: logging.Formatter) -> None:
         record = logging.LogRecord("n", logging.ERROR, "p", 1, "%s", (HOSTILE,), (ValueError, error, None))
     handler.emit(record)
     stream.flush()
-    written = stream.buffer.getvalue().decode()  # type: ignore[attr-defined]
+    written = stream.buffer.getvalue().decode()
     first, *others = written.splitlines()
     assert "forged" in first
     assert all(line.startswith("    ") for line in others)

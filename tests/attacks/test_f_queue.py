@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 from redis import Redis
+from redis.typing import EncodableT, FieldT
 from rq import Queue
 from rq.job import Job
 from rq.registry import StartedJobRegistry
@@ -44,7 +45,9 @@ def called(monkeypatch: pytest.MonkeyPatch) -> list[str]:
 def plant(connection: Redis, name: str, data: list[Any], **fields: str) -> str:
     """Write an entry as one does who may write to Valkey, and no more."""
     entry = f"entry-{len(connection.lrange(f'rq:queue:{name}', 0, -1))}"
-    values = {"data": zlib.compress(json.dumps(data).encode()), "origin": name, "status": "queued", **fields}
+    compressed = zlib.compress(json.dumps(data).encode())
+    values: dict[FieldT, EncodableT] = {"data": compressed, "origin": name, "status": "queued"}
+    values.update(fields.items())
     connection.hset(f"rq:job:{entry}", mapping=values)
     connection.rpush(f"rq:queue:{name}", entry)
     return entry

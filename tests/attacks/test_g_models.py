@@ -30,6 +30,7 @@ from tests.quadpatch.inpainters.test_onnx_network import N, write_network
 from tests.worker.test_repairs import working
 from worker.jobs import prove_model, run_job
 
+Files = dict[str, tuple[str, bytes] | tuple[None, str, str]]
 CARD = {"patch_resolution": N, "recipe": "paper", "height_low": -0.5, "height_high": 0.5}
 
 
@@ -43,7 +44,8 @@ def test_the_card_beside_a_network_reaches_the_engine(
 ) -> None:
     network = write_network(tmp_path / "copy.onnx", None, 1)
     with TestClient(create_app(settings), base_url="http://127.0.0.1") as client:
-        files = {"artifact": ("copy.onnx", network.read_bytes()), "card": (None, json.dumps(CARD), "application/json")}
+        card = (None, json.dumps(CARD), "application/json")
+        files: Files = {"artifact": ("copy.onnx", network.read_bytes()), "card": card}
         answer = client.post("/v1/models/copy/versions", files=files, headers={"Prefer": "wait=0"})
         assert answer.status_code == 202
     with store.writer("meshes") as writer:
@@ -171,7 +173,7 @@ UNPROVEN = {
 def test_what_a_worker_cannot_prove_is_never_used(
     settings: Settings, database: Database, store: ObjectStore, case: str
 ) -> None:
-    files = {"artifact": ("a.onnx", UNPROVEN[case]), "card": (None, json.dumps(CARD), "application/json")}
+    files: Files = {"artifact": ("a.onnx", UNPROVEN[case]), "card": (None, json.dumps(CARD), "application/json")}
     with TestClient(create_app(settings), base_url="http://127.0.0.1") as client:
         published = client.post("/v1/models/copy/versions", files=files, headers={"Prefer": "wait=0"})
         assert published.json()["state"] == "proving"

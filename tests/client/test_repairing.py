@@ -46,9 +46,9 @@ def test_close_ups_must_not_overwrite_another_output(tmp_path: Path) -> None:
     folder.mkdir()
     asked = replace(task(tmp_path / "scan.ply", tmp_path / "mesh.ply"), closeups=folder)
     check_outputs(replace(asked, preview=folder / "whole.png"))
-    for clash in ({"preview": folder / "hole_0.png"}, {"report": folder / "hole_12.png"}):
+    for clash in (replace(asked, preview=folder / "hole_0.png"), replace(asked, report=folder / "hole_12.png")):
         with pytest.raises(UsageError, match="name of a close-up"):
-            check_outputs(replace(asked, **clash))
+            check_outputs(clash)
 
 
 def test_an_output_needs_a_folder_and_must_be_none(tmp_path: Path) -> None:

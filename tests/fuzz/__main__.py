@@ -38,7 +38,7 @@ def main(arguments: list[str]) -> int:
 
 def to_text(outcomes: Sequence[Outcome]) -> str:
     """Sum the runs up, one line for each kind of damage."""
-    rows = [_COLUMNS]
+    rows: list[tuple[str, ...]] = [_COLUMNS]
     for kind in (*KINDS, ""):
         mine = [outcome for outcome in outcomes if kind in (outcome.kind, "")]
         if mine:

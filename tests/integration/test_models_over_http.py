@@ -35,7 +35,10 @@ def test_what_is_published_is_proven_and_used_at_once_as_the_documents_show(
 def test_what_cannot_be_proven_is_answered_with_the_check_that_failed(box: RunningBox, tmp_path: Path) -> None:
     network = write_network(tmp_path / "copy.onnx", None, 1).read_bytes()
     card = json.dumps({**PAPER, "patch_resolution": 32})
-    files = {"artifact": ("copy.onnx", network), "card": (None, card, "application/json")}
+    files: dict[str, tuple[str, bytes] | tuple[None, str, str]] = {
+        "artifact": ("copy.onnx", network),
+        "card": (None, card, "application/json"),
+    }
     with httpx.Client(base_url=box.url, timeout=GUARD_S) as http:
         refused = http.post("/v1/models/wrong/versions", files=files, headers={"Prefer": "wait=30"})
         assert (refused.status_code, refused.json()["code"]) == (422, "unusable_model")

@@ -7,7 +7,7 @@ from contextlib import AbstractContextManager
 from datetime import datetime, timedelta
 from pathlib import Path
 
-from sqlalchemy import delete, select, update
+from sqlalchemy import delete, inspect, select, update
 
 from dispatcher.unreferenced_objects import CONTENT_PREFIXES, RESULT_PREFIX
 from jobkit.database.session import Database
@@ -98,7 +98,7 @@ def age_rows(database: Database, by: timedelta) -> None:
     ]
     with database.write() as session:
         for table, column in columns:
-            keys_of = list(table.__table__.primary_key.columns)
+            keys_of = list(inspect(table).primary_key)
             for *identity, moment in session.execute(select(*keys_of, column).where(column.is_not(None))).all():
                 same = [name == value for name, value in zip(keys_of, identity, strict=True)]
                 session.execute(update(table).where(*same).values({column.key: moment - by}))
@@ -170,7 +170,7 @@ class AgingStore:
     @contextlib.contextmanager
     def _killing(self) -> Iterator[None]:
         strikes = self.kill_in == 0
-        self.kill_in = None if self.kill_in in (None, 0) else self.kill_in - 1  # type: ignore[operator]
+        self.kill_in = None if self.kill_in in (None, 0) else self.kill_in - 1
         if strikes and not self.kills_after:
             raise KilledError
         yield

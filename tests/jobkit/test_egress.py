@@ -85,7 +85,7 @@ def test_what_the_whole_internet_can_reach_is_allowed_by_https_only(address: str
 @given(address=hidden_v4)
 def test_no_disguise_lets_a_hidden_address_pass(address: IPv4Address) -> None:
     number = int(address)
-    wrappings = [
+    wrappings: list[IPv4Address | IPv6Address] = [
         address,
         IPv6Address((0xFFFF << 32) | number),
         IPv6Address(number),

@@ -116,7 +116,9 @@ class World:
 
     def kept_by_a_pin(self) -> set[str]:
         with self.database.read() as session:
-            return {row.id for table in (JobRow, MeshRow) for row in session.scalars(select(table)) if row.pinned}
+            jobs = session.scalars(select(JobRow.id).where(JobRow.pinned))
+            meshes = session.scalars(select(MeshRow.id).where(MeshRow.pinned))
+            return {*jobs, *meshes}
 
     def old_objects(self) -> set[str]:
         return {found.key for found in self.store.keys("") if found.modified_at < utc_now() - GRACE}

@@ -113,7 +113,7 @@ def test_versions_that_are_deleted_at_once_leave_no_number_free(
 ) -> None:
     for seed in (1, 2, 3):
         publish("parts", seed)
-    assert at_once(*(lambda n=n: delete_version(database, "parts", n) for n in (1, 2, 3))) == [None] * 3  # type: ignore[misc]
+    assert at_once(*(lambda n=n: delete_version(database, "parts", n) for n in (1, 2, 3))) == [None] * 3
     publish("parts", 1)
     assert registry.resolve("parts").version == 4
 

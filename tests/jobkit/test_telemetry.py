@@ -26,6 +26,13 @@ class Recorded:
         return {span.name: span for span in self._exporter.get_finished_spans()}
 
 
+def times(span: ReadableSpan) -> tuple[int, int]:
+    """Return when a span began and ended, in nanoseconds."""
+    assert span.start_time is not None
+    assert span.end_time is not None
+    return span.start_time, span.end_time
+
+
 @pytest.fixture
 def recorded() -> Recorded:
     return Recorded()
@@ -57,12 +64,13 @@ def test_stages_follow_each_other_within_the_attempt(recorded: Recorded) -> None
     attempt = spans.pop("attempt")
     assert attempt.attributes == {"quadpatch.state": "failed"}
     assert not attempt.status.is_ok
-    ends = [attempt.start_time]
-    for span in spans.values():
-        assert span.parent is not None
-        assert span.parent.span_id == attempt.context.span_id
-        assert span.start_time >= ends[-1]
-        ends.append(span.end_time)
+    before, _ = times(attempt)
+    for stage_span in spans.values():
+        assert stage_span.parent is not None
+        assert stage_span.parent.span_id == attempt.context.span_id
+        start, end = times(stage_span)
+        assert start >= before
+        before = end
 
 
 @given(header=st.text(max_size=80))

@@ -3,6 +3,7 @@
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import httpx
 import numpy as np
@@ -98,11 +99,11 @@ def _answer(client: httpx.Client, one: Mutant) -> tuple[str, str]:
     return "mesh", _served(client, ended)
 
 
-def _ended(job: dict) -> dict | None:  # type: ignore[type-arg]
+def _ended(job: dict[str, Any]) -> dict[str, Any] | None:
     return job if job["state"] not in ("queued", "running", "canceling") else None
 
 
-def _served(client: httpx.Client, job: dict) -> str:  # type: ignore[type-arg]
+def _served(client: httpx.Client, job: dict[str, Any]) -> str:
     """Fetch the mesh; what a job made has to be there."""
     client.get(job["links"]["result"]).raise_for_status()
     client.get(job["links"]["report"]).raise_for_status()

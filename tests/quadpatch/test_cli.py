@@ -32,7 +32,7 @@ def verdicts(report: Path) -> list[str]:
 
 def test_fill_writes_the_mesh_the_report_and_the_picture(scan_file: Path, tmp_path: Path) -> None:
     output, report, picture = tmp_path / "out.ply", tmp_path / "out.json", tmp_path / "out.png"
-    files = [scan_file, "-o", output, "--report", report, "--preview", picture]
+    files: list[str | Path] = [scan_file, "-o", output, "--report", report, "--picture", picture]
     result = run("fill", *map(str, files), "--model", "smooth")
     assert result.exit_code == 0, result.output
     assert verdicts(report) == ["skipped", "filled_smooth", "filled_smooth", "filled_smooth"]
@@ -45,7 +45,7 @@ def test_fill_writes_the_mesh_the_report_and_the_picture(scan_file: Path, tmp_pa
 
 
 def test_close_ups_are_named_by_the_holes_that_were_chosen(scan_file: Path, tmp_path: Path) -> None:
-    files = [scan_file, "-o", tmp_path / "out.ply", "--closeups", tmp_path / "closeups"]
+    files: list[str | Path] = [scan_file, "-o", tmp_path / "out.ply", "--closeups", tmp_path / "closeups"]
     result = run("fill", *files, "--model", "smooth", "--hole", "1", "--hole", "3")
     assert result.exit_code == 0, result.output
     assert {path.name for path in (tmp_path / "closeups").iterdir()} == {"hole_1.png", "hole_3.png"}
@@ -59,7 +59,7 @@ def test_a_picture_that_fails_is_a_warning_and_mesh_and_report_are_there(
 
     monkeypatch.setattr(drawing, "render_before_after", fail)
     output, report = tmp_path / "out.ply", tmp_path / "out.json"
-    files = [scan_file, "-o", output, "--report", report, "--picture", tmp_path / "out.png"]
+    files: list[str | Path] = [scan_file, "-o", output, "--report", report, "--picture", tmp_path / "out.png"]
     result = run("fill", *files, "--model", "smooth")
     assert result.exit_code == 0, result.output
     assert "Warning: there is no picture: an internal error" in " ".join(result.stderr.split())

@@ -60,7 +60,7 @@ def test_standard_output_gets_the_mesh_behind_what_is_there_already(scan: Path, 
 def test_a_report_goes_to_standard_output_once_although_pictures_are_drawn_after_the_mesh(
     scan: Path, tmp_path: Path
 ) -> None:
-    arguments = ["-o", tmp_path / "mesh.ply", "--report", "-", "--picture", tmp_path / "p.png"]
+    arguments: list[str | Path] = ["-o", tmp_path / "mesh.ply", "--report", "-", "--picture", tmp_path / "p.png"]
     done = filled(scan, tmp_path / "log", *arguments)
     assert done.returncode == 0, done.stderr
     report = json.loads((tmp_path / "log").read_bytes().removeprefix(b"before\n"))

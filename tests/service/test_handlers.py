@@ -21,7 +21,7 @@ def all_subclasses(kind: type[JobkitError]) -> Iterator[type[JobkitError]]:
 
 
 def test_every_error_has_a_code_of_its_own() -> None:
-    kinds = [JobkitError, *all_subclasses(JobkitError)]
+    kinds: list[type[JobkitError]] = [JobkitError, *all_subclasses(JobkitError)]
     assert len({kind.code for kind in kinds}) == len(kinds)
     assert set(STATUS_BY_ERROR) <= set(kinds)
 

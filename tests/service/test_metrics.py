@@ -1,4 +1,4 @@
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from datetime import timedelta
 from pathlib import Path
 
@@ -201,7 +201,7 @@ def test_however_many_ask_the_database_is_read_once_a_second(services: Services,
 
 
 @pytest.fixture
-def keyed(settings: Settings) -> Iterator[Callable[[bool], TestClient]]:
+def keyed(settings: Settings) -> Callable[[bool], TestClient]:
     def make(is_open: bool) -> TestClient:
         changes = {"api_keys": SecretStr("a-key-of-station-1"), "metrics_open": is_open}
         return TestClient(create_app(settings.model_copy(update=changes)), base_url="http://127.0.0.1")

@@ -127,7 +127,7 @@ class Registered:
 @pytest.fixture(scope="module")
 def registered(corpus: Path, tmp_path_factory: pytest.TempPathFactory) -> Registered:
     folder = tmp_path_factory.mktemp("registered")
-    files = ["--output", folder / "own.onnx", "--checkpoint", folder / "run.checkpoint"]
+    files: list[str | Path] = ["--output", folder / "own.onnx", "--checkpoint", folder / "run.checkpoint"]
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("QUADPATCH_DATA_DIR", str(folder / "data"))
         return Registered(folder, call(*network(corpus, "--name", "own", *files, "--register")))

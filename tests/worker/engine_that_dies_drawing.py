@@ -9,7 +9,7 @@ def _die(*_: object) -> None:
     ctypes.string_at(0)
 
 
-main.add_picture = _die  # type: ignore[assignment]
-main.prove_model = _die  # type: ignore[assignment]
-main.add_close_up_archive = _die  # type: ignore[assignment]
+for name in ("add_picture", "prove_model", "add_close_up_archive"):
+    assert hasattr(main, name)
+    setattr(main, name, _die)
 run_request = main.run_request

@@ -7,13 +7,18 @@ import signal
 import subprocess
 import time
 from pathlib import Path
-
-from reaching_out import ATTEMPTS
+from typing import TYPE_CHECKING
 
 from quadpatch.errors import ReadError
 from worker.engine.entry import run_framed
 from worker.engine.reports import Reporter
 from worker.engine.request import EngineRequest
+
+if TYPE_CHECKING:
+    from tests.worker.reaching_out import ATTEMPTS
+else:
+    # The fork server finds this folder by PYTHONPATH, and does not find `tests`.
+    from reaching_out import ATTEMPTS
 
 
 def run_request(folder: Path, descriptor: int) -> None:

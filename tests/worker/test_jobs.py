@@ -80,6 +80,8 @@ def test_a_repair_goes_on_with_the_trace_of_its_request_and_has_a_span_for_each_
             row.stage: row.seconds for row in session.scalars(select(StageRow).where(StageRow.method == "smooth"))
         }
     assert {f"stage {stage}" for stage in summed} >= spans.keys() - {"stage preview"}
+    assert attempt.start_time is not None
+    assert attempt.end_time is not None
     assert sum(summed.values()) < (attempt.end_time - attempt.start_time) / 1e9
 
 

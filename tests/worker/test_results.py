@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from jobkit.errors import ObjectNotFoundError, StoreUnavailableError
-from jobkit.jobs.attempts import Attempt
+from jobkit.jobs.endings import Attempt
 from jobkit.storage.base import ObjectStore, StoredObject, result_key
 from worker.engine.limits import EngineLimits
 from worker.engine.request import EngineRequest

@@ -15,7 +15,7 @@ OLD_HOLE: dict[str, Any] = {
 def test_holes_of_earlier_analyses_are_read(is_border: bool, kind: str) -> None:
     hole = Hole.model_validate(OLD_HOLE | {"is_border": is_border})
     assert (hole.kind, hole.is_border) == (kind, is_border)
-    assert hole.centre is hole.normal is hole.bounding_box is None
+    assert (hole.centre, hole.normal, hole.bounding_box) == (None, None, None)
     assert Hole.model_validate_json(hole.model_dump_json()) == hole
 
 

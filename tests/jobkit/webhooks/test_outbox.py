@@ -1,6 +1,7 @@
 import threading
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from typing import get_args
 
 import pytest
 from sqlalchemy import event, select
@@ -12,6 +13,7 @@ from jobkit.jobs.attempts import Attempts
 from jobkit.jobs.endings import end_attempt, failure
 from jobkit.jobs.jobs import Jobs, NewJob
 from jobkit.schema import Job, JobError, JobResult, JobState, NewWebhook
+from jobkit.schema.webhooks import WebhookEvent
 from jobkit.webhooks.outbox import UNTOLD
 from jobkit.webhooks.subscriptions import Webhooks
 
@@ -21,9 +23,13 @@ ERROR = JobError(code="no_quads", message="the outline is too small")
 @pytest.fixture
 def subscribe(database: Database) -> Callable[..., str]:
     """Subscribe to events, all of those that there are by default; returns the id of the subscription."""
-    everything = ["job.started", "job.requeued", "job.succeeded", "job.failed", "job.canceled"]
     webhooks = Webhooks(database, lambda _: None)
-    return lambda events=None: webhooks.create(NewWebhook(url="https://a.example/", events=events or everything)).id
+
+    def act(events: list[WebhookEvent] | None = None) -> str:
+        chosen = events or list(get_args(WebhookEvent))
+        return webhooks.create(NewWebhook(url="https://a.example/", events=chosen)).id
+
+    return act
 
 
 def messages(database: Database) -> list[DeliveryRow]:

@@ -1,4 +1,5 @@
 import base64
+from collections.abc import Callable
 from datetime import UTC, datetime
 
 import pytest
@@ -70,7 +71,11 @@ def test_switched_off_what_is_on_its_way_is_given_up_and_switched_on_the_history
     assert not webhooks.change(webhook.id, WebhookChange(enabled=False)).enabled
     given_up = deliveries.get(webhook.id, test.id)
     assert (given_up.state, given_up.next_try_at, given_up.finished_at is None) == ("dead", None, False)
-    for send in (lambda: deliveries.send_test(webhook.id), lambda: deliveries.replay(webhook.id, test.id)):
+    sends: tuple[Callable[[], object], ...] = (
+        lambda: deliveries.send_test(webhook.id),
+        lambda: deliveries.replay(webhook.id, test.id),
+    )
+    for send in sends:
         with pytest.raises(WebhookDisabledError):
             send()
     assert webhooks.change(webhook.id, WebhookChange(enabled=True)).failing_since is None

@@ -49,8 +49,8 @@ def test_holes_are_cut_until_there_is_no_room_left(seed: int, diameter: float, m
     # No disk is wider than the hole that was asked for.
     reach = diameter / 2 + margin
     surface = SHEET.vertices[np.unique(SHEET.triangles)]
-    to_rim, _ = cKDTree(SHEET.vertices[rim_vertices(SHEET)]).query(surface)
-    to_gone, _ = cKDTree(SHEET.vertices[cut.removed]).query(surface)
+    to_rim = np.asarray(cKDTree(SHEET.vertices[rim_vertices(SHEET)]).query(surface)[0])
+    to_gone = np.asarray(cKDTree(SHEET.vertices[cut.gone]).query(surface)[0])
     assert (to_gone[to_rim > reach] <= 2 * reach).all()
 
 

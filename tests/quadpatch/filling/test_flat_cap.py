@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from quadpatch.filling.fill import FilledMesh
+from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.filling.flat_cap import flat_caps
 from quadpatch.mesh.boundary import boundary_loops
 from quadpatch.types import FloatArray, TriangleMesh
@@ -54,7 +54,7 @@ def angles(corners: FloatArray) -> FloatArray:
     for k in range(3):
         u, v = corners[:, k - 1] - corners[:, k], corners[:, k - 2] - corners[:, k]
         found.append(np.arctan2(np.linalg.norm(np.cross(u, v), axis=1), np.einsum("ij,ij->i", u, v)))
-    return np.degrees(np.stack(found, axis=1))
+    return np.asarray(np.degrees(np.stack(found, axis=1)))
 
 
 @pytest.mark.parametrize("n", [3, 4, 5, 8, 24, 48, 130])

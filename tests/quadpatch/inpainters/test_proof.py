@@ -161,7 +161,8 @@ def test_a_network_may_leave_the_sides_of_its_output_open(tmp_path: Path) -> Non
 def test_a_dictionary_of_other_atoms_than_its_card_says_is_refused(
     tmp_path: Path, change: dict[str, Any], message: str
 ) -> None:
-    card = {"kind": "dictionary", "normalisation": NORMALISATION, "patch_resolution": 8, "n_nonzero": 3, "scale": 1.0}
+    card: dict[str, str | float] = {"kind": "dictionary", "normalisation": NORMALISATION}
+    card |= {"patch_resolution": 8, "n_nonzero": 3, "scale": 1.0}
     atoms = np.random.default_rng(1).normal(size=(64, 5))
     atoms /= np.linalg.norm(atoms, axis=0)
     path = tmp_path / "atoms.safetensors"

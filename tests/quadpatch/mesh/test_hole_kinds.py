@@ -203,7 +203,7 @@ def extruded(outline: FloatArray, height: float = 1.0, top: float = 1.0) -> Tria
 def star(n: int, inner: float) -> FloatArray:
     angle = 2 * np.pi * np.arange(n) / n
     radius = 1 - (1 - inner) * (0.5 + 0.5 * np.cos(5 * angle))
-    return radius[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    return np.asarray(radius[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1))
 
 
 @pytest.mark.parametrize("inner", [1.0, 0.6, 0.3])

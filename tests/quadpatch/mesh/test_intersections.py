@@ -9,7 +9,7 @@ from quadpatch.mesh.intersections import LEAST_HEIGHT, crossing_pairs, heights, 
 from quadpatch.types import FloatArray, IntArray, TriangleMesh
 from tests.quadpatch.shapes import bumpy_plate, joined, moved, open_grid, random_rotation, sphere
 
-FLOOR = [[-1.0, -1, 0], [2, -1, 0], [0, 2, 0]]
+FLOOR: list[list[float]] = [[-1.0, -1, 0], [2, -1, 0], [0, 2, 0]]
 SIZES = st.sampled_from([1e-12, 1e-6, 1.0, 1e6, 1e12])
 
 
@@ -30,7 +30,8 @@ def crossed_by_edges(corners: FloatArray) -> set[tuple[int, int]]:
         return float(np.linalg.det(np.stack([b - a, c - a, d - a])))
 
     def passes(start: FloatArray, end: FloatArray, t: FloatArray) -> bool:
-        sides = volume(*t, start) * volume(*t, end) < 0
+        a, b, c = t
+        sides = volume(a, b, c, start) * volume(a, b, c, end) < 0
         around = {volume(start, end, t[k - 1], t[k]) > 0 for k in range(3)}
         return sides and len(around) == 1
 
@@ -62,7 +63,7 @@ def test_random_triangles_cross_where_an_edge_passes_through_in_any_unit_and_pla
 @pytest.mark.parametrize("size", [1e-150, 1e-40, 1e-6, 1.0, 1e6, 1e40])
 def test_a_blade_through_the_floor_crosses_it_and_one_that_stands_on_it_does_not(size: float) -> None:
     for depth, expected in ((0.3, {(0, 1)}), (0.0, set()), (-0.1, set())):
-        blade = [[-0.2, 0.1, -depth], [0.2, 0.1, 1.0], [0.0, 0.2, 1.0]]
+        blade: list[list[float]] = [[-0.2, 0.1, -depth], [0.2, 0.1, 1.0], [0.0, 0.2, 1.0]]
         mesh = soup(FLOOR, blade)
         assert pairs_of(TriangleMesh(size * mesh.vertices, mesh.triangles)) == expected
 
@@ -111,8 +112,8 @@ def test_noise_in_the_last_bit_makes_no_crossing(seed: int, size: float) -> None
 
 
 def test_what_has_no_height_crosses_nothing() -> None:
-    needle = [[0.0, 0, -1], [0, 0, 1], [0, 0, 0.5]]
-    point = [[0.0, 0, 0]] * 3
+    needle: list[list[float]] = [[0.0, 0, -1], [0, 0, 1], [0, 0, 0.5]]
+    point: list[list[float]] = [[0.0, 0, 0]] * 3
     assert pairs_of(soup(FLOOR, needle, point)) == set()
     assert pairs_of(soup(needle)) == set()
     assert len(crossing_pairs(TriangleMesh(np.zeros((0, 3)), np.zeros((0, 3), np.int64)))) == 0

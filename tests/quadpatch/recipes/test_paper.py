@@ -1,11 +1,12 @@
 from dataclasses import replace
+from typing import Self
 
 import numpy as np
 import pytest
 
 from quadpatch.filling.fill import close_flat
-from quadpatch.inpainters.inpainter import UndamagedSurface
-from quadpatch.inpainters.paper_dictionary import LOCAL_ATOMS, HeightsInpainter, SelfHeights, learn_heights
+from quadpatch.inpainters.inpainter import Surroundings
+from quadpatch.inpainters.paper_dictionary import LOCAL_ATOMS, HeightsInpainter
 from quadpatch.mesh.distance import distance_to_mesh
 from quadpatch.mesh.raycast import RayScene
 from quadpatch.options import DictionaryOptions, HoleOptions, PatchOptions, RepairOptions
@@ -42,10 +43,10 @@ class Truth:
         self.whole = whole
         self.resolution = resolution
 
-    def fitted_to(self, undamaged: UndamagedSurface) -> "Truth":
+    def fitted_to(self, surroundings: Surroundings) -> Self:
         return self
 
-    def predict(self, patches: Patches, base_heights: FloatArray) -> FloatArray:
+    def predict(self, patches: Patches, outline: FloatArray) -> FloatArray:
         seeds = Seeds(patches.origins, patches.frames, np.zeros(len(patches), np.int64))
         nothing = np.zeros(len(self.whole.triangles), bool)
         scene = RayScene(self.whole)

@@ -57,7 +57,8 @@ def noise(size: float, *holes: int) -> FloatArray:
 
 
 def new_of(filled: FilledMesh, hole: int) -> bytes:
-    return filled.mesh.vertices[filled.n_measured_vertices :][filled.vertex_hole == hole].tobytes()
+    vertices: FloatArray = filled.mesh.vertices[filled.n_measured_vertices :][filled.vertex_hole == hole]
+    return vertices.tobytes()
 
 
 def test_a_displacement_without_faults_is_left_as_it_is() -> None:

@@ -58,7 +58,7 @@ def spanned(rng: np.random.Generator, n: int, side: int = 8) -> FloatArray:
     images = np.concatenate([turned(rng.normal(size=(side, side)))[:1] for _ in range(3)])
     patterns = np.stack([turn.ravel() / np.linalg.norm(turn) for image in images for turn in turned(image)])
     weights = rng.normal(size=(n, len(patterns))) * np.repeat([3.0, 1.0, 0.3], 8)
-    return weights @ patterns
+    return np.asarray(weights @ patterns)
 
 
 def test_atoms_span_the_signals_also_where_bins_are_missing() -> None:

@@ -166,7 +166,7 @@ def test_a_key_is_honoured_even_after_its_model_is_gone(
 
 @pytest.mark.parametrize("key", ["", "a b", "x" * 256, "\xe4"])
 def test_a_key_that_is_no_key_is_refused(client: TestClient, mesh_id: str, key: str) -> None:
-    headers = {"Idempotency-Key": key.encode("latin-1")}
+    headers = {b"Idempotency-Key": key.encode("latin-1")}
     answer = client.post("/v1/jobs", json={"mesh_id": mesh_id, "method": SMOOTH}, headers=headers)
     assert answer.status_code == 422
 

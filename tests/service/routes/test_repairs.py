@@ -5,6 +5,7 @@ from typing import Any
 import pytest
 from starlette.testclient import TestClient
 
+Files = dict[str, tuple[str, bytes] | tuple[None, str, str]]
 MESH = ("scan.ply", b"ply\n")
 
 
@@ -35,7 +36,7 @@ def test_without_a_spec_the_default_dictionary_is_asked_for(client: TestClient) 
 
 def test_a_repeated_key_starts_nothing_twice(client: TestClient) -> None:
     headers = {"Idempotency-Key": "order-17"}
-    files = {"mesh": MESH, "spec": spec()}
+    files: Files = {"mesh": MESH, "spec": spec()}
     first = client.post("/v1/repairs", files=files, headers=headers)
     assert client.post("/v1/repairs", files=files, headers=headers).json() == first.json()
     other = client.post("/v1/repairs", files={"mesh": ("scan.ply", b"other"), "spec": spec()}, headers=headers)

@@ -44,7 +44,10 @@ def test_a_result_is_named_after_the_file_of_its_job_whatever_its_bytes_are_call
         mesh = client.post("/v1/meshes", params={"filename": name}, content=data).json()
         jobs.append(client.post("/v1/jobs", json={"mesh_id": mesh["id"], **spec}).json())
     for name in ("upper.ply", "lower.ply"):
-        files = {"mesh": (name, data), "spec": (None, json.dumps(spec), "application/json")}
+        files: dict[str, tuple[str, bytes] | tuple[None, str, str]] = {
+            "mesh": (name, data),
+            "spec": (None, json.dumps(spec), "application/json"),
+        }
         jobs.append(client.post("/v1/repairs", files=files).json())
     named = {"mesh_id": jobs[0]["mesh_id"], "mesh_name": "folder/inner.ply", **spec}
     jobs.append(client.post("/v1/jobs", json=named).json())
