@@ -63,7 +63,7 @@ def test_services_get_settings_that_are_known(name: str) -> None:
     refuse_unknown_names(names)
     values = {n: interpolated(v, {"VALKEY_PASSWORD": PASSWORD, "API_KEYS": PASSWORD}) for n, v in names.items()}
     settings = {n.removeprefix(PREFIX).lower(): v for n, v in values.items() if n.startswith(PREFIX)}
-    Settings.model_validate(settings)
+    assert Settings.model_validate(settings).model_fields_set == settings.keys()
 
 
 def test_every_variable_of_the_compose_file_stands_in_the_example_with_its_default() -> None:

@@ -170,7 +170,9 @@ def test_a_worker_has_room_for_the_largest_repair_it_allows() -> None:
 def test_selectors_find_pods() -> None:
     labels = [m["spec"]["template"]["metadata"]["labels"] for m in WORKLOADS.values()]
     for kind in ("Service", "Deployment", "StatefulSet", "PodDisruptionBudget"):
-        for name, selector in selectors(kind):
+        found = list(selectors(kind))
+        assert found, kind
+        for name, selector in found:
             assert any(selector.items() <= label.items() for label in labels), (kind, name)
     services = [m["metadata"]["labels"] for m in ALL if m["kind"] == "Service" and "labels" in m["metadata"]]
     for name, selector in selectors("ServiceMonitor"):

@@ -1,7 +1,7 @@
 from ipaddress import IPv4Address, IPv4Network, IPv6Address, ip_address
 
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from jobkit.egress import (
@@ -104,6 +104,9 @@ def test_an_ipv4_address_is_judged_the_same_when_it_is_mapped(address: IPv4Addre
 
 
 @given(address=v6)
+@example(address=IPv6Address("2606:4700:4700::1111"))
+@example(address=IPv6Address("::ffff:8.8.8.8"))
+@example(address=IPv6Address("64:ff9b::8.8.8.8"))
 def test_an_ipv6_address_that_is_allowed_is_global_unicast_or_nat64_of_a_global_one(address: IPv6Address) -> None:
     if not is_refused(address):
         assert judged_address(address).is_global
@@ -116,6 +119,8 @@ def test_an_allowed_network_lets_all_its_addresses_pass_by_http_too(
 ) -> None:
     network = IPv4Network((address, length), strict=False)
     check_addresses(HTTP if plain else HTTPS, [address], (network,))
+    with pytest.raises((AddressRefusedError, TlsRequiredError)):
+        check_addresses(HTTP, [address], ())
 
 
 @given(good=st.lists(st.just(ip_address("8.8.8.8")), max_size=3), bad=hidden_v4, at=st.integers(0, 3))

@@ -28,8 +28,9 @@ def test_a_wrong_name_stops_the_start_and_names_the_right_one(monkeypatch: pytes
 
 
 def test_the_names_of_the_client_are_left_to_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    without = load_settings()
     monkeypatch.setenv("QUADPATCH_CLIENT_URL", "http://127.0.0.1:8000")
-    load_settings()
+    assert load_settings() == without
 
 
 def test_a_wrong_value_is_named_without_being_shown(monkeypatch: pytest.MonkeyPatch) -> None:

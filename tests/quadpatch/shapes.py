@@ -143,6 +143,13 @@ def random_rotation(rng: np.random.Generator) -> FloatArray:
     return np.asarray(q * np.sign(np.linalg.det(q)))
 
 
+def has_a_face(mesh: TriangleMesh) -> bool:
+    """Whether a face has its three corners in three places."""
+    corners = mesh.vertices[mesh.triangles]
+    differs = (corners != np.roll(corners, 1, axis=1)).any(axis=2)
+    return bool(differs.all(axis=1).any())
+
+
 def faces_per_edge(triangles: IntArray) -> IntArray:
     """Count the faces of every undirected edge, (n_edges,)."""
     edges = np.sort(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)

@@ -14,9 +14,13 @@ def queue(settings: Settings) -> TaskQueue:
 
 
 def test_a_killed_worker_starts_again_under_its_process_id(queue: TaskQueue, settings: Settings) -> None:
+    keys = set()
     for _ in range(2):
         executor = Executor(queue, settings.queue_name, worker_name(1), threading.Event())
         executor.register_birth()  # and no death: it was killed
+        keys.add(executor.key)
+    assert len(keys) == 2
+    assert queue.connection.exists(*keys) == 2
 
 
 def test_a_worker_whose_executor_is_replaced_registers_again(queue: TaskQueue, settings: Settings) -> None:

@@ -183,7 +183,10 @@ def _parsed(numbers: FloatArray, digits: int) -> FloatArray:
 def test_any_size_of_coordinates_has_a_precision(scale: float) -> None:
     points = np.random.default_rng(0).normal(size=(10, 3)) * scale
     assert 0 < stored_precision(points) < 1e-12 * np.abs(points).max() + 1e-320
-    assert stored_precision(np.zeros((0, 3))) >= 0
+
+
+def test_no_coordinates_have_the_precision_of_zero() -> None:
+    assert stored_precision(np.zeros((0, 3))) == ULPS * float(np.spacing(np.float32(0)))
 
 
 def test_noise_in_the_last_printed_digit_is_joined_by_a_given_tolerance_only() -> None:

@@ -103,6 +103,8 @@ def test_a_surface_turned_inside_out_is_seen_from_outside(tmp_path: Path) -> Non
 
 def test_punched_holes_of_a_ball_face_outwards() -> None:
     mesh = punched(sphere(3), (0, 0, 1), (0, -1, 0), radius=0.3)
-    for hole in find_holes(mesh):
+    holes = find_holes(mesh)
+    assert len(holes) == 2
+    for hole in holes:
         rim = mesh.vertices[hole.loop]
         assert mean_normal(rim) @ rim.mean(axis=0) > 0

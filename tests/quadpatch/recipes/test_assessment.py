@@ -185,7 +185,9 @@ def test_the_same_part_in_another_unit_has_the_same_confidences() -> None:
         assess(HOLES, SELECTION, FILLED, None, EXPECTATION),
         assess(holes, selection, filled, None, EXPECTATION),
     )
+    assert len(here) == 4
     for one, other in zip(here[1:], there[1:], strict=True):
+        assert one.confidence is not None
         assert other.confidence == pytest.approx(one.confidence, rel=1e-9)
 
 

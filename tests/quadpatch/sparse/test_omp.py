@@ -175,6 +175,7 @@ def test_inputs_are_left_as_they_were() -> None:
     rng = np.random.default_rng(7)
     atoms, signals = random_atoms(rng, 16, 20), rng.normal(size=(4, 16))
     known = random_mask(rng, 4, 16, least=4)
+    expected = masked_omp(signals.copy(), known.copy(), atoms.copy(), 3)
     for array in (atoms, signals, known):
         array.setflags(write=False)
-    masked_omp(signals, known, atoms, 3)
+    np.testing.assert_array_equal(masked_omp(signals, known, atoms, 3), expected)
