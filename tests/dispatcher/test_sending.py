@@ -63,7 +63,7 @@ def test_each_of_two_secrets_verifies_while_they_change_over(receiver: Receiver)
     send(receiver.url(), new, old)
     (request,) = receiver.received
     for secret in (old, new):
-        Webhook(secret).verify(request.body, request.headers)
+        assert Webhook(secret).verify(request.body, request.headers)["data"] == {"word": "größer"}
 
 
 def test_the_connection_goes_to_the_address_that_was_judged_and_the_name_is_resolved_once(receiver: Receiver) -> None:

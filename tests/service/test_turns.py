@@ -20,7 +20,8 @@ def test_who_leaves_the_line_holds_up_no_others_and_the_line_starts_again() -> N
             await asyncio.sleep(0)
             tasks[0].cancel()
             tasks[1].cancel()
-            await asyncio.wait_for(tasks[2], None)
+            await asyncio.wait(tasks)
+            assert [task.cancelled() for task in tasks] == [True, True, False]
 
     asyncio.run(run())
 

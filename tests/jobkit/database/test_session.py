@@ -215,7 +215,8 @@ def test_a_database_that_cannot_be_opened_is_unavailable_and_keeps_its_place_sec
 @pytest.mark.parametrize("scheme", ["postgres", "postgresql", "postgresql+psycopg"])
 def test_postgresql_is_found_under_its_usual_schemes(postgres: PostgresServer, scheme: str) -> None:
     database = Database(postgres.url("migrated").replace("postgresql+psycopg", scheme))
-    database.ping()
+    with database.read() as session:
+        assert session.scalar(text("SELECT current_database()")) == "migrated"
     database.close()
 
 

@@ -145,7 +145,9 @@ def test_a_network_that_answers_is_proven_by_its_card(tmp_path: Path, card: dict
 
 
 def test_a_network_may_leave_the_sides_of_its_output_open(tmp_path: Path) -> None:
-    prove_model(write(tmp_path / "open.onnx", [node("Identity")], shapes=(SHAPE, ["batch", "c", "h", "w"])))
+    path = write(tmp_path / "open.onnx", [node("Identity")], shapes=(SHAPE, ["batch", "c", "h", "w"]))
+    prove_model(path)
+    assert load_model(path).kind == "autoencoder"
 
 
 @pytest.mark.parametrize(
