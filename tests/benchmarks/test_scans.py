@@ -1,3 +1,5 @@
+"""Also tests `benchmarks.scan_pictures`."""
+
 import json
 from pathlib import Path
 
