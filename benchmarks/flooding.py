@@ -2,6 +2,8 @@
 
 Run by `benchmarks.flood` in a process of its own. Some wait for a job that does not end, some begin a body and never
 send it, some send a head without an end. A client whose connection ends comes again a few seconds later.
+
+Tested in `tests/benchmarks/test_commands.py`.
 """
 
 import argparse

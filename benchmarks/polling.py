@@ -3,6 +3,8 @@
 Run by `benchmarks.service` in a process of its own, so that the service shares no interpreter with its load. A client
 polls at fixed moments, whatever the answers take, and an answer's time counts from the moment at which it was due: a
 service that falls behind can't hide it by slowing its clients down.
+
+Tested in `tests/benchmarks/test_commands.py`.
 """
 
 import argparse

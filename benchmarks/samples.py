@@ -3,6 +3,8 @@
 A sample is the block of code behind a line `<!-- sample: NAME -->`. This repairs the scan of the demo over HTTP,
 shortens the answers, writes the blocks anew, and keeps what it wrote in `docs/samples.json`. Tests hold documents and
 contract to that file.
+
+Tested in `tests/attacks/test_k_documents.py`.
 """
 
 import json

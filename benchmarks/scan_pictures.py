@@ -1,4 +1,7 @@
-"""Pictures of a repaired scan: a sheet before and after, and close-ups of its widest loops, filled or left open."""
+"""Pictures of a repaired scan: a sheet before and after, and close-ups of its widest loops, filled or left open.
+
+Tested in `tests/benchmarks/test_scans.py`.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

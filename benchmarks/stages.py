@@ -2,6 +2,8 @@
 
 Run ``python -m benchmarks.stages`` for a generated relief, or with the paths of meshes. Prints one table per mesh;
 times are wall-clock and mean something only on an idle machine.
+
+Tested in `tests/benchmarks/test_commands.py`.
 """
 
 import argparse

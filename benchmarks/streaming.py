@@ -2,6 +2,8 @@
 
 Run by `benchmarks.service` in a process of its own. The delay of an event is the time from the moment that it bears to
 its arrival, both by the clock of this machine.
+
+Tested in `tests/benchmarks/test_commands.py`.
 """
 
 import argparse

@@ -1,4 +1,7 @@
-"""The command line. stdout is for data, stderr for everything that a person watches."""
+"""The command line. stdout is for data, stderr for everything that a person watches.
+
+Tested in `tests/client/test_keeping.py`.
+"""
 
 import json
 from pathlib import Path

@@ -2,6 +2,8 @@
 
 What the file holds is checked before anything is written: the service may be another program, and a ZIP file may name
 files anywhere and grow to any size.
+
+Tested in `tests/attacks/test_j_client_closeups.py`.
 """
 
 import os

@@ -12,6 +12,8 @@
     ├── WaitTimeoutError        the job, or the analysis of a mesh, was not done in time
     ├── DamagedTransferError    bytes arrived that are not those that were sent
     └── UsageError              an option that makes no sense, or a file that can't be read or written
+
+Tested in `tests/client/test_transport.py`.
 """
 
 from jobkit.schema import Job, MeshProblem, Problem

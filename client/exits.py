@@ -1,4 +1,7 @@
-"""Exit codes of the command line, for scripts to rely on."""
+"""Exit codes of the command line, for scripts to rely on.
+
+Tested in `tests/client/test_keeping.py`.
+"""
 
 from enum import IntEnum
 

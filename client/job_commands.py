@@ -1,4 +1,7 @@
-"""Commands on a job that is there already, by its id."""
+"""Commands on a job that is there already, by its id.
+
+Tested in `tests/client/test_keeping.py`.
+"""
 
 from pathlib import Path
 from typing import Annotated

@@ -2,6 +2,8 @@
 
 A file appears whole or not at all. A device, a pipe and standard output have no name that may be replaced: they are
 written once all bytes have arrived.
+
+Tested in `tests/attacks/test_j_client_outputs.py`.
 """
 
 import os

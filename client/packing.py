@@ -2,6 +2,8 @@
 
 Only files in the folder of the glTF file and below it are taken up. A name that leads elsewhere is refused: the file
 may come from a stranger, and what it names is sent away.
+
+Tested in `tests/attacks/test_j_client.py`.
 """
 
 import base64

@@ -7,6 +7,8 @@
         job = client.create_job(JobSpec(mesh_id=mesh.id))
         job = client.wait(job.id)
         client.download(job, "result", Path("scan_repaired.ply"))
+
+Tested in `tests/client/test_watching.py`.
 """
 
 import hashlib

@@ -39,6 +39,8 @@
     ├── DatabaseUnavailableError    database_unavailable  the database does not answer, or is locked for too long
     ├── StoreUnavailableError       store_unavailable     the object store can't be written
     └── StaleAttemptError           stale_attempt         the job has moved on; this attempt may write no more
+
+Tested in `tests/test_documents.py`.
 """
 
 from shared_rules.text import printable

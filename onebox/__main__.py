@@ -1,4 +1,7 @@
-"""`python -m onebox serve` runs one box; `python -m onebox demo` repairs a real scan with one."""
+"""`python -m onebox serve` runs one box; `python -m onebox demo` repairs a real scan with one.
+
+Tested in `tests/onebox/test_box.py`.
+"""
 
 import sys
 from pathlib import Path

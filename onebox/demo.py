@@ -1,4 +1,7 @@
-"""`python -m onebox demo`: repair a real scan over HTTP, and leave the result to look at."""
+"""`python -m onebox demo`: repair a real scan over HTTP, and leave the result to look at.
+
+Tested in `tests/integration/test_demo.py`.
+"""
 
 import importlib.util
 import os

@@ -1,6 +1,8 @@
 """Arrays, named by their role.
 
 Every length is in mesh units unless its name says otherwise (`_bins`, `_s`).
+
+Tested in `tests/quadpatch/patches/test_height_map.py`.
 """
 
 from collections.abc import Callable

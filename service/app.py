@@ -1,4 +1,7 @@
-"""The HTTP application."""
+"""The HTTP application.
+
+Tested in `tests/service/test_handlers.py`.
+"""
 
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager

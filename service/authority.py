@@ -3,6 +3,8 @@
 Starlette's `request.url` falls back to the server's own address where it can't parse the header, and in some versions
 takes the path from it. So neither is asked here: the path is `scope["path"]`, and a header that does not parse is
 refused.
+
+Tested in `tests/attacks/test_b_who_is_asking.py`.
 """
 
 import ipaddress

@@ -1,4 +1,7 @@
-"""Bodies of requests under way: no more at a time than the service has memory and files for."""
+"""Bodies of requests under way: no more at a time than the service has memory and files for.
+
+Tested in `tests/attacks/test_d_one_client_alone.py`.
+"""
 
 from http import HTTPStatus
 

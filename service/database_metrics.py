@@ -1,4 +1,7 @@
-"""What the tables say, as families of metrics."""
+"""What the tables say, as families of metrics.
+
+Tested in `tests/service/test_metrics.py`.
+"""
 
 from collections.abc import Iterator
 from datetime import datetime, timedelta

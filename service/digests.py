@@ -1,4 +1,7 @@
-"""What a client says about the bytes of a body or of a part of it: coding and digests (RFC 9110, RFC 9530)."""
+"""What a client says about the bytes of a body or of a part of it: coding and digests (RFC 9110, RFC 9530).
+
+Tested in `tests/attacks/test_e_stored.py`.
+"""
 
 import base64
 import binascii

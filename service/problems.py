@@ -1,6 +1,8 @@
 """Errors that only HTTP knows, and how every error becomes an RFC 9457 problem.
 
 This is the one place where the contract's errors get an HTTP status.
+
+Tested in `tests/service/test_handlers.py`.
 """
 
 from collections.abc import Mapping, Sequence

@@ -2,6 +2,8 @@
 
 To accept a job needs the database, which holds the promise, and the store, which holds the mesh. Without the queue or a
 dispatcher jobs wait, none is lost, and what should show is that an operator has to look: `degraded`, not a refusal.
+
+Tested in `tests/service/routes/test_health.py`.
 """
 
 import logging

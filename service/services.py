@@ -1,4 +1,7 @@
-"""Everything that routes need, opened once per process."""
+"""Everything that routes need, opened once per process.
+
+Tested in `tests/service/routes/test_health.py`.
+"""
 
 from dataclasses import dataclass
 from functools import partial

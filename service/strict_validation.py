@@ -1,6 +1,8 @@
 """Routes that take requests at their word.
 
 No unknown or repeated query parameter, no JSON that isn't called JSON, no body and no condition that is not looked at.
+
+Tested in `tests/attacks/test_h_http_as_written.py`.
 """
 
 from collections.abc import Callable, Coroutine

@@ -1,4 +1,7 @@
-"""Uploads: raw or multipart bodies, streamed into the store as they arrive."""
+"""Uploads: raw or multipart bodies, streamed into the store as they arrive.
+
+Tested in `tests/service/routes/test_meshes.py`.
+"""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field

@@ -2,6 +2,8 @@
 
 Python's reader takes NaN, numbers that overflow to infinity, lone surrogates, repeated names and nesting as deep as its
 stack: each of them fails later, in a place that has no one to answer.
+
+Tested in `tests/attacks/test_a_text_is_data.py`.
 """
 
 import json

@@ -1,4 +1,7 @@
-"""Model cards: the facts inside a model file, and the page beside it."""
+"""Model cards: the facts inside a model file, and the page beside it.
+
+Tested in `tests/training/test_main.py`.
+"""
 
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,4 +1,7 @@
-"""The commands `corpus` and `network`. The latter needs torch, which is an extra: nothing here imports it before."""
+"""The commands `corpus` and `network`. The latter needs torch, which is an extra: nothing here imports it before.
+
+Tested in `tests/training/test_network_run.py`.
+"""
 
 from importlib.util import find_spec
 from pathlib import Path

@@ -2,6 +2,8 @@
 
 Whether that is faster depends on the processor (`python -m benchmarks.networks`); it always costs some accuracy, which
 the card states.
+
+Tested in `tests/training/test_export.py`.
 """
 
 import logging

@@ -1,4 +1,7 @@
-"""One training run with everything around it: progress on the terminal, the file, its card, the registry."""
+"""One training run with everything around it: progress on the terminal, the file, its card, the registry.
+
+Tested in `tests/training/test_main.py`.
+"""
 
 import hashlib
 from dataclasses import dataclass

@@ -3,6 +3,8 @@
 Settings come from the environment, see `jobkit.settings`; READY_FILE names a file that exists while the worker
 can take tasks. The first SIGTERM or SIGINT drains: a task that is nearly
 done is finished, another one is handed back to the queue.
+
+Tested in `tests/worker/test_executor.py`.
 """
 
 import logging

@@ -1,4 +1,7 @@
-"""Checks of uploads, analyses and proofs: an engine opens each once, under a lease, and the check is settled."""
+"""Checks of uploads, analyses and proofs: an engine opens each once, under a lease, and the check is settled.
+
+Tested in `tests/worker/test_proofs.py`.
+"""
 
 import logging
 from collections.abc import Callable

@@ -3,6 +3,8 @@
 An entry of RQ names functions by their dotted paths: the task, callbacks, an object to call it on. RQ imports and calls
 them, so an entry with `os.system` would be a command. Here a name is looked up among the tasks instead. Callbacks,
 webhooks, retries and repeats of an entry are left unread, for the same reason; the database decides about retries.
+
+Tested in `tests/attacks/test_f_queue.py`.
 """
 
 import re

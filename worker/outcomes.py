@@ -1,4 +1,7 @@
-"""How a task ended: with a value, a failure, or because it was asked to end."""
+"""How a task ended: with a value, a failure, or because it was asked to end.
+
+Tested in `tests/worker/test_repairs.py`.
+"""
 
 import logging
 from collections.abc import Callable, Iterator

@@ -1,4 +1,7 @@
-"""One repair, measured: the bench's errors of the whole mesh, and the true error of every hole."""
+"""One repair, measured: the bench's errors of the whole mesh, and the true error of every hole.
+
+Tested in `tests/benchmarks/quality/test_bench.py`.
+"""
 
 import json
 import time

@@ -1,6 +1,8 @@
 """The paper's experiments: which dictionary, how many atoms, how large a patch, how many shapes to learn from.
 
 All dictionaries are those of the recipe `paper`. Errors are those of the bench, after the holes were filled.
+
+Tested in `tests/benchmarks/quality/test_network_experiment.py`.
 """
 
 from collections.abc import Callable, Sequence

@@ -1,4 +1,7 @@
-"""Close-ups of the worst and the best hole of a repair: punched, true, repaired, side by side."""
+"""Close-ups of the worst and the best hole of a repair: punched, true, repaired, side by side.
+
+Tested in `tests/benchmarks/quality/test_main.py`.
+"""
 
 from dataclasses import dataclass
 from pathlib import Path

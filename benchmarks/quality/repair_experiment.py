@@ -1,4 +1,7 @@
-"""Errors of whole repairs beside those of the peers, and what the confidences are worth."""
+"""Errors of whole repairs beside those of the peers, and what the confidences are worth.
+
+Tested in `tests/benchmarks/quality/test_main.py`.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,4 +1,7 @@
-"""The experiments by name, and what the command line opened for them."""
+"""The experiments by name, and what the command line opened for them.
+
+Tested in `tests/benchmarks/quality/test_main.py`.
+"""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass

@@ -2,6 +2,8 @@
 
 A mesh is named by the sha256 of its bytes. A job's `revision` is the number of its latest event; it is raised in the
 same statement that changes the job, which makes event numbers gapless without a lock of their own.
+
+Tested in `tests/jobkit/database/test_session.py`.
 """
 
 from datetime import datetime

@@ -1,4 +1,7 @@
-"""How attempts end: one fenced transaction that moves the job, closes the attempt and logs both."""
+"""How attempts end: one fenced transaction that moves the job, closes the attempt and logs both.
+
+Tested in `tests/jobkit/jobs/test_attempts.py`.
+"""
 
 from dataclasses import dataclass, field
 from datetime import datetime, timedelta

@@ -1,4 +1,7 @@
-"""The event log of a job: append with the change itself, read from anywhere."""
+"""The event log of a job: append with the change itself, read from anywhere.
+
+Tested in `tests/jobkit/jobs/test_attempts.py`.
+"""
 
 import logging
 from collections.abc import Mapping

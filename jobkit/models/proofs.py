@@ -1,6 +1,8 @@
 """Proofs of published models: a worker opens each version once, in an engine, before it may be used.
 
 A proof is fenced like a job: starting it raises `attempt`, and only the latest attempt may write.
+
+Tested in `tests/worker/test_proofs.py`.
 """
 
 from collections.abc import Collection, Mapping

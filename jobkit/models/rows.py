@@ -1,4 +1,7 @@
-"""Rows of models, found and turned into what clients see."""
+"""Rows of models, found and turned into what clients see.
+
+Tested in `tests/jobkit/models/test_registry.py`.
+"""
 
 from sqlalchemy import case, select
 from sqlalchemy.orm import Session

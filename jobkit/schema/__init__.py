@@ -1,4 +1,7 @@
-"""The wire models: all that a client needs to know of this project."""
+"""The wire models: all that a client needs to know of this project.
+
+Tested in `tests/jobkit/schema/test_spec.py`.
+"""
 
 from jobkit.schema.base import Request, Response, rfc3339
 from jobkit.schema.jobs import (

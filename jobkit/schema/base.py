@@ -2,6 +2,8 @@
 
 A request that holds an unknown or wrongly typed field is refused. A response may grow fields later: a client reads
 those it knows, so models of responses ignore the rest.
+
+Tested in `tests/jobkit/schema/test_spec.py`.
 """
 
 from datetime import datetime

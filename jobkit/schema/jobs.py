@@ -1,4 +1,7 @@
-"""Jobs, their events and results as clients see them."""
+"""Jobs, their events and results as clients see them.
+
+Tested in `tests/service/routes/test_jobs.py`.
+"""
 
 from typing import Any, Literal
 

@@ -1,4 +1,7 @@
-"""Models, their versions and aliases as clients see them."""
+"""Models, their versions and aliases as clients see them.
+
+Tested in `tests/jobkit/models/test_header.py`.
+"""
 
 from typing import Annotated, Any, Literal
 

@@ -1,4 +1,7 @@
-"""Subscriptions, messages to subscribers and the log of their deliveries, as clients see them."""
+"""Subscriptions, messages to subscribers and the log of their deliveries, as clients see them.
+
+Tested in `tests/jobkit/webhooks/test_subscriptions.py`.
+"""
 
 from enum import StrEnum
 from typing import Annotated, Any, Literal

@@ -8,6 +8,8 @@ may name it. Of an object written
 - before that last look: the sweep sees that it is young, and leaves it;
 - between the look and the deletion: the writer meets the claim or misses the object, and is asked to send it again;
 - after the deletion: nothing happens to it.
+
+Tested in `tests/dispatcher/test_unreferenced_objects.py`.
 """
 
 import time

@@ -1,4 +1,7 @@
-"""Which objects the scrub reads next: those that were not looked at for longest, and damaged ones once an hour."""
+"""Which objects the scrub reads next: those that were not looked at for longest, and damaged ones once an hour.
+
+Tested in `tests/dispatcher/test_scrub.py`.
+"""
 
 from collections.abc import Iterator
 from dataclasses import dataclass

@@ -1,4 +1,7 @@
-"""The measured surface next to holes, which is all that filling them reads."""
+"""The measured surface next to holes, which is all that filling them reads.
+
+Tested in `tests/quadpatch/filling/test_constrained_fill.py`.
+"""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,7 @@
-"""A scan and its fill as one mesh, for writing it in another format than its own."""
+"""A scan and its fill as one mesh, for writing it in another format than its own.
+
+Tested in `tests/quadpatch/formats/test_conversion.py`.
+"""
 
 from dataclasses import dataclass
 

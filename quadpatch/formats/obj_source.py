@@ -3,6 +3,8 @@
 All lines stay. Behind them come the new `v`, `vt` and `vn` lines and a group `quadpatch_filled` with the new faces,
 which use the material of the nearest measured face. New vertices have colours where the measured ones do; new faces
 have texture coordinates and normals where the faces around their hole do.
+
+Tested in `tests/quadpatch/formats/test_obj.py`.
 """
 
 from dataclasses import dataclass

@@ -3,6 +3,8 @@
 A `Scan` keeps the file's own vertices and faces in the file's order, together with whatever the writer of that
 format needs to hand them back bit for bit. A `Fill` only ever adds: it names measured vertices by their index in
 the file and new vertices by the indices after them.
+
+Tested in `tests/quadpatch/formats/test_reading.py`.
 """
 
 from dataclasses import dataclass, field

@@ -7,6 +7,8 @@ do not fit that:
 - facets with data of their own behind them, as long as their attribute byte count says: read at 50 bytes a facet, such
   a file gives noise, so it is refused;
 - a count that is not that of the facets, as of a program that was stopped: the file is refused.
+
+Tested in `tests/quadpatch/formats/test_stl.py`.
 """
 
 import re

@@ -1,4 +1,7 @@
-"""Diameter of a point set: the largest distance between two of its points."""
+"""Diameter of a point set: the largest distance between two of its points.
+
+Tested in `tests/quadpatch/mesh/test_hole_measures.py`.
+"""
 
 import numpy as np
 from scipy.spatial import ConvexHull, QhullError

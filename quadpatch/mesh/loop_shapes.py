@@ -1,4 +1,7 @@
-"""Measures of boundary loops as arrays, all loops at once."""
+"""Measures of boundary loops as arrays, all loops at once.
+
+Tested in `tests/quadpatch/mesh/test_hole_measures.py`.
+"""
 
 from dataclasses import dataclass
 

@@ -3,6 +3,8 @@
 Both sides of a slit look alike from far: what tells it from the border of a strip, or of a sheet that is folded
 together, is where the surface lies. Across a slit it continues away from both sides; a strip lies between its sides,
 and those of a folded sheet have it on the same side.
+
+Tested in `tests/quadpatch/mesh/test_hole_kinds.py`.
 """
 
 import numpy as np

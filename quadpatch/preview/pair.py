@@ -1,4 +1,7 @@
-"""A mesh before and after its repair, ready to be drawn."""
+"""A mesh before and after its repair, ready to be drawn.
+
+Tested in `tests/quadpatch/preview/test_sheet.py`.
+"""
 
 from dataclasses import dataclass
 

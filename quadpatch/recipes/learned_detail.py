@@ -1,4 +1,7 @@
-"""What learning adds to the geometric fill (sections 3 to 5 of the paper)."""
+"""What learning adds to the geometric fill (sections 3 to 5 of the paper).
+
+Tested in `tests/quadpatch/recipes/test_default.py`.
+"""
 
 from dataclasses import dataclass, replace
 from functools import partial

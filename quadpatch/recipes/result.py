@@ -1,4 +1,7 @@
-"""What comes out of a repair: of each hole, of the model, and as a whole."""
+"""What comes out of a repair: of each hole, of the model, and as a whole.
+
+Tested in `tests/quadpatch/recipes/test_assessment.py`.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace

@@ -1,4 +1,7 @@
-"""What routes share: parameters, documented problems, JSON responses with entity tags."""
+"""What routes share: parameters, documented problems, JSON responses with entity tags.
+
+Tested in `tests/service/routes/test_jobs.py`.
+"""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -1,4 +1,7 @@
-"""Letter E: what is stored is what was sent; damage in the store reaches no job and no client as if it were whole."""
+"""Letter E: what is stored is what was sent; damage in the store reaches no job and no client as if it were whole.
+
+Also tests `service.digests`.
+"""
 
 import base64
 import gzip

@@ -1,4 +1,7 @@
-"""Letter F: an engine that was taken over reaches its folder, its mesh and its libraries, and nothing else."""
+"""Letter F: an engine that was taken over reaches its folder, its mesh and its libraries, and nothing else.
+
+Also tests `worker.engine.landlock` and `worker.engine.seccomp`.
+"""
 
 import json
 import os

@@ -1,4 +1,7 @@
-"""Letter H: HTTP as the RFCs have it, the same on every route."""
+"""Letter H: HTTP as the RFCs have it, the same on every route.
+
+Also tests `service.strict_validation`.
+"""
 
 from collections.abc import Callable, Iterator
 

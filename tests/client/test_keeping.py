@@ -1,4 +1,7 @@
-"""Pins and deletions on the command line, against a real service."""
+"""Pins and deletions on the command line, against a real service.
+
+Also tests `client.job_commands`.
+"""
 
 from collections.abc import Callable
 from contextlib import AbstractContextManager

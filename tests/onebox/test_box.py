@@ -1,3 +1,5 @@
+"""Also tests `onebox.__main__`."""
+
 import os
 import re
 import socket

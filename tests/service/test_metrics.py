@@ -1,3 +1,5 @@
+"""Also tests `service.database_metrics`."""
+
 from collections.abc import Callable
 from datetime import timedelta
 from pathlib import Path

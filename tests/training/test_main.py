@@ -1,4 +1,7 @@
-"""The command line, end to end, on small meshes."""
+"""The command line, end to end, on small meshes.
+
+Also tests `training.card` and `training.run`.
+"""
 
 import hashlib
 import json

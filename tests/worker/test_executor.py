@@ -1,4 +1,7 @@
-"""A worker process, and a queue that comes and goes."""
+"""A worker process, and a queue that comes and goes.
+
+Also tests `worker.__main__`.
+"""
 
 import os
 import signal

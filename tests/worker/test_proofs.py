@@ -1,4 +1,7 @@
-"""A worker proves what was published: each model in an engine of its own, and settles it once."""
+"""A worker proves what was published: each model in an engine of its own, and settles it once.
+
+Also tests `worker.checks`.
+"""
 
 import json
 from collections.abc import Callable, Iterator

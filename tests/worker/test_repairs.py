@@ -1,4 +1,7 @@
-"""The end of an attempt when the database, or somebody else, comes in between."""
+"""The end of an attempt when the database, or somebody else, comes in between.
+
+Also tests `worker.outcomes`.
+"""
 
 import io
 import json

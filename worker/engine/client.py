@@ -1,4 +1,7 @@
-"""The worker's end of the fork server: start an engine child, listen to it, end it."""
+"""The worker's end of the fork server: start an engine child, listen to it, end it.
+
+Tested in `tests/worker/engine/test_supervision.py`.
+"""
 
 import json
 import os

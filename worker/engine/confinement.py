@@ -3,6 +3,8 @@
 From then on it reaches the folder of its request, the mesh, the model and the libraries, and nothing else: no other
 file, no socket, no other process and nothing of theirs in `/proc`. Landlock and seccomp do it, where the kernel has
 them; `weaknesses` says what is missing.
+
+Tested in `tests/attacks/test_f_engine.py`.
 """
 
 import os

@@ -2,6 +2,8 @@
 
 A rule holds for a folder with all below it. What was open before stays open. On a kernel without Landlock nothing
 happens; newer kernels forbid more: truncating, devices, signals to processes outside.
+
+Tested in `tests/attacks/test_f_engine.py`.
 """
 
 import ctypes

@@ -10,6 +10,8 @@
     closeups.zip     a picture of each chosen hole
     facts.json       what an inspection found
     engine.log       all that the child prints
+
+Tested in `tests/worker/engine/test_main.py`.
 """
 
 import json

@@ -2,6 +2,8 @@
 
 A filter is a small program that the kernel runs on every call. This one refuses sockets, new processes, a look into
 other processes and signals to them, and what changes the machine. All else, threads among it, goes on as before.
+
+Tested in `tests/attacks/test_f_engine.py`.
 """
 
 import ctypes

@@ -1,4 +1,7 @@
-"""First tables."""
+"""First tables.
+
+Tested in `tests/jobkit/database/test_session.py`.
+"""
 
 import sqlalchemy as sa
 from alembic import op

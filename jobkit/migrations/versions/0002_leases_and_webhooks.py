@@ -1,4 +1,7 @@
-"""Leases that are led, attempts that are forgiven, webhooks, pins."""
+"""Leases that are led, attempts that are forgiven, webhooks, pins.
+
+Tested in `tests/jobkit/database/test_session.py`.
+"""
 
 import sqlalchemy as sa
 from alembic import op

@@ -1,4 +1,7 @@
-"""Arrays of a glTF document, checked before a byte of them is touched."""
+"""Arrays of a glTF document, checked before a byte of them is touched.
+
+Tested in `tests/quadpatch/formats/gltf/test_reader.py`.
+"""
 
 from typing import Any
 

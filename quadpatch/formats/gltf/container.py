@@ -2,6 +2,8 @@
 
 Nothing is fetched from the network. A buffer in a file of its own is read only from the folder of the mesh or below
 it; images are never opened.
+
+Tested in `tests/quadpatch/formats/gltf/test_reader.py`.
 """
 
 import base64

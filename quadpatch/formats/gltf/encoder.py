@@ -2,6 +2,8 @@
 
 Coordinates are float32, the only type that glTF knows, and keep their numbers: a node of each mesh is scaled to metres
 where the length unit is known. The measured surface is one mesh, the invented one another, `quadpatch_filled`.
+
+Tested in `tests/quadpatch/formats/test_conversion.py`.
 """
 
 from typing import Any

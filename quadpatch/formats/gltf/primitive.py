@@ -1,4 +1,7 @@
-"""New primitives of a glTF document: arrays appended to a buffer, and the entries that describe them."""
+"""New primitives of a glTF document: arrays appended to a buffer, and the entries that describe them.
+
+Tested in `tests/quadpatch/formats/gltf/test_reader.py`.
+"""
 
 from dataclasses import dataclass
 from typing import Any

@@ -1,4 +1,7 @@
-"""The node tree of a glTF document, flattened."""
+"""The node tree of a glTF document, flattened.
+
+Tested in `tests/quadpatch/formats/gltf/test_reader.py`.
+"""
 
 from typing import Any
 

@@ -2,6 +2,8 @@
 
 Rows are found by counting words, so a row may stand on several lines. Values are cast to the type that the header
 declares, as every other reader does; a value that its type can't hold is an error, not a surprise.
+
+Tested in `tests/quadpatch/formats/ply/test_reader.py`.
 """
 
 import numpy as np

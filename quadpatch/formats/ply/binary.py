@@ -3,6 +3,8 @@
 Fast path: if the lists of the first row are as long as those of all others, the element is one structured array,
 and no byte is looked at twice. Otherwise rows are walked to find where they begin, one list length at a time, and
 the columns are gathered from there in one go each.
+
+Tested in `tests/quadpatch/formats/ply/test_reader.py`.
 """
 
 import struct

@@ -1,4 +1,7 @@
-"""Rows of PLY elements as bytes, binary or ascii."""
+"""Rows of PLY elements as bytes, binary or ascii.
+
+Tested in `tests/quadpatch/formats/ply/test_writer.py`.
+"""
 
 from dataclasses import dataclass
 from typing import Any

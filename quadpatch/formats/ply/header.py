@@ -3,6 +3,8 @@
 The lines are kept byte for byte, so that a header can be written again with raised counts and nothing else changed.
 Lines end in LF, CR LF or, in very old files, CR; which one is seen from the first line, because a binary body may
 itself begin with a byte that looks like a line end.
+
+Tested in `tests/quadpatch/formats/ply/test_reader.py`.
 """
 
 import re

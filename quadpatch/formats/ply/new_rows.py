@@ -1,4 +1,7 @@
-"""Values of the rows that a fill adds to the elements of a PLY file."""
+"""Values of the rows that a fill adds to the elements of a PLY file.
+
+Tested in `tests/quadpatch/formats/ply/test_writer.py`.
+"""
 
 import re
 

@@ -2,6 +2,8 @@
 
 A row is found by where it ends, counted in bytes of the file for binary bodies and in words of the body for ascii
 ones. Rows of one length everywhere, which is what nearly all files hold, are read as one structured array.
+
+Tested in `tests/quadpatch/formats/ply/test_writer.py`.
 """
 
 from dataclasses import dataclass

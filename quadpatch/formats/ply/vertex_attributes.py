@@ -1,4 +1,7 @@
-"""Colours, normals and texture coordinates of PLY files, by the names that programs give them."""
+"""Colours, normals and texture coordinates of PLY files, by the names that programs give them.
+
+Tested in `tests/quadpatch/formats/test_conversion.py`.
+"""
 
 import numpy as np
 

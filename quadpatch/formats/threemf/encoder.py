@@ -3,6 +3,8 @@
 One object holds the measured and the invented triangles; the invented ones carry `hole` and `confidence` in the
 namespace `urn:quadpatch`. The unit is the scan's where it states one that 3MF knows, else the millimetre, which is what
 3MF takes for granted.
+
+Tested in `tests/quadpatch/formats/test_conversion.py`.
 """
 
 import io

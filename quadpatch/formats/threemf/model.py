@@ -1,6 +1,8 @@
 """One model part of a 3MF package: its XML read in one pass, with the places where a writer may insert.
 
 Nothing outside the text is looked at: document types, and with them entities of any kind, are refused.
+
+Tested in `tests/quadpatch/formats/threemf/test_bulk.py`.
 """
 
 from dataclasses import dataclass, field

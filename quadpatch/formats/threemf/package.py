@@ -2,6 +2,8 @@
 
 The sizes that an archive's directory declares bound what is unpacked, so they are added up and held against the limit
 before anything is; the reader then stops at the declared size and checks the sum over the content.
+
+Tested in `tests/quadpatch/formats/threemf/test_reader.py`.
 """
 
 import io

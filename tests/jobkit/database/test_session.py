@@ -1,3 +1,6 @@
+"""Also tests `jobkit/migrations/versions/0001_first_tables.py` and
+`jobkit/migrations/versions/0002_leases_and_webhooks.py`."""
+
 import multiprocessing
 import signal
 import threading

@@ -1,3 +1,5 @@
+"""Also tests `jobkit.jobs.events`."""
+
 import contextlib
 import functools
 import itertools

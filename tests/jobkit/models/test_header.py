@@ -1,3 +1,6 @@
+"""Also tests `jobkit.schema.models`."""
+
+import json
 from collections.abc import Callable
 from pathlib import Path
 

@@ -1,3 +1,5 @@
+"""Also tests `jobkit.models.rows`."""
+
 import threading
 from collections.abc import Callable
 from pathlib import Path

@@ -1,3 +1,5 @@
+"""Also tests `jobkit.schema.base`."""
+
 from typing import Any
 
 import pytest

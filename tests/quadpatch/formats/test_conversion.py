@@ -1,4 +1,8 @@
-"""One format in, another out."""
+"""One format in, another out.
+
+Also tests `quadpatch.formats.gltf.encoder`, `quadpatch.formats.ply.appearance`, `quadpatch.formats.threemf.encoder`
+and `quadpatch.formats.whole`.
+"""
 
 import io
 from pathlib import Path

@@ -1,4 +1,7 @@
-"""Slits are never borders, ends of tubes are told apart, and real holes stay holes."""
+"""Slits are never borders, ends of tubes are told apart, and real holes stay holes.
+
+Also tests `quadpatch.mesh.slits`.
+"""
 
 import numpy as np
 import pytest

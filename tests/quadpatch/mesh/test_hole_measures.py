@@ -1,3 +1,5 @@
+"""Also tests `quadpatch.mesh.loop_shapes`."""
+
 import numpy as np
 import pytest
 from hypothesis import given, settings

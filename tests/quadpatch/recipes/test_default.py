@@ -1,3 +1,5 @@
+"""Also tests `quadpatch.recipes.learned_detail`."""
+
 import numpy as np
 import pytest
 

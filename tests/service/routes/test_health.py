@@ -1,3 +1,5 @@
+"""Also tests `service.readiness`."""
+
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any

@@ -1,3 +1,5 @@
+"""Also tests `jobkit.schema.jobs`, `service.routes.common` and `service.submission`."""
+
 import json
 from collections.abc import Callable
 from typing import Any

@@ -1,3 +1,5 @@
+"""Also tests `service.uploads`."""
+
 import hashlib
 from collections.abc import Callable, Iterator
 from typing import Any

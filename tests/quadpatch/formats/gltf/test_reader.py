@@ -1,4 +1,8 @@
-"""glTF scenes read as one mesh."""
+"""glTF scenes read as one mesh.
+
+Also tests `quadpatch.formats.gltf.accessors`, `quadpatch.formats.gltf.container`,
+`quadpatch.formats.gltf.primitive` and `quadpatch.formats.gltf.scene`.
+"""
 
 from pathlib import Path
 from typing import Any

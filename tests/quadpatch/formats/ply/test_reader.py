@@ -1,4 +1,7 @@
-"""Reading PLY of every make."""
+"""Reading PLY of every make.
+
+Also tests `quadpatch.formats.ply.ascii`, `quadpatch.formats.ply.binary` and `quadpatch.formats.ply.header`.
+"""
 
 import struct
 

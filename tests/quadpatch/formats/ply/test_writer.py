@@ -1,4 +1,7 @@
-"""PLY in, PLY out: the same bits with rows behind them."""
+"""PLY in, PLY out: the same bits with rows behind them.
+
+Also tests `quadpatch.formats.ply.encoding` and `quadpatch.formats.ply.new_rows`.
+"""
 
 import io
 

@@ -1,4 +1,7 @@
-"""3MF packages read as one mesh."""
+"""3MF packages read as one mesh.
+
+Also tests `quadpatch.formats.threemf.package`.
+"""
 
 import io
 import zipfile
