@@ -13,6 +13,7 @@ from safetensors.numpy import save
 
 from quadpatch.errors import ModelError
 from quadpatch.inpainters.model_file import SHIPPED_MODELS, SUFFIXES, load_model
+from quadpatch.inpainters.onnx_network import AutoencoderInpainter
 from quadpatch.inpainters.proof import prove_model
 from quadpatch.patches.normalisation import NORMALISATION
 from tests.quadpatch.inpainters.test_onnx_network import PAPER, RESIDUAL, N, write_network
@@ -145,7 +146,12 @@ def test_a_network_that_answers_is_proven_by_its_card(tmp_path: Path, card: dict
 
 
 def test_a_network_may_leave_the_sides_of_its_output_open(tmp_path: Path) -> None:
-    path = write(tmp_path / "open.onnx", [node("Identity")], shapes=(SHAPE, ["batch", "c", "h", "w"]))
+    # What `Compress` keeps follows from values, so that no inference of shapes can tell the sides.
+    keep = onnx.numpy_helper.from_array(np.ones(N, np.bool_), "keep")
+    nodes = [node("Compress", "patches keep", "rows", axis=2), node("Compress", "rows keep", axis=3)]
+    path = write(tmp_path / "open.onnx", nodes, [keep], shapes=(SHAPE, ["batch", "c", "h", "w"]))
+    (output,) = AutoencoderInpainter.load(path).session.get_outputs()
+    assert output.shape[2:] == ["h", "w"]
     prove_model(path)
     assert load_model(path).kind == "autoencoder"
 
