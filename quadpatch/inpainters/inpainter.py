@@ -1,4 +1,7 @@
-"""What every inpainter does: fit itself to the mesh at hand, then predict whole height maps from their known bins."""
+"""What every inpainter does: fit itself to the mesh at hand, then predict whole height maps from their known bins.
+
+Tested in `tests/quadpatch/inpainters/test_dictionary.py`.
+"""
 
 from collections.abc import Callable
 from dataclasses import dataclass

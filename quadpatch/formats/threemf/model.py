@@ -2,7 +2,7 @@
 
 Nothing outside the text is looked at: document types, and with them entities of any kind, are refused.
 
-Tested in `tests/quadpatch/formats/threemf/test_bulk.py`.
+Tested in `tests/quadpatch/formats/threemf/test_element_lists.py`.
 """
 
 from dataclasses import dataclass, field

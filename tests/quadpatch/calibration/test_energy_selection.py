@@ -75,7 +75,7 @@ def test_a_hole_beside_a_border_can_not_be_opened_wider() -> None:
     loops = [hole.loop for hole in find_holes(mesh) if hole.diameter < 2.0]
     misses = leave_one_ring_out(mesh, loops, PAIR)
     known = np.asarray(np.isfinite(misses).all(axis=1))
-    left = np.array([mesh.vertices[loop, 0].mean() < 0 for loop in loops])
+    remaining = np.array([mesh.vertices[loop, 0].mean() < 0 for loop in loops])
     assert sorted(known.tolist()) == [False, True]
     assert (known == ~remaining).all()
 

@@ -50,7 +50,7 @@ def test_holes_are_cut_until_there_is_no_room_left(seed: int, diameter: float, m
     reach = diameter / 2 + margin
     surface = SHEET.vertices[np.unique(SHEET.triangles)]
     to_rim = np.asarray(cKDTree(SHEET.vertices[rim_vertices(SHEET)]).query(surface)[0])
-    to_gone = np.asarray(cKDTree(SHEET.vertices[cut.gone]).query(surface)[0])
+    to_gone = np.asarray(cKDTree(SHEET.vertices[cut.removed]).query(surface)[0])
     assert (to_gone[to_rim > reach] <= 2 * reach).all()
 
 

@@ -1,7 +1,7 @@
 """One format in, another out.
 
-Also tests `quadpatch.formats.gltf.encoder`, `quadpatch.formats.ply.appearance`, `quadpatch.formats.threemf.encoder`
-and `quadpatch.formats.whole`.
+Also tests `quadpatch.formats.gltf.encoder`, `quadpatch.formats.ply.vertex_attributes`,
+`quadpatch.formats.threemf.encoder` and `quadpatch.formats.merged_scene`.
 """
 
 import io

@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from quadpatch.mesh.edge_groups import components, group_edges, survey_edges
+from quadpatch.mesh.edge_groups import group_edges, survey_edges
 from quadpatch.types import Triangles
 from tests.quadpatch.shapes import open_grid, sphere
 
@@ -43,9 +43,3 @@ def test_a_survey_finds_the_rim_of_a_grid_and_none_on_a_sphere() -> None:
     at_rim = np.abs(grid.vertices[:, :2] - grid.vertices[:, :2].mean(axis=0)).max(axis=1)
     assert (survey_edges(grid.triangles, 25).on_boundary == (at_rim == at_rim.max())).all()
     assert not survey_edges(sphere(2).triangles, len(sphere(2).vertices)).on_boundary.any()
-
-
-def test_links_join_things_to_components() -> None:
-    found = components(np.array([[0, 2], [2, 4]]), 6)
-    assert found[0] == found[2] == found[4]
-    assert len({*found.tolist()}) == 4

@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from quadpatch.filling.fill import close_flat
-from quadpatch.inpainters.inpainter import Surroundings
-from quadpatch.inpainters.paper_dictionary import LOCAL_ATOMS, HeightsInpainter
+from quadpatch.inpainters.inpainter import UndamagedSurface
+from quadpatch.inpainters.paper_dictionary import LOCAL_ATOMS, HeightsInpainter, SelfHeights, learn_heights
 from quadpatch.mesh.distance import distance_to_mesh
 from quadpatch.mesh.raycast import RayScene
 from quadpatch.options import DictionaryOptions, HoleOptions, PatchOptions, RepairOptions
@@ -43,10 +43,10 @@ class Truth:
         self.whole = whole
         self.resolution = resolution
 
-    def fitted_to(self, surroundings: Surroundings) -> Self:
+    def fitted_to(self, undamaged: UndamagedSurface) -> Self:
         return self
 
-    def predict(self, patches: Patches, outline: FloatArray) -> FloatArray:
+    def predict(self, patches: Patches, base_heights: FloatArray) -> FloatArray:
         seeds = Seeds(patches.origins, patches.frames, np.zeros(len(patches), np.int64))
         nothing = np.zeros(len(self.whole.triangles), bool)
         scene = RayScene(self.whole)
@@ -57,7 +57,7 @@ class Truth:
 def learned(scale: PatchScale, options: DictionaryOptions, *meshes: TriangleMesh) -> HeightsInpainter:
     """Learn one dictionary from the patches of whole meshes: the paper's local (one) and global (many) ones."""
     parts = [cut_heights(mesh, scale) for mesh in meshes]
-    heights, known = (np.concatenate([getattr(part, name) for part in parts]) for name in ("heights", "known"))
+    heights, known = np.concatenate([part.heights for part in parts]), np.concatenate([part.known for part in parts])
     inpainter = learn_heights(heights, known, options, np.random.default_rng(0))
     assert inpainter is not None
     return inpainter

@@ -46,7 +46,7 @@ def displaced(displacement: FloatArray, trust: tuple[bool, bool, bool] = (True, 
 
 def ripple(height: float) -> FloatArray:
     n = len(CHECKED.filled.vertex_hole)
-    return height * np.random.default_rng(0).normal(size=(n, 1)) * np.array([0.0, 0.0, 1.0])
+    return np.asarray(height * np.random.default_rng(0).normal(size=(n, 1)) * np.array([0.0, 0.0, 1.0]))
 
 
 def noise(size: float, *holes: int) -> FloatArray:

@@ -1,7 +1,7 @@
 import numpy as np
 
-from quadpatch.formats.parts import Part, is_invertible, place, split_by_part
 from quadpatch.formats.scan import Fill, Scan
+from quadpatch.formats.scene_parts import Part, is_invertible, place, split_by_part
 from quadpatch.types import FloatArray
 
 CORNERS = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
