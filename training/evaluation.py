@@ -3,7 +3,7 @@
 A disk in the middle of each patch is hidden, the rest is coded, and the error inside the disk is compared with that
 of a thin plate and of a membrane over the same hole, and with that of coding the whole patch, nothing hidden. All
 within one patch: the base surface is that of the undamaged mesh, and no neighbouring patch helps, so the figures rank
-dictionaries and do not foretell the error of a repair.
+dictionaries; they are not the error of a repair.
 """
 
 import numpy as np

@@ -13,7 +13,7 @@ import numpy as np
 from quadpatch.types import FloatArray, TriangleMesh, Triangles
 from training.patterns import PATTERNS
 
-# Periods in edge lengths. A patch spans 16 to 32 edges, and the base surface swallows what is longer than about 25.
+# Periods in edge lengths. A patch spans 16 to 32 edges, and the base surface carries what is longer than about 25.
 PERIODS = (5.0, 26.0)
 # Height of a pattern (from its middle) as part of its period: from a scratch to a deep relief that is a height map yet.
 DEPTHS = (0.02, 0.16)

@@ -1,4 +1,4 @@
-"""What the trainer needs to know about a network: how it is built, fed, judged and named."""
+"""What the trainer needs to know about a network: how it is built, fed, measured and named."""
 
 from collections.abc import Iterator
 from typing import Any, Protocol

@@ -1,7 +1,7 @@
 """Calibration: holes cut into undamaged surface of the very mesh that is to be repaired, where the truth is known.
 
 They are as large as the real ones, or the largest for which the surface has room, and filled by the same code. From
-them follow the energy that continues this surface best, how much of a model's displacement to believe, and how large an
+them follow the energy that continues this surface best, the blend factor of a model, and how large an
 error to expect.
 """
 
@@ -34,7 +34,7 @@ _MARGIN_EDGES = 4.0
 # Errors that differ by less than this share of a hole's diameter are the same.
 ROUNDING = 1e-9
 
-# Shares of the predicted displacement that are tried, and what a share must gain over none to be believed.
+# Shares of the predicted displacement that are tried, and what a share must gain over none to be taken.
 SHARES = (0.0, 0.25, 0.5, 0.75, 1.0)
 _LEAST_GAIN = 0.02
 

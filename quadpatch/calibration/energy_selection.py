@@ -1,7 +1,7 @@
 """Which energy fills which hole: what calibration says of the whole surface, and what its own rim says of a hole.
 
-Practice ranks the energies on average. Which of them is best differs from hole to hole: a groove that runs into a hole
-wants another than the flat beside it. So every hole is opened once more, one ring wider, and closed by each
+Calibration ranks the energies on average. Which of them is best differs from hole to hole: a groove that runs into a
+hole wants another than the flat beside it. So every hole is opened once more, one ring wider, and closed by each
 energy: how far the vertices of its rim then lie from the fill says which energy carries on this very surface. The fills
 of a hole are blended by weights that fall with the expected error, a product of both.
 """

@@ -1,4 +1,4 @@
-"""Fills that are checked before they are believed.
+"""Fills that are checked for folds and crossings.
 
 The fill that suits the surface best is tried first. Where it folds over or runs through other surface, plainer ones
 follow; where none of them holds, the loop stays open, and it is said why.

@@ -17,7 +17,7 @@ from quadpatch.types import FloatArray, IntArray, TriangleMesh, Triangles
 # What the thin plate is compared with to see how far two sensible answers lie apart.
 ALTERNATIVE_ENERGY = Energy(plate=1.0, variation=0.4)
 
-# Fill and thin plate of one hole further apart than this share of its width: something ran away.
+# Fill and thin plate of one hole further apart than this share of its width: the fill overshoots.
 OVERSHOOT_LIMIT = 0.2
 
 
@@ -116,7 +116,7 @@ def _fair_patch(closed: ClosedMesh, energy: Energy) -> Refined:
     new = hole >= 0
     furthest = np.zeros(n_holes)
     np.maximum.at(furthest, hole[new], _distances(faired, plate)[new])
-    # Curvature carried on from a ragged rim can run away; such a hole takes the thin plate.
+    # Curvature carried on from a ragged rim can overshoot; such a hole takes the thin plate.
     runaway = furthest > OVERSHOOT_LIMIT * rim_diagonals(
         plate.vertices, plate.triangles, plate.hole, plate.n_measured, n_holes
     )

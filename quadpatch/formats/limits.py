@@ -71,7 +71,7 @@ def to_float64(values: NDArray[Any]) -> FloatArray:
 def check_vertices(vertices: Vertices) -> None:
     """Refuse a mesh without vertices or with coordinates that can't be computed with.
 
-    A bad coordinate is refused even where no face uses its vertex: bounding boxes and search trees would swallow it.
+    A bad coordinate is refused even where no face uses its vertex: it would spoil bounding boxes and search trees.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Judging every hole: how much of it was learned, how sure that is, and what to call it.
+"""Assessment of every hole: how much of it was learned, how sure that is, and what to call it.
 
 Confidence is ``exp(-e / (0.003 D))`` with e the expected mean error of the fill and D the diagonal of the bounding box
 of what was measured: a fill off by 0.03 % of the diagonal has 0.90, one off by 0.3 % has 0.37. It goes by the object's
@@ -29,7 +29,7 @@ DOUBTFUL_SHARE = 0.003
 def measure_agreement(
     filled: FilledMesh, inside: Displacement, joined: FloatArray, rim_hole: IntArray, at_rim: Displacement
 ) -> PatchAgreement:
-    """Collect the evidence of all holes from the displacements inside them and at their rims."""
+    """Measure for all holes how far their patches agree, from the displacements inside them and at their rims."""
     hole, n_holes = filled.vertex_hole, len(filled.disagreement)
     covered = (inside.overlap > 0).astype(np.float64)
     return PatchAgreement(
@@ -40,11 +40,11 @@ def measure_agreement(
     )
 
 
-def trusted_holes(evidence: PatchAgreement) -> BoolArray:
-    """Which holes (n_holes,) the model may complete."""
-    disagreement = evidence.deviation / np.maximum(evidence.departure + evidence.rim_misfit, 1e-300)
-    trust: BoolArray = (evidence.coverage >= LEAST_COVERAGE) & (disagreement <= MOST_DISAGREEMENT)
-    return trust
+def agreeing_holes(agreement: PatchAgreement) -> BoolArray:
+    """Say which holes (n_holes,) the model may complete."""
+    disagreement = agreement.deviation / np.maximum(agreement.departure + agreement.rim_misfit, 1e-300)
+    displaced_holes: BoolArray = (agreement.coverage >= LEAST_COVERAGE) & (disagreement <= MOST_DISAGREEMENT)
+    return displaced_holes
 
 
 def assess(
@@ -74,7 +74,7 @@ def assess(
                 {
                     "gap": float(filled.disagreement[i]),
                     "rim_turn": float(filled.rim_variation[i]),
-                    **evidence_of(i, completion),
+                    **agreement_of(i, completion),
                 },
             )
         )
@@ -114,11 +114,11 @@ def count_new(filled: FilledMesh) -> tuple[list[int], list[int]]:
     return n_vertices, n_triangles
 
 
-def evidence_of(i: int, completion: Completion | None) -> dict[str, float]:
+def agreement_of(i: int, completion: Completion | None) -> dict[str, float]:
     """Name what the patches said about one hole; nothing where none were asked."""
-    if completion is None or completion.evidence is None:
+    if completion is None or completion.agreement is None:
         return {}
-    agreement = completion.evidence
+    agreement = completion.agreement
     return {
         "coverage": float(agreement.coverage[i]),
         "spread": float(agreement.deviation[i]),
@@ -130,9 +130,9 @@ def evidence_of(i: int, completion: Completion | None) -> dict[str, float]:
 def _verdict(i: int, n_new_vertices: int, completion: Completion | None) -> tuple[str, str, str]:
     if completion is None:
         return "filled_smooth", "geometry", "no learned model took part"
-    if completion.trust[i]:
+    if completion.displaced_holes[i]:
         return "filled", "", ""
-    coverage = completion.evidence.coverage[i] if completion.evidence else 0.0
+    coverage = completion.agreement.coverage[i] if completion.agreement else 0.0
     undone = completion.undone is not None and bool(completion.undone[i])
     left_out = completion.left_out is not None and bool(completion.left_out[i])
     reasons = (

@@ -20,13 +20,13 @@ from quadpatch.patches.folding import is_unfolded
 from quadpatch.patches.layout import lay_out, patchify, pick, seeds_near, take
 from quadpatch.patches.scale import PatchScale, base_surface_iterations, choose_scale
 from quadpatch.patches.seeds import Seeds
-from quadpatch.recipes.assessment import measure_agreement, trusted_holes
+from quadpatch.recipes.assessment import agreeing_holes, measure_agreement
 from quadpatch.recipes.result import Completion, PatchAgreement
 from quadpatch.reconstruction.displacement import displace, join_at_rim, rim_vertices
 from quadpatch.stages import Stages
 from quadpatch.types import BoolArray, FloatArray, Patches, TriangleMesh
 
-# Believed of a model's displacement where the mesh has no room for calibration.
+# Blend factor of a model where the mesh has no room for calibration.
 PRIOR_BLEND_FACTOR = 0.0
 
 # Patches that a self-similar dictionary is learned from.
@@ -120,13 +120,13 @@ def complete(
         # A model with a blend factor of 0 need not be asked.
         predicted = fitted.predict(sampled.patches, sampled.base_heights) if blend_factor else None
     with stages.stage("reconstruct"):
-        evidence, trust = None, np.zeros(len(filled.disagreement), bool)
+        agreement, displaced_holes = None, np.zeros(len(filled.disagreement), bool)
         displacement = np.zeros((len(filled.vertex_hole), 3))
         if predicted is not None:
-            joined, evidence = _displacements(filled, sampled.patches, predicted)
-            trust = trusted_holes(evidence)
-            displacement = blend_factor * np.where(trust[filled.vertex_hole][:, None], joined, 0.0)
-    return Completion(displacement, evidence, trust, blend_factor, error_model, scale, len(sampled.patches))
+            joined, agreement = _displacements(filled, sampled.patches, predicted)
+            displaced_holes = agreeing_holes(agreement)
+            displacement = blend_factor * np.where(displaced_holes[filled.vertex_hole][:, None], joined, 0.0)
+    return Completion(displacement, agreement, displaced_holes, blend_factor, error_model, scale, len(sampled.patches))
 
 
 def _base_surface(filled: FilledMesh, scale: PatchScale, edge_length: float) -> TriangleMesh:
@@ -160,7 +160,7 @@ def _some(count: int, rng: np.random.Generator) -> BoolArray:
 
 
 def _calibrate(calibration: Calibration, model: _Model) -> tuple[float, ErrorModel | None]:
-    """Complete the calibration holes: the share of the displacement to believe, and the error to expect."""
+    """Complete the calibration holes: the blend factor, and the error to expect."""
     filled = calibration.filled
     if calibration.holes is None or filled is None:
         return PRIOR_BLEND_FACTOR, None
@@ -170,14 +170,14 @@ def _calibrate(calibration: Calibration, model: _Model) -> tuple[float, ErrorMod
     sampled = patchify(filled, base_surface, near, model.scale)
     sampled = pick(sampled, is_unfolded(sampled.patches))
     predicted = model.inpainter.predict(sampled.patches, sampled.base_heights)
-    joined, evidence = _displacements(filled, sampled.patches, predicted)
-    joined = np.where(trusted_holes(evidence)[filled.vertex_hole][:, None], joined, 0.0)
+    joined, agreement = _displacements(filled, sampled.patches, predicted)
+    joined = np.where(agreeing_holes(agreement)[filled.vertex_hole][:, None], joined, 0.0)
     share = blend_factor(calibration.holes, filled, joined)
     return share, expect(calibration.holes, filled.displaced(share * joined))
 
 
 def _displacements(filled: FilledMesh, patches: Patches, predicted: FloatArray) -> tuple[FloatArray, PatchAgreement]:
-    """Displacements (n_invented, 3), zero at the rims, and the evidence behind them."""
+    """Displacements (n_invented, 3), zero at the rims, and how far the patches agree."""
     rim, rim_hole = rim_vertices(filled)
     inside = displace(filled, np.flatnonzero(filled.invented_vertices), patches, predicted)
     at_rim = displace(filled, rim, patches, predicted)

@@ -2,7 +2,7 @@
 
 K. Sarkar, K. Varanasi, D. Stricker, "Learning Quadrangulated Patches For 3D Shape Processing", 2019. The stages stand
 here in the paper's order. What the default recipe adds has no place here: no fairing, no base surface under the
-heights, no calibration, no share, no joining at the rim, no judgement.
+heights, no calibration, no blend factor, no joining at the rim, no assessment.
 
 One thing differs. The paper places all vertices anew; here measured ones keep their bits, and only new ones are placed.
 """
@@ -28,7 +28,7 @@ from quadpatch.patches.height_map import sample_height_maps
 from quadpatch.patches.layout import lay_out, pick_patches, seeds_near, take
 from quadpatch.patches.scale import PatchScale
 from quadpatch.patches.seeds import Seeds
-from quadpatch.recipes.assessment import count_new, evidence_of, measure_agreement, with_open_holes
+from quadpatch.recipes.assessment import agreement_of, count_new, measure_agreement, with_open_holes
 from quadpatch.recipes.result import Completion, HoleResult, Repair
 from quadpatch.recipes.verification import with_named_faults
 from quadpatch.reconstruction.displacement import rim_vertices
@@ -191,8 +191,8 @@ def _reconstruct(filled: FilledMesh, patches: Patches, predicted: FloatArray, sc
     rim, rim_hole = rim_vertices(filled)
     placed = place(filled, np.flatnonzero(filled.invented_vertices), patches, predicted)
     at_rim = place(filled, rim, patches, predicted)
-    evidence = measure_agreement(filled, placed, placed.mean, rim_hole, at_rim)
-    return Completion(placed.mean, evidence, evidence.coverage > 0, 1.0, None, scale, len(patches))
+    agreement = measure_agreement(filled, placed, placed.mean, rim_hole, at_rim)
+    return Completion(placed.mean, agreement, agreement.coverage > 0, 1.0, None, scale, len(patches))
 
 
 def _results(
@@ -202,8 +202,8 @@ def _results(
     closed = []
     for i, (hole, n_vertices, n_triangles) in enumerate(zip(selection.chosen, *count_new(filled), strict=True)):
         verdict, code, reason = _verdict(i, n_vertices, completion)
-        evidence = evidence_of(i, completion)
-        closed.append(HoleResult(hole, verdict, code, reason, None, None, n_vertices, n_triangles, evidence))
+        agreement = agreement_of(i, completion)
+        closed.append(HoleResult(hole, verdict, code, reason, None, None, n_vertices, n_triangles, agreement))
     return with_open_holes(closed, holes, selection, filled)
 
 
@@ -212,7 +212,7 @@ def _verdict(i: int, n_new_vertices: int, completion: Completion | None) -> tupl
         return "filled_smooth", "no_new_vertex", "so small that its rim alone spans it: there is nothing to place"
     if completion is None:
         return "filled_smooth", "geometry", "no learned model took part"
-    if not completion.trust[i]:
+    if not completion.displaced_holes[i]:
         return (
             "filled_smooth",
             "no_height_map",

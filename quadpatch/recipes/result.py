@@ -80,14 +80,14 @@ class Completion:
     ----------
     displacement : (n_invented_vertices, 3) float64
         Of the fill's new vertices, in mesh units; 0 in holes that are not displaced.
-    evidence : PatchAgreement or None
+    agreement : PatchAgreement or None
         None where the blend factor is 0, and the model was not asked.
-    trust : (n_holes,) bool
+    displaced_holes : (n_holes,) bool
         Holes that were displaced.
     blend_factor : float
         Share of the displacement that was applied, 0..1, as calibration on this mesh sets it.
     error_model : ErrorModel or None
-        How large an error to expect, as calibration holes taught; None without calibration.
+        How large an error to expect, by calibration holes; None without calibration.
     scale : PatchScale
     n_patches : int
     undone : (n_holes,) bool or None
@@ -97,8 +97,8 @@ class Completion:
     """
 
     displacement: FloatArray
-    evidence: PatchAgreement | None
-    trust: BoolArray
+    agreement: PatchAgreement | None
+    displaced_holes: BoolArray
     blend_factor: float
     error_model: ErrorModel | None
     scale: PatchScale
@@ -108,12 +108,12 @@ class Completion:
 
     def apply(self, filled: FilledMesh) -> FilledMesh:
         """Displace the fill."""
-        return filled.displaced(self.displacement) if self.trust.any() else filled
+        return filled.displaced(self.displacement) if self.displaced_holes.any() else filled
 
     def limited_to(self, holes: BoolArray, filled: FilledMesh) -> "Completion":
         """Take the displacement back in all but some holes (n_holes,) of the fill."""
         displacement = np.where(holes[filled.vertex_hole][:, None], self.displacement, 0.0)
-        return replace(self, displacement=displacement, trust=self.trust & holes)
+        return replace(self, displacement=displacement, displaced_holes=self.displaced_holes & holes)
 
 
 @dataclass(frozen=True)

@@ -39,17 +39,17 @@ def without_faults(
     faults : Faults
         Those that are left.
     """
-    if completion is None or not completion.trust.any():
+    if completion is None or not completion.displaced_holes.any():
         return completion, checked.faults
     faults = find_faults(completion.apply(checked.filled), obstacles=obstacles)
-    undone = np.zeros(len(completion.trust), bool)
-    worse = completion.trust & (faults.severity > checked.faults.severity)
+    undone = np.zeros(len(completion.displaced_holes), bool)
+    worse = completion.displaced_holes & (faults.severity > checked.faults.severity)
     # Taking one hole back may make it cross the displaced fill of another.
     while worse.any():
         undone |= worse
         completion = replace(completion.limited_to(~undone, checked.filled), undone=undone)
         faults = find_faults(completion.apply(checked.filled), obstacles=obstacles)
-        worse = completion.trust & (faults.severity > checked.faults.severity)
+        worse = completion.displaced_holes & (faults.severity > checked.faults.severity)
     return completion, faults
 
 

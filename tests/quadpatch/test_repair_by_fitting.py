@@ -104,7 +104,7 @@ def test_the_command_line_says_how_long_to_fit_and_what_was_fitted_and_repeats_i
 
 @pytest.mark.usefixtures("unlearned")
 def test_without_time_to_learn_the_fill_stays_as_it_is(scan_file: Path, tmp_path: Path) -> None:
-    """The network of these tests knows nothing, so practice believes nothing of what it says."""
+    """The network of these tests knows nothing, so calibration believes nothing of what it says."""
     no_time = RepairOptions(network=NetworkOptions(steps=1, seconds=1e-6))
     report = repair_file(scan_file, tmp_path / "out.ply", SELF_NETWORK, no_time)
     repair_file(scan_file, tmp_path / "smooth.ply", "smooth")

@@ -36,6 +36,6 @@ def test_reliefs_alone_teach_a_dictionary_that_codes_unseen_reliefs() -> None:
     np.testing.assert_allclose(atoms, rounded / np.linalg.norm(rounded, axis=0), rtol=0, atol=1e-9)
 
 
-def test_no_mesh_and_no_relief_teach_nothing() -> None:
+def test_no_mesh_and_no_relief_give_nothing_to_learn() -> None:
     with pytest.raises(StageError, match="0 patches"):
         learn_dictionary([], [], LearningOptions())

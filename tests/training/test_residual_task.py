@@ -31,7 +31,7 @@ N = RESOLUTION
 CPU = torch.device("cpu")
 
 
-def lesson_set(n: int, seed: int) -> PatchSet:
+def pair_set(n: int, seed: int) -> PatchSet:
     """Patches that say nothing, but for a number that tells each of them from the others."""
     rng = np.random.default_rng(seed)
     loss_mask = rng.random((n, N, N)) > 0.7
@@ -43,14 +43,14 @@ def lesson_set(n: int, seed: int) -> PatchSet:
 
 @pytest.fixture(scope="module")
 def task() -> ResidualTask:
-    return ResidualTask(find_architecture("residual"), lesson_set(40, 0), lesson_set(20, 1), "0" * 64)
+    return ResidualTask(find_architecture("residual"), pair_set(40, 0), pair_set(20, 1), "0" * 64)
 
 
 def batch_of(task: ResidualTask, seed: int, share: slice = slice(0, 8)) -> tuple[Tensor, ...]:
     return task.batch(np.random.default_rng(seed), 8, share, CPU)
 
 
-def test_a_batch_is_made_of_lessons_turned_alike(task: ResidualTask) -> None:
+def test_a_batch_is_made_of_training_pairs_turned_alike(task: ResidualTask) -> None:
     channels, correction, loss_mask = batch_of(task, 0)
     assert (channels.shape, correction.shape, loss_mask.shape) == ((8, 2, N, N), (8, 1, N, N), (8, 1, N, N))
     assert {tensor.dtype for tensor in (channels, correction, loss_mask)} == {torch.float32}
@@ -67,7 +67,7 @@ def test_batches_follow_from_the_generator_and_shares_of_one_make_it_up(task: Re
     assert all(torch.equal(torch.cat(parts), one) for *parts, one in zip(*halves, whole, strict=True))
 
 
-def test_validation_shows_every_held_out_lesson_once_as_it_is(task: ResidualTask) -> None:
+def test_validation_shows_every_held_out_training_pair_once_as_it_is(task: ResidualTask) -> None:
     batches = list(task.validation(8, CPU))
     assert [len(channels) for channels, _, _ in batches] == [8, 8, 4]
     arrays = task.held_out.gather(np.arange(20))
@@ -96,7 +96,7 @@ def test_its_identity_is_the_network_and_the_corpus(task: ResidualTask) -> None:
 
 @pytest.fixture(scope="module")
 def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Folder with two `scans`, the `corpus` of lessons cut from them, and the network `own.onnx` trained on it."""
+    """Folder with two `scans`, the `corpus` of training pairs cut from them, and the network `own.onnx` of it."""
     folder = tmp_path_factory.mktemp("made")
     (folder / "scans").mkdir()
     for seed, name in enumerate(("waves", "scales")):
@@ -118,7 +118,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def test_a_corpus_of_lessons_says_what_it_is_for(made: Path) -> None:
+def test_a_corpus_of_training_pairs_says_what_it_is_for(made: Path) -> None:
     corpus = Corpus.open(made / "corpus")
     assert (corpus.facts["recipe"], corpus.facts["resolution"]) == ("residual", N)
     assert {mesh["name"]: mesh["count"] > 20 for mesh in corpus.meshes("train")} == {"waves": True}
@@ -153,7 +153,7 @@ def test_the_network_that_comes_out_is_one_that_a_repair_can_run(made: Path, tmp
 
 def test_the_network_that_comes_out_can_be_fitted_to_a_mesh(made: Path) -> None:
     """What torch reads back from the file answers as the file does."""
-    patches = lesson_set(6, 5).gather(np.arange(6))["channels"].astype(np.float32)
+    patches = pair_set(6, 5).gather(np.arange(6))["channels"].astype(np.float32)
     inpainter = AutoencoderInpainter.load(made / "own.onnx")
     (in_file,) = inpainter.session.run(None, {inpainter.session.get_inputs()[0].name: patches})
     with torch.inference_mode():

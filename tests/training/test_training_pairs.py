@@ -20,7 +20,7 @@ def cut(relief: TriangleMesh) -> Arrays:
     return cut_training_pairs(relief, 12, np.random.default_rng(0))
 
 
-def test_lessons_are_small_on_disk_and_ask_in_invented_bins_only(cut: Arrays) -> None:
+def test_training_pairs_are_small_on_disk_and_ask_in_invented_bins_only(cut: Arrays) -> None:
     channels, correction, loss_mask = cut["channels"], cut["correction"], cut["asked"]
     assert [array.dtype.name for array in (channels, correction, loss_mask)] == ["float16", "float16", "bool"]
     assert channels.shape == (len(channels), 2, RESOLUTION, RESOLUTION)
@@ -39,12 +39,12 @@ def test_holes_of_every_width_give_as_much_as_they_may(cut: Arrays) -> None:
 
 
 @pytest.mark.slow
-def test_the_same_generator_cuts_the_same_lessons(relief: TriangleMesh, cut: Arrays) -> None:
+def test_the_same_generator_cuts_the_same_training_pairs(relief: TriangleMesh, cut: Arrays) -> None:
     again = cut_training_pairs(relief, 12, np.random.default_rng(0))
     assert all(again[name].tobytes() == array.tobytes() for name, array in cut.items())
 
 
-def test_a_mesh_too_small_for_a_hole_gives_no_lesson() -> None:
+def test_a_mesh_too_small_for_a_hole_gives_no_training_pair() -> None:
     cut = cut_training_pairs(open_grid(6), 10, np.random.default_rng(0))
     assert [len(array) for array in cut.values()] == [0, 0, 0]
 

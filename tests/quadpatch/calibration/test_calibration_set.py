@@ -27,12 +27,12 @@ from tests.quadpatch.shapes import bumpy_plate, open_grid, punched, relief, sphe
 DIAMETER = 0.25
 
 
-def practice_on(mesh: TriangleMesh, seed: int = 0, diameter: float = DIAMETER) -> CalibrationSet | None:
+def calibration_on(mesh: TriangleMesh, seed: int = 0, diameter: float = DIAMETER) -> CalibrationSet | None:
     return cut_calibration_set(mesh, diameter, mean_edge_length(mesh), np.random.default_rng(seed))
 
 
-def some_practice(mesh: TriangleMesh, seed: int = 0, diameter: float = DIAMETER) -> CalibrationSet:
-    found = practice_on(mesh, seed, diameter)
+def some_calibration(mesh: TriangleMesh, seed: int = 0, diameter: float = DIAMETER) -> CalibrationSet:
+    found = calibration_on(mesh, seed, diameter)
     assert found is not None
     return found
 
@@ -50,8 +50,8 @@ FLAT = TriangleMesh(bumpy_plate(100, 2.0).vertices * [1, 1, 0], bumpy_plate(100,
 RELIEF = relief(120, 2.0, 0.03, 10)
 
 
-def test_real_rims_stay_as_they_are_and_practice_keeps_away_from_them() -> None:
-    calibration = some_practice(SHEET)
+def test_real_rims_stay_as_they_are_and_calibration_keeps_away_from_them() -> None:
+    calibration = some_calibration(SHEET)
     opened = calibration.closed.mesh
     real = loops_of(SHEET)
     assert real < loops_of(opened)
@@ -64,8 +64,8 @@ def test_real_rims_stay_as_they_are_and_practice_keeps_away_from_them() -> None:
         assert apart.min() > 2 * mean_edge_length(SHEET)
 
 
-def test_practice_holes_are_about_as_wide_as_the_real_ones_and_apart() -> None:
-    calibration = some_practice(SHEET)
+def test_calibration_holes_are_about_as_wide_as_the_real_ones_and_apart() -> None:
+    calibration = some_calibration(SHEET)
     loops = [np.array(loop) for loop in loops_of(calibration.closed.mesh) - loops_of(SHEET)]
     widths = [np.ptp(SHEET.vertices[loop, 0]) for loop in loops]
     assert calibration.diameter <= DIAMETER
@@ -75,7 +75,7 @@ def test_practice_holes_are_about_as_wide_as_the_real_ones_and_apart() -> None:
 
 
 def test_only_surface_is_cut_away() -> None:
-    calibration = some_practice(SHEET)
+    calibration = some_calibration(SHEET)
     kept = {tuple(row) for row in calibration.closed.mesh.triangles.tolist()}
     assert kept < {tuple(row) for row in SHEET.triangles.tolist()}
     assert (
@@ -84,7 +84,7 @@ def test_only_surface_is_cut_away() -> None:
 
 
 def test_the_same_generator_cuts_the_same_holes_and_another_one_others() -> None:
-    one, same, other = some_practice(SHEET, 1), some_practice(SHEET, 1), some_practice(SHEET, 2)
+    one, same, other = some_calibration(SHEET, 1), some_calibration(SHEET, 1), some_calibration(SHEET, 2)
     assert (one.closed.mesh.triangles == same.closed.mesh.triangles).all()
     assert one.closed.plate.vertices.tobytes() == same.closed.plate.vertices.tobytes()
     assert loops_of(one.closed.mesh) != loops_of(other.closed.mesh)
@@ -93,12 +93,12 @@ def test_the_same_generator_cuts_the_same_holes_and_another_one_others() -> None
 @pytest.mark.parametrize(
     "mesh", [sphere(1), open_grid(5, 0.4), punched(sphere(3), (0, 0, 1), (0, 0, -1), (1, 0, 0), radius=0.9)]
 )
-def test_without_room_there_is_no_practice(mesh: TriangleMesh) -> None:
-    assert practice_on(mesh, diameter=0.5) is None
+def test_without_room_there_is_no_calibration(mesh: TriangleMesh) -> None:
+    assert calibration_on(mesh, diameter=0.5) is None
 
 
 def test_smaller_holes_are_tried_where_there_is_no_room_for_large_ones() -> None:
-    calibration = some_practice(sphere(5), diameter=0.8)
+    calibration = some_calibration(sphere(5), diameter=0.8)
     assert calibration.diameter < 0.8
 
 
@@ -110,23 +110,23 @@ def chosen_for(calibration: CalibrationSet, default: Energy = DEFAULT_ENERGY) ->
 
 
 def test_a_smooth_surface_is_continued_by_a_smooth_energy() -> None:
-    assert chosen_for(some_practice(sphere(5), diameter=0.5)) == FAIRING_ENERGIES[-1]
+    assert chosen_for(some_calibration(sphere(5), diameter=0.5)) == FAIRING_ENERGIES[-1]
 
 
 def test_a_noisy_surface_is_continued_by_an_energy_that_carries_no_curvature_on() -> None:
     mesh = open_grid(100, 2.0)
     noise = np.random.default_rng(0).normal(0, 0.01, mesh.vertices.shape) * [0, 0, 1]
-    calibration = some_practice(TriangleMesh(mesh.vertices + noise, mesh.triangles))
+    calibration = some_calibration(TriangleMesh(mesh.vertices + noise, mesh.triangles))
     assert chosen_for(calibration).variation == 0
 
 
-def test_the_usual_energy_stays_where_practice_can_not_tell() -> None:
+def test_the_usual_energy_stays_where_calibration_can_not_tell() -> None:
     for default in FAIRING_ENERGIES:
-        assert chosen_for(some_practice(FLAT), default) == default
+        assert chosen_for(some_calibration(FLAT), default) == default
 
 
 def test_a_flat_surface_is_filled_without_error() -> None:
-    calibration = some_practice(FLAT)
+    calibration = some_calibration(FLAT)
     filled = fair_holes(calibration.closed, THIN_PLATE)
     errors = error_per_hole(calibration, filled)
     assert errors.shape == (calibration.closed.n_holes,)
@@ -134,7 +134,7 @@ def test_a_flat_surface_is_filled_without_error() -> None:
 
 
 def test_the_error_is_the_distance_to_what_was_cut_away() -> None:
-    calibration = some_practice(FLAT)
+    calibration = some_calibration(FLAT)
     filled = fair_holes(calibration.closed, THIN_PLATE)
     lifted = filled.with_vertices(new_vertices(filled) + np.array([0, 0, 0.001]))
     # Triangles at the rim are lifted in part only.
@@ -147,7 +147,7 @@ def test_the_error_is_the_distance_to_what_was_cut_away() -> None:
 
 
 def test_the_distance_of_a_fill_looks_one_way_only() -> None:
-    calibration = some_practice(FLAT)
+    calibration = some_calibration(FLAT)
     filled = fair_holes(calibration.closed, THIN_PLATE)
     lift = 0.001 * (filled.vertex_hole == 3)[:, None] * np.array([0, 0, 1])
     lifted = filled.with_vertices(new_vertices(filled) + lift)
@@ -159,15 +159,15 @@ def test_the_distance_of_a_fill_looks_one_way_only() -> None:
     assert error_per_hole(elsewhere, lifted).min() > 0.4
 
 
-def test_every_practice_hole_is_as_wide_as_its_rim() -> None:
-    calibration = some_practice(SHEET)
+def test_every_calibration_hole_is_as_wide_as_its_rim() -> None:
+    calibration = some_calibration(SHEET)
     loops = [np.array(loop) for loop in loops_of(calibration.closed.mesh) - loops_of(SHEET)]
     widths = [np.linalg.norm(SHEET.vertices[loop][:, None] - SHEET.vertices[loop], axis=2).max() for loop in loops]
     np.testing.assert_allclose(np.sort(calibration.diameters), np.sort(widths))
 
 
-def test_what_is_expected_of_the_practice_holes_is_their_mean_distance() -> None:
-    calibration = some_practice(RELIEF)
+def test_what_is_expected_of_the_calibration_holes_is_their_mean_distance() -> None:
+    calibration = some_calibration(RELIEF)
     filled = fair_holes(calibration.closed, FAIRING_ENERGIES[1])
     expected = expect(calibration, filled).errors(filled, calibration.diameters)
     assert expected.sum() == pytest.approx(distance_per_hole(calibration, filled).sum())
@@ -175,8 +175,8 @@ def test_what_is_expected_of_the_practice_holes_is_their_mean_distance() -> None
 
 @pytest.fixture(scope="module")
 def on_relief() -> tuple[CalibrationSet, FilledMesh, FloatArray]:
-    """Practice on a relief, its fill, and what would take every new vertex to the truth."""
-    calibration = some_practice(RELIEF)
+    """Calibration on a relief, its fill, and what would take every new vertex to the truth."""
+    calibration = some_calibration(RELIEF)
     filled = fair_holes(calibration.closed, THIN_PLATE)
     above = new_vertices(filled) * [1, 1, 0] + [0, 0, 1]
     _, distance = RayScene(RELIEF).cast(above, np.tile([0.0, 0, -1], (len(above), 1)))

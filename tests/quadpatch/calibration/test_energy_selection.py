@@ -32,7 +32,7 @@ def roof(n: int = 100) -> TriangleMesh:
     return TriangleMesh(np.stack([x, y, height], axis=1), flat.triangles)
 
 
-def test_without_a_rim_that_tells_weights_follow_practice_alone() -> None:
+def test_without_a_rim_that_tells_weights_follow_calibration_alone() -> None:
     weights = blend_of([np.log(1.0), np.log(1.1)], [0.0, 0.0]).weights(np.full((3, 2), np.nan))
     assert weights.sum(axis=1) == pytest.approx(1.0)
     assert weights[0, 1] / weights[0, 0] == pytest.approx(1.1**-SHARPNESS)
@@ -94,7 +94,7 @@ def test_holes_on_a_rough_and_on_a_smooth_half_are_filled_by_other_weights() -> 
     assert on_rough == pytest.approx(1 / len(FAIRING_ENERGIES), abs=0.05)
 
 
-def test_learning_takes_what_fills_the_practice_holes_best() -> None:
+def test_learning_takes_what_fills_the_calibration_holes_best() -> None:
     mesh = bumpy_plate(100, 2.0)
     calibration = cut_calibration_set(mesh, 0.3, mean_edge_length(mesh), np.random.default_rng(0))
     assert calibration is not None

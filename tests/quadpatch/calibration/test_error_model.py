@@ -36,7 +36,7 @@ def test_a_power_law_is_found_again(seed: int, slope: float, factor: float) -> N
 
 
 @given(SEEDS, SEEDS)
-def test_the_mean_expected_error_is_that_of_practice_and_the_slope_stays_between_nothing_and_proportion(
+def test_the_mean_expected_error_is_that_of_calibration_and_the_slope_stays_between_nothing_and_proportion(
     seed: int, errors_seed: int
 ) -> None:
     filled, diameters = some_holes(seed)
@@ -75,14 +75,14 @@ def test_where_uncertainty_says_nothing_every_hole_is_expected_to_be_as_wrong_as
     assert np.ptp(learned.errors(filled, diameters) / diameters) < 1e-12
 
 
-def test_practice_holes_that_are_all_alike_leave_the_usual_slope() -> None:
+def test_calibration_holes_that_are_all_alike_leave_the_usual_slope() -> None:
     filled, diameters = some_holes(0)
     alike = replace(filled, disagreement=1e-3 * diameters, rim_variation=np.full(N_HOLES, 0.1))
     errors = diameters * np.random.default_rng(1).uniform(0.001, 0.01, N_HOLES)
     assert fit_error_model(alike, diameters, errors).slope == pytest.approx(PRIOR_SLOPE)
 
 
-def test_holes_without_a_new_vertex_teach_nothing() -> None:
+def test_holes_without_a_new_vertex_give_nothing_to_learn() -> None:
     filled, diameters = some_holes(0)
     errors = ErrorModel(0.1, 0.5).errors(filled, diameters)
     empty = np.arange(N_HOLES) % 4 == 0

@@ -11,8 +11,8 @@ from quadpatch.mesh.measures import mean_edge_length
 from quadpatch.patches.residual_input import LARGEST, RESOLUTION
 from quadpatch.patches.scale import PatchScale
 from quadpatch.types import BoolArray, FloatArray, TriangleMesh
-from tests.quadpatch.grounds import ground_of, looking_down
 from tests.quadpatch.shapes import open_grid, punched, relief, sphere
+from tests.quadpatch.training_surfaces import ground_of, looking_down
 
 DIAMETER = 0.3
 RELIEF = relief(110, 2.0, 0.04, 6)
@@ -63,11 +63,11 @@ def test_the_fill_with_its_correction_is_the_surface_that_was_there(training_sur
         truth = height_of_relief(x + offset_x, y + offset_y)
         known = channels[1] > 0
         in_the_fill = left_over(channels[0], truth, loss_mask, known)
-        in_the_lesson = left_over(channels[0] + correction, truth, loss_mask, known)
+        in_the_pair = left_over(channels[0] + correction, truth, loss_mask, known)
         in_the_mesh = left_over(channels[0], truth, known, known)
         assert in_the_fill > 0.25
-        assert in_the_lesson < 0.1
-        assert in_the_lesson < 3 * in_the_mesh
+        assert in_the_pair < 0.1
+        assert in_the_pair < 3 * in_the_mesh
 
 
 def test_a_fill_without_error_leaves_nothing_to_correct() -> None:
@@ -93,7 +93,7 @@ def test_nothing_is_asked_but_in_invented_bins(pairs: TrainingPairs) -> None:
     assert (pairs.correction[~loss_mask] == 0).all()
 
 
-def test_lessons_are_bounded_and_of_the_shape_that_networks_read(pairs: TrainingPairs) -> None:
+def test_training_pairs_are_bounded_and_of_the_shape_that_networks_read(pairs: TrainingPairs) -> None:
     assert len(pairs) > 50
     assert pairs.channels.shape == (len(pairs), 2, RESOLUTION, RESOLUTION)
     assert pairs.correction.shape == pairs.loss_mask.shape == (len(pairs), RESOLUTION, RESOLUTION)
@@ -103,7 +103,7 @@ def test_lessons_are_bounded_and_of_the_shape_that_networks_read(pairs: Training
         assert np.abs(array).max() <= LARGEST
 
 
-def test_the_same_generator_gives_the_same_lessons_and_another_round_or_generator_others() -> None:
+def test_the_same_generator_gives_the_same_training_pairs_and_another_round_or_generator_others() -> None:
     training_surface = ground_of(relief(60, 1.2, 0.04, 4), DIAMETER)
     one, next_one = rounds(training_surface, 2)
     (same,), (other,) = rounds(training_surface, 1), rounds(training_surface, 1, seed=1)
@@ -115,7 +115,7 @@ def test_the_same_generator_gives_the_same_lessons_and_another_round_or_generato
 
 
 def test_surface_that_is_missing_already_is_never_asked_for() -> None:
-    """It is no truth: real holes, and those of practice, are open in the ground."""
+    """It is no truth: real holes, and those of calibration, are open in the ground."""
     mesh = punched(RELIEF, *((x, y, 0.0) for x in (-0.5, 0.0, 0.5) for y in (-0.5, 0.0, 0.5)), radius=0.15)
     whole = ground_of(RELIEF, DIAMETER)
     seeds = looking_down((0.0, 0.0, 0.0))
@@ -124,7 +124,7 @@ def test_surface_that_is_missing_already_is_never_asked_for() -> None:
         assert given.loss_mask.sum() == 0
 
 
-def test_where_there_is_no_room_for_a_hole_there_is_no_lesson() -> None:
+def test_where_there_is_no_room_for_a_hole_there_is_no_training_pair() -> None:
     small = open_grid(12, 0.3)
     edge_length = mean_edge_length(small)
     training_surface = TrainingSurface(
@@ -140,7 +140,7 @@ def test_where_there_is_no_room_for_a_hole_there_is_no_lesson() -> None:
     assert [len(given) for given in rounds(replace(training_surface, mesh=nothing), 1)] == [0]
 
 
-def test_joined_lessons_stand_one_after_the_other(pairs: TrainingPairs) -> None:
+def test_joined_training_pairs_stand_one_after_the_other(pairs: TrainingPairs) -> None:
     joined = TrainingPairs.joined([pairs, pairs], RESOLUTION)
     assert len(joined) == 2 * len(pairs)
     np.testing.assert_array_equal(joined.channels[len(pairs) :], pairs.channels)

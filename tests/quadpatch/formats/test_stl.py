@@ -51,7 +51,7 @@ def test_binary_records_come_back_to_the_byte_and_the_hole_is_closed() -> None:
     assert (other.triangles == again.vertices[again.triangles]).all()
 
 
-def test_solid_in_the_header_of_a_binary_file_fools_nobody() -> None:
+def test_solid_in_the_header_of_a_binary_file_is_not_believed() -> None:
     data = binary_ball()
     assert is_binary_stl(data)
     assert len(read(data).triangles) > 100

@@ -100,7 +100,7 @@ def test_the_dictionary_has_the_size_asked_for_but_no_more_atoms_than_patches() 
     assert usual.dictionary.n_nonzero == NONZERO
 
 
-def test_too_few_patches_teach_nothing() -> None:
+def test_too_few_patches_give_nothing_to_learn() -> None:
     one_less = waves(MIN_TRAINING_PATCHES - 1)
     assert learn(one_less, np.ones(one_less.shape, bool)) is None
     many, known = waves(100), np.ones((100, N, N), bool)

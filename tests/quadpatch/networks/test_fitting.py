@@ -12,9 +12,9 @@ from quadpatch.networks.residual import Errors, Residual, errors
 from quadpatch.options import NetworkOptions
 from quadpatch.patches.residual_input import RESOLUTION, corrected, network_input
 from quadpatch.types import Patches
-from tests.quadpatch.grounds import ground_of, surroundings_of
 from tests.quadpatch.networks.made import stirred
 from tests.quadpatch.shapes import relief
+from tests.quadpatch.training_surfaces import ground_of, undamaged_surface
 
 pytestmark = pytest.mark.slow
 
@@ -36,7 +36,7 @@ def pairs(training_surface: TrainingSurface) -> TrainingPairs:
 
 
 @pytest.fixture(scope="module")
-def small_ground() -> TrainingSurface:
+def small_surface() -> TrainingSurface:
     """Room for a few holes a round."""
     return ground_of(relief(34, 0.9, 0.03, 3), 0.25, overlap=1)
 
@@ -116,32 +116,32 @@ def test_the_outcome_is_the_same_on_a_busy_machine_as_long_as_the_time_is_not_ah
     assert slow not in in_time
 
 
-def test_lessons_follow_from_the_seed_and_are_those_of_several_rounds(small_ground: TrainingSurface) -> None:
-    undamaged = surroundings_of(small_ground)
+def test_training_pairs_follow_from_the_seed_and_are_those_of_several_rounds(small_surface: TrainingSurface) -> None:
+    undamaged = undamaged_surface(small_surface)
     one, same, other = (collect_training_pairs(undamaged, seed) for seed in (0, 0, 1))
-    first = next(make_training_pairs(small_ground, np.random.default_rng([0, 3])))
-    assert len(first) < len(one) <= MAX_ROUNDS * len(small_ground.seeds)
+    first = next(make_training_pairs(small_surface, np.random.default_rng([0, 3])))
+    assert len(first) < len(one) <= MAX_ROUNDS * len(small_surface.seeds)
     assert one.channels[: len(first)].tobytes() == first.channels.tobytes()
     assert one.channels.tobytes() == same.channels.tobytes()
     assert one.channels.tobytes() != other.channels.tobytes()
 
 
-def test_a_surface_with_too_few_lessons_leaves_the_network_as_it_is(small_ground: TrainingSurface) -> None:
+def test_a_surface_with_too_few_training_pairs_leaves_the_network_as_it_is(small_surface: TrainingSurface) -> None:
     inpainter = FittingInpainter(fresh(), NetworkOptions(steps=2))
-    too_wide = replace(small_ground, diameters=np.array([1.5]))
-    assert inpainter.fitted_to(surroundings_of(too_wide)) is inpainter
+    too_wide = replace(small_surface, diameters=np.array([1.5]))
+    assert inpainter.fitted_to(undamaged_surface(too_wide)) is inpainter
 
 
-def test_fitting_makes_another_network_and_tells_how_far_it_is(small_ground: TrainingSurface) -> None:
+def test_fitting_makes_another_network_and_tells_how_far_it_is(small_surface: TrainingSurface) -> None:
     heard: list[tuple[str, float]] = []
     inpainter = FittingInpainter(fresh(), NetworkOptions(steps=4, seconds=AMPLE_S), 0, lambda *said: heard.append(said))
     before = weights(inpainter.network)
-    fitted = inpainter.fitted_to(surroundings_of(small_ground))
+    fitted = inpainter.fitted_to(undamaged_surface(small_surface))
     assert weights(inpainter.network) == before != weights(fitted.network)
     assert {stage for stage, _ in heard} == {"learn"}
     shares = [share for _, share in heard]
     assert shares == sorted(shares)
-    # Lessons come first and take a fixed share; then every step is told.
+    # Training pairs come first and take a fixed share; then every step is told.
     of_steps = CUTTING_SHARE + (1 - CUTTING_SHARE) * np.array([0.0, 0.25, 0.5, 0.75])
     assert shares[-4:] == pytest.approx(of_steps, abs=1e-6)
     assert 0 < shares[0] < CUTTING_SHARE

@@ -120,7 +120,7 @@ def test_known_bins_are_never_changed_and_others_move_by_the_correction_in_sprea
 
 @given(seed=st.integers(0, 1000))
 def test_what_is_measured_in_spreads_is_put_back_by_the_correction(seed: int) -> None:
-    """A truth that a lesson asks for is exactly what a right answer leads to."""
+    """A truth that a training pair asks for is exactly what a right answer leads to."""
     patches, base_heights = patches_and_base_heights(seed)
     deviation = network_input(patches, base_heights).deviation
     missing = np.clip(np.random.default_rng(seed).normal(size=base_heights.shape), -3, 3) * ~patches.known

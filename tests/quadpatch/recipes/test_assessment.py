@@ -15,10 +15,10 @@ from quadpatch.patches.scale import PatchScale
 from quadpatch.recipes.assessment import (
     LEAST_COVERAGE,
     MOST_DISAGREEMENT,
+    agreeing_holes,
     assess,
     confidence,
     measure_agreement,
-    trusted_holes,
 )
 from quadpatch.recipes.result import Completion, PatchAgreement
 from quadpatch.reconstruction.displacement import Displacement, rim_vertices
@@ -40,7 +40,7 @@ class Says:
     departure: tuple[float, float, float] = (0.01, 0.01, 0.01)
     rim_misfit: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
-    def evidence(self) -> PatchAgreement:
+    def agreement(self) -> PatchAgreement:
         return PatchAgreement(
             *(np.array(getattr(self, name)) for name in ("coverage", "deviation", "departure", "rim_misfit"))
         )
@@ -50,10 +50,16 @@ EXPECTATION = ErrorModel(0.3, 0.7)
 
 
 def completion(says: Says, blend_factor: float = 1.0, error_model: ErrorModel | None = EXPECTATION) -> Completion:
-    evidence = says.evidence()
-    trust = trusted_holes(evidence) & (blend_factor > 0)
+    agreement = says.agreement()
+    displaced_holes = agreeing_holes(agreement) & (blend_factor > 0)
     return Completion(
-        np.zeros((len(FILLED.vertex_hole), 3)), evidence, trust, blend_factor, error_model, PatchScale(0.5, 24, 2), 100
+        np.zeros((len(FILLED.vertex_hole), 3)),
+        agreement,
+        displaced_holes,
+        blend_factor,
+        error_model,
+        PatchScale(0.5, 24, 2),
+        100,
     )
 
 
@@ -67,8 +73,8 @@ def completion(says: Says, blend_factor: float = 1.0, error_model: ErrorModel | 
         (Says(departure=(0.0, 0.0, 0.0)), [True, True, True]),
     ],
 )
-def test_a_model_may_complete_what_its_patches_cover_and_agree_about(says: Says, trust: list[bool]) -> None:
-    assert trusted_holes(says.evidence()).tolist() == trust
+def test_a_model_may_complete_what_its_patches_cover_and_agree_about(says: Says, displaced_holes: list[bool]) -> None:
+    assert agreeing_holes(says.agreement()).tolist() == displaced_holes
 
 
 @pytest.mark.parametrize(
@@ -199,7 +205,7 @@ def test_evidence_is_averaged_over_the_vertices_of_each_hole() -> None:
     inside = Displacement(rng.normal(size=(n, 3)), rng.random(n), overlap)
     at_rim = Displacement(rng.normal(size=(len(rim), 3)), np.zeros(len(rim)), np.ones(len(rim), np.int64))
     joined = rng.normal(size=(n, 3))
-    evidence = measure_agreement(FILLED, inside, joined, rim_hole, at_rim)
+    agreement = measure_agreement(FILLED, inside, joined, rim_hole, at_rim)
     for hole in range(3):
         here: BoolArray = FILLED.vertex_hole == hole
         expected: dict[str, FloatArray] = {
@@ -209,6 +215,6 @@ def test_evidence_is_averaged_over_the_vertices_of_each_hole() -> None:
             "rim_misfit": np.linalg.norm(at_rim.mean[rim_hole == hole], axis=1),
         }
         for name, values in expected.items():
-            assert cast(FloatArray, getattr(evidence, "deviation" if name == "spread" else name))[
+            assert cast(FloatArray, getattr(agreement, "deviation" if name == "spread" else name))[
                 hole
             ] == pytest.approx(values.mean())

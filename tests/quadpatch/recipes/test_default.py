@@ -82,7 +82,7 @@ def test_what_was_learned_from_a_relief_beats_the_smooth_fill(smooth_relief: Rep
     assert completion is not None
     assert completion.blend_factor > 0
     filled = {result.hole.id for result in learned_relief.results if result.verdict == "filled"}
-    assert filled == {learned_relief.chosen[i].id for i in np.flatnonzero(completion.trust).tolist()}
+    assert filled == {learned_relief.chosen[i].id for i in np.flatnonzero(completion.displaced_holes).tolist()}
     assert len(filled) >= 6
 
 
@@ -92,7 +92,7 @@ def test_holes_that_the_model_does_not_complete_stay_as_geometry_filled_them(
 ) -> None:
     completion = learned_relief.completion
     assert completion is not None
-    left = ~completion.trust[learned_relief.filled.vertex_hole]
+    left = ~completion.displaced_holes[learned_relief.filled.vertex_hole]
     assert left.any()
     same = (new_vertices(learned_relief) == new_vertices(smooth_relief)).all(axis=1)
     assert same[left].all()
@@ -152,7 +152,7 @@ def test_a_learned_repair_moves_with_its_mesh_as_far_as_the_quads_do(
     assert (there.filled.mesh.triangles == here.filled.mesh.triangles).all()
     assert here.completion is not None
     assert there.completion is not None
-    both = (here.completion.trust & there.completion.trust)[here.filled.vertex_hole]
+    both = (here.completion.displaced_holes & there.completion.displaced_holes)[here.filled.vertex_hole]
     assert both.any()
     apart = np.linalg.norm(new_vertices(here) @ rotation.T + shift - new_vertices(there), axis=1)
     displaced = np.linalg.norm(new_vertices(here) - new_vertices(smooth), axis=1)
@@ -266,6 +266,6 @@ def test_two_sheets_close_together_are_repaired_apart() -> None:
     assert height.min() > new_vertices(alone)[:, 2].min() - 0.03
 
 
-def test_an_empty_place_for_practice_is_no_fault() -> None:
+def test_an_empty_place_for_calibration_is_no_fault() -> None:
     repair = inpaint(punched(open_grid(9), (0, 0, 0), radius=1.2), None, RepairOptions(HoleOptions(ids=(1,))))
     assert repair.results[1].verdict == "filled_smooth"

@@ -104,13 +104,13 @@ def test_true_heights_put_every_vertex_on_the_true_surface() -> None:
     mesh = punched(whole, (0, 0, 1), (1, 0, 0), (0, -1, 0), radius=0.2)
     repair = inpaint_as_paper(mesh, Truth(whole, 24), RepairOptions())
     assert repair.completion is not None
-    evidence = repair.completion.evidence
-    assert evidence is not None
-    assert (evidence.coverage == 1).all()
+    agreement = repair.completion.agreement
+    assert agreement is not None
+    assert (agreement.coverage == 1).all()
     error, before = (np.abs(np.linalg.norm(v, axis=1) - 1) for v in (new_vertices(repair), closed(repair, mesh)))
     assert error.mean() < before.mean() / 20
     assert error.max() < before.max() / 3
-    assert evidence.rim_misfit.max() < 0.1 * evidence.departure.min()
+    assert agreement.rim_misfit.max() < 0.1 * agreement.departure.min()
 
 
 def test_nothing_is_faired_gated_or_joined() -> None:
@@ -122,9 +122,9 @@ def test_nothing_is_faired_gated_or_joined() -> None:
     assert repair.completion is not None
     assert repair.completion.blend_factor == 1.0
     assert verdicts(repair) == [("filled", "")]
-    # Planes don't meet the rim of a hole in a sphere, and nobody makes them.
-    assert repair.completion.evidence is not None
-    assert repair.completion.evidence.rim_misfit[0] > 0.01
+    # Planes don't meet the rim of a hole in a sphere.
+    assert repair.completion.agreement is not None
+    assert repair.completion.agreement.rim_misfit[0] > 0.01
 
 
 def test_neither_confidence_nor_expected_error_is_made_up(repaired: Repair) -> None:

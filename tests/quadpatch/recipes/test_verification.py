@@ -38,10 +38,10 @@ def plate(mesh: TriangleMesh, loops: list[IntArray]) -> FilledMesh:
 CHECKED = fill_checked(MESH, as_holes(RIMS.loops), plate)
 
 
-def displaced(displacement: FloatArray, trust: tuple[bool, bool, bool] = (True, True, True)) -> Completion:
+def displaced(displacement: FloatArray, displaced_holes: tuple[bool, bool, bool] = (True, True, True)) -> Completion:
     """A completion that moves the new vertices of trusted holes."""
-    moved = np.where(np.array(trust)[CHECKED.filled.vertex_hole][:, None], displacement, 0.0)
-    return Completion(moved, None, np.array(trust), 1.0, ErrorModel(0.3, 0.7), PatchScale(0.5, 24, 2), 9)
+    moved = np.where(np.array(displaced_holes)[CHECKED.filled.vertex_hole][:, None], displacement, 0.0)
+    return Completion(moved, None, np.array(displaced_holes), 1.0, ErrorModel(0.3, 0.7), PatchScale(0.5, 24, 2), 9)
 
 
 def ripple(height: float) -> FloatArray:
@@ -79,7 +79,7 @@ def test_a_displacement_that_crumples_its_fill_is_taken_back_there_alone(
     assert done is not None
     assert done.undone is not None
     assert done.undone.tolist() == [i in crumpled for i in range(3)]
-    assert done.trust.tolist() == [i not in crumpled for i in range(3)]
+    assert done.displaced_holes.tolist() == [i not in crumpled for i in range(3)]
     mesh = done.apply(CHECKED.filled)
     assert_keeps(mesh, MESH)
     assert faults.severity.tolist() == [0, 0, 0]
@@ -102,7 +102,7 @@ def test_a_displacement_into_an_obstacle_is_taken_back() -> None:
     assert without_faults(completion, checked, None)[0] is completion
     done, _ = without_faults(completion, checked, obstacle)
     assert done is not None
-    assert done.trust.tolist() == [False, True, True]
+    assert done.displaced_holes.tolist() == [False, True, True]
 
 
 def test_faults_that_the_fill_had_before_are_no_reason_to_take_a_displacement_back() -> None:

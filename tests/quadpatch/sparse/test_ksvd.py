@@ -86,7 +86,7 @@ def test_repeated_signals_do_not_become_repeated_atoms() -> None:
     assert gram.max() < 0.995
 
 
-def test_a_bin_that_nobody_knows_does_not_spoil_the_atoms() -> None:
+def test_a_bin_that_is_never_known_does_not_spoil_the_atoms() -> None:
     rng = np.random.default_rng(5)
     signals, _ = planted(rng, 200, 16, 20, 2)
     known = np.ones(signals.shape, dtype=np.bool_)

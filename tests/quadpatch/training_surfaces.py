@@ -1,4 +1,4 @@
-"""Surface that lessons are cut from."""
+"""Surface that training pairs are cut from."""
 
 import numpy as np
 
@@ -29,8 +29,8 @@ def looking_down(*places: tuple[float, float, float]) -> Seeds:
     return Seeds(np.array(places), np.tile(np.eye(3), (len(places), 1, 1)), np.zeros(len(places), np.int64))
 
 
-def surroundings_of(training_surface: TrainingSurface) -> UndamagedSurface:
-    """What a model that is fitted by lessons alone is given: no patch, and the ground."""
+def undamaged_surface(training_surface: TrainingSurface) -> UndamagedSurface:
+    """What a model that is fitted by training pairs alone is given: no patch, and the ground."""
     none = np.zeros((0, RESOLUTION, RESOLUTION))
     is_none = none > 0
     patches = Patches(np.zeros((0, 3)), np.zeros((0, 3, 3)), 1.0, none, is_none, is_none, none.astype(np.int64))
