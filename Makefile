@@ -19,7 +19,7 @@ $(READY): pyproject.toml constraints.txt
 demo: $(READY)            ## repair a real scan over HTTP; results land in demo/
 	@$(BIN)/python -m onebox demo
 
-serve: $(READY)           ## one box on http://127.0.0.1:8000 until Ctrl-C
+serve: $(READY)           ## a local stack on http://127.0.0.1:8000 until Ctrl-C
 	@$(BIN)/python -m onebox serve
 
 # One thread for each of the two processes: where four share two cores, each waits for the others. At most 8 minutes on
@@ -31,13 +31,7 @@ TEST := $(PYTHON_OF_TESTS) $(PYTEST)
 test: $(READY)            ## the tests, with the real Valkey
 	@$(TEST) --durations 10 -m "not slow" $(ARGS)
 
-# What it measures, and how child processes take part, stands in pyproject.toml under [tool.coverage.run].
-coverage: $(READY)        ## lines and branches that `make test` runs: make coverage ARGS="tests/quadpatch/mesh"
-	@rm -rf build/coverage && mkdir -p build/coverage
-	@$(PYTHON_OF_TESTS) coverage run -m $(PYTEST) -m "not slow" $(ARGS); status=$$?; \
-		$(BIN)/python -m coverage combine --quiet && $(BIN)/python -m coverage report && exit $$status
-
-test-slow: $(READY)       ## the tests that take long: whole campaigns, trainings, boxes that are killed
+test-slow: $(READY)       ## the tests that take long: whole campaigns, trainings, local stacks that are killed
 	@$(TEST) --durations 10 -m slow $(ARGS)
 
 test-postgres: $(READY)   ## the tests of service and workers on PostgreSQL and S3, both started by the tests
@@ -65,10 +59,10 @@ faults: $(READY)          ## kill, cut off and starve a cluster of real processe
 fuzz: $(READY)            ## repair damaged meshes and judge what comes out: make fuzz ARGS="--count 300 --seed 1 --keep folder"
 	@OMP_NUM_THREADS=1 $(BIN)/python -m tests.fuzz $(ARGS)
 
-mutants: $(READY)         ## mutated files of all formats through a real box: make mutants ARGS="--count 500 --seed 1"
+mutants: $(READY)         ## mutated files of all formats through a real local stack: make mutants ARGS="--count 500 --seed 1"
 	@OMP_NUM_THREADS=1 $(BIN)/python -m tests.mutants $(ARGS)
 
-contract: $(READY)        ## schemathesis, thousands of requests against one box: make contract ARGS="--examples 60 --seed 1"
+contract: $(READY)        ## schemathesis, thousands of requests against a local stack: make contract ARGS="--examples 60 --seed 1"
 	@OMP_NUM_THREADS=1 $(BIN)/python -m tests.contract $(ARGS)
 
 check: $(READY)           ## ruff, import rules, types
@@ -80,7 +74,7 @@ check: $(READY)           ## ruff, import rules, types
 openapi: $(READY)         ## write openapi.yaml from the app
 	@$(BIN)/python -m service openapi > openapi.yaml
 
-samples: $(READY)         ## write the samples of README.md and docs/api.md from the answers of a real box
+samples: $(READY)         ## write the samples of README.md and docs/api.md from the answers of a real local stack
 	@$(BIN)/python -m benchmarks.samples
 
 # Needs the package index. Where pip also looks elsewhere, PIP_FIND_LINKS= and PIP_CONFIG_FILE=/dev/null leave that out.

@@ -1,6 +1,6 @@
 """What others notice of a client that takes all the places it can get.
 
-Run ``python -m benchmarks.flood``, or ``make flood``. It starts a queue and the API of one box with their default
+Run ``python -m benchmarks.flood``, or ``make flood``. It starts a queue and the API of a local stack with their default
 settings in a fresh folder, on two cores together with the clients, opens waiters, half-open requests and endless heads
 at once, and asks `/healthz` over a new connection each time: before, while they are opened, and while they stay.
 

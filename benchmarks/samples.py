@@ -1,4 +1,4 @@
-"""The samples of README.md and docs/api.md, made by a real box: `make samples`.
+"""The samples of README.md and docs/api.md, made by a real local stack: `make samples`.
 
 A sample is the block of code behind a line `<!-- sample: NAME -->`. This repairs the scan of the demo over HTTP,
 shortens the answers, writes the blocks anew, and keeps what it wrote in `docs/samples.json`. Tests hold documents and
@@ -17,7 +17,7 @@ from typing import Any
 
 import httpx
 
-from onebox.demo import find_scan, running_box
+from onebox.demo import find_scan, running_stack
 
 ROOT = Path(__file__).resolve().parent.parent
 DOCUMENTS = (ROOT / "README.md", ROOT / "docs" / "api.md")
@@ -31,7 +31,7 @@ _README_URL = "http://127.0.0.1:8000"
 
 def main() -> int:
     """Write all samples; return the exit code."""
-    with tempfile.TemporaryDirectory() as folder, running_box(Path(folder)) as url:
+    with tempfile.TemporaryDirectory() as folder, running_stack(Path(folder)) as url:
         samples = record(url, find_scan().read_bytes())
     RECORD.write_text(json.dumps(samples, indent=1, ensure_ascii=False) + "\n", "utf-8")
     for path in DOCUMENTS:

@@ -1,4 +1,4 @@
-"""The API of one box to put under load: started in a fresh folder, filled with jobs, some of them moving."""
+"""The API of a local stack to put under load: started in a fresh folder, filled with jobs, some of them moving."""
 
 import os
 import subprocess
@@ -20,7 +20,7 @@ from jobkit.meshes import Meshes
 from jobkit.schema import HoleCounts, JobResult, JobSpec, ResolvedModel
 from jobkit.settings import Settings
 from jobkit.storage.open import open_store
-from onebox.box import ready_check, usable_port
+from onebox.local_stack import ready_check, usable_port
 from onebox.valkey import running_valkey
 
 HOST = "127.0.0.1"

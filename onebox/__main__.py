@@ -1,7 +1,4 @@
-"""`python -m onebox serve` runs one box; `python -m onebox demo` repairs a real scan with one.
-
-Tested in `tests/onebox/test_box.py`.
-"""
+"""`python -m onebox serve` runs a local stack; `python -m onebox demo` repairs a real scan with one."""
 
 import sys
 from pathlib import Path
@@ -9,15 +6,15 @@ from typing import Annotated
 
 import typer
 
-from onebox.box import Box, check_settings, default_workers, usable_port
 from onebox.demo import demo as run_demo
 from onebox.errors import OneBoxError
+from onebox.local_stack import LocalStack, check_settings, default_workers, usable_port
 from onebox.serve import serve as run_serve
 
 _FAILED = 1
 
 app = typer.Typer(
-    help="One box: Valkey, dispatcher, API and workers on this machine, started and watched by one command.",
+    help="Local stack: Valkey, dispatcher, API and workers on this machine, started and watched by one command.",
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
@@ -33,13 +30,13 @@ def serve(
     workers: Annotated[str, typer.Option(help="Count of worker processes, or 'auto'.")] = "auto",
     data: Annotated[Path, typer.Option(help="Folder for database, objects, queue and logs.")] = Path("var"),
 ) -> None:
-    """Run one box until Ctrl-C."""
+    """Run queue, API and workers until Ctrl-C."""
     if workers != "auto" and not (workers.isdecimal() and 1 <= int(workers) <= 256):
         raise typer.BadParameter(f"must be 'auto' or a count from 1 to 256; it is {workers!r}", param_hint="--workers")
     try:
         check_settings(host)
         n_workers = default_workers() if workers == "auto" else int(workers)
-        run_serve(Box(data, host, usable_port(host, port), n_workers), typer.echo)
+        run_serve(LocalStack(data, host, usable_port(host, port), n_workers), typer.echo)
     except OneBoxError as error:
         _fail(error)
 

@@ -20,8 +20,8 @@ from client.options import HoleChoice, MethodChoice
 from client.repairing import Task, repair
 from client.screen import Screen
 from client.sdk import Client
-from onebox.box import ADDRESS_FILE, LOCK_NAME
 from onebox.errors import DemoError
+from onebox.local_stack import ADDRESS_FILE, LOCK_NAME
 from onebox.logs import log_tail
 from onebox.processes import stop
 from worker.engine.parent_death import parent_death_signal
@@ -35,7 +35,7 @@ _TIMEOUT_S = 600.0
 
 
 def demo(folder: Path) -> None:
-    """Start one box, repair the face scan that comes with pymeshlab, and leave three files in `folder`.
+    """Start a local stack, repair the face scan that comes with pymeshlab, and leave three files in `folder`.
 
     Raises
     ------
@@ -57,12 +57,12 @@ def demo(folder: Path) -> None:
     )
     for path in (task.output, task.report, task.preview):
         if path is not None:
-            path.unlink(missing_ok=True)  # what lies there afterwards is of this run
+            path.unlink(missing_ok=True)  # what is there afterwards is of this run
     data = folder / "box"
     _clear(data)
-    screen.say("starting one box: Valkey, dispatcher, API, workers ...")
-    with running_box(data) as url, Client(url) as client:
-        screen.say(f"one box is ready on {url}")
+    screen.say("starting Valkey, dispatcher, API and workers ...")
+    with running_stack(data) as url, Client(url) as client:
+        screen.say(f"the service is ready on {url}")
         try:
             repair(client, screen, task)
         except ClientError as error:
@@ -87,13 +87,13 @@ def find_scan() -> Path:
 
 
 @contextmanager
-def running_box(data: Path) -> Iterator[str]:
-    """Run one box in a process of its own for the length of a `with` block, and yield its address.
+def running_stack(data: Path) -> Iterator[str]:
+    """Run a local stack in a process of its own for the length of a `with` block, and yield its address.
 
     Raises
     ------
     DemoError
-        If it does not come up; the message carries its last words.
+        If it does not come up; the message carries the end of its log.
     """
     address_file = data / ADDRESS_FILE
     address_file.unlink(missing_ok=True)
@@ -119,9 +119,9 @@ def _wait_for_address(address_file: Path, process: subprocess.Popen[bytes], log_
     deadline = time.monotonic() + _READY_TIMEOUT_S
     while not address_file.exists() or not (address := address_file.read_text(encoding="ascii")):
         if process.poll() is not None:
-            raise DemoError(f"the box ended before it was ready; {log_tail(log_path)}")
+            raise DemoError(f"the local stack ended before it was ready; {log_tail(log_path)}")
         if time.monotonic() > deadline:
-            raise DemoError(f"the box was not ready within {_READY_TIMEOUT_S:.0f} s; {log_tail(log_path)}")
+            raise DemoError(f"the local stack was not ready within {_READY_TIMEOUT_S:.0f} s; {log_tail(log_path)}")
         time.sleep(0.1)
     return address
 

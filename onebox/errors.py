@@ -1,4 +1,4 @@
-"""What can go wrong before one box stands.
+"""What can go wrong before a local stack is ready.
 
 ::
 

@@ -1,4 +1,4 @@
-"""A small supervisor: starts programs in order, restarts what dies, stops them in reverse.
+"""A small supervisor: starts programs in order, restarts those that end, stops them in reverse order.
 
 It has one thread on purpose. Children are tied to the thread that forks them (`worker.engine.parent_death`), and each
 writes straight into its own log file, so nothing is lost when the supervisor itself is killed.
@@ -20,7 +20,7 @@ from worker.engine.parent_death import parent_death_signal
 _TICK_S = 0.1
 _FIRST_DELAY_S = 0.5
 _LONGEST_DELAY_S = 30.0
-# A program that lived this long was healthy: its next death starts at the shortest delay again.
+# A program that ran this long was healthy: after its next end the shortest delay applies again.
 _HEALTHY_AFTER_S = 30.0
 _LOG_LIMIT_BYTES = 10_000_000
 
@@ -44,7 +44,7 @@ class Program:
     ready : callable
         Tells whether it does its work already; asked until True before the next program is started.
     stop_timeout_s : float
-        Patience between SIGTERM and SIGKILL.
+        Seconds between SIGTERM and SIGKILL.
     is_alongside : bool
         Start and stop it side by side with the program before it.
     withheld : tuple of str
@@ -121,14 +121,14 @@ class Supervisor:
                 self._wait_until_ready(child, timeout_s)
 
     def watch(self) -> None:
-        """Restart what dies, with growing delays, until a stop is requested."""
+        """Restart programs that end, with growing delays, until a stop is requested."""
         while not self._is_stopping:
             for child in self._children:
                 self._look_after(child)
             time.sleep(_TICK_S)
 
     def stop(self) -> None:
-        """End every program, the last started first: SIGTERM, patience, SIGKILL."""
+        """End every program, the last started first: SIGTERM, a wait, SIGKILL."""
         self._is_stopping = True
         for group in reversed(_groups(self._children)):
             for child in group:
@@ -163,14 +163,14 @@ class Supervisor:
         deadline = time.monotonic() + timeout_s
         while not self._is_stopping:
             if process is not None and process.poll() is not None:
-                raise StartError(f"{name} ended at once ({_ending(process.returncode)}); {self._last_words(child)}")
+                raise StartError(f"{name} ended at once ({_ending(process.returncode)}); {self._log_tail(child)}")
             if child.program.ready():
                 return
             if time.monotonic() > deadline:
-                raise StartError(f"{name} was not ready within {timeout_s:.0f} s; {self._last_words(child)}")
+                raise StartError(f"{name} was not ready within {timeout_s:.0f} s; {self._log_tail(child)}")
             time.sleep(_TICK_S / 2)
 
-    def _last_words(self, child: _Child) -> str:
+    def _log_tail(self, child: _Child) -> str:
         return log_tail(self.log_path(child.program.name), child.log_start)
 
     def _look_after(self, child: _Child) -> None:
@@ -192,7 +192,7 @@ class Supervisor:
 
     def _bound_log(self, child: _Child) -> None:
         path = self.log_path(child.program.name)
-        # A full disk, or a file that was taken away, is no reason to leave the programs alone.
+        # A full disk, or a log file that was removed, must not end the supervision of the programs.
         with contextlib.suppress(OSError):
             if path.stat().st_size > _LOG_LIMIT_BYTES:
                 start_anew(path)
@@ -231,11 +231,11 @@ def _ending(returncode: int) -> str:
     return f"exit code {returncode}"
 
 
-def stop(process: subprocess.Popen[bytes], patience_s: float) -> None:
-    """Ask one process to end, and end it when it takes longer than `patience_s`."""
+def stop(process: subprocess.Popen[bytes], timeout_s: float) -> None:
+    """Ask one process to end, and end it when it takes longer than `timeout_s`."""
     process.terminate()
     try:
-        process.wait(patience_s)
+        process.wait(timeout_s)
     except subprocess.TimeoutExpired:
         process.kill()
         process.wait()

@@ -1,4 +1,4 @@
-"""The real Valkey server that comes as a wheel, set up for one box.
+"""The real Valkey server that comes as a wheel, set up for a local stack.
 
 It listens on a unix socket that only its owner may open, so that it needs neither a port nor a password. The
 append-only file is on: without it a killed Valkey forgets its queue.

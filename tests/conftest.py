@@ -47,7 +47,7 @@ BACKENDS = ("sqlite-local", "postgres-s3")
 
 
 def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> SharingScheduling | None:
-    """Let `--dist loadfile` keep together what shares the box."""
+    """Let `--dist loadfile` keep together what shares the local stack."""
     return SharingScheduling(config, log) if config.getvalue("dist") == "loadfile" else None
 
 
@@ -133,7 +133,7 @@ def places(new_places: Callable[[], AbstractContextManager[dict[str, str]]]) -> 
 
 @pytest.fixture
 def settings(tmp_path: Path, data_dir: Path, valkey_url: str, places: dict[str, str]) -> Settings:
-    """Settings of one box in a fresh folder with a queue of its own."""
+    """Settings of a local stack in a fresh folder with a queue of its own."""
     return Settings(
         data_dir=data_dir,
         database_url=SecretStr(places["database_url"]),

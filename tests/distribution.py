@@ -1,13 +1,13 @@
-"""Which tests run in one process of `pytest -n`: those of a file, and all that share the one box. Longest first."""
+"""Which tests run in one process of `pytest -n`: those of a file, and all that share the local stack. Longest first."""
 
 from typing import Any
 
 from xdist.scheduler import LoadFileScheduling
 
-_BOX = "tests/integration/"
+_LOCAL_STACK = "tests/integration/"
 # What takes longest has few tests, so that xdist would begin it last, and one core would wait for it in the end.
 LONGEST = (
-    _BOX,
+    _LOCAL_STACK,
     "tests/faults/test_faults.py",
     "tests/contract/test_schemathesis.py",
     "tests/quadpatch/test_repair_by_fitting.py",
@@ -16,11 +16,11 @@ LONGEST = (
 )
 
 
-class SharingScheduling(LoadFileScheduling):  # type: ignore[misc]  # xdist carries no types
-    """Like `--dist loadfile`, with one box: each process would start one of its own, with its workers."""
+class SharingScheduling(LoadFileScheduling):
+    """Like `--dist loadfile`, with one local stack: each process would start one of its own, with its workers."""
 
     def _split_scope(self, nodeid: str) -> str:
-        return _BOX if nodeid.startswith(_BOX) else str(super()._split_scope(nodeid))
+        return _LOCAL_STACK if nodeid.startswith(_LOCAL_STACK) else str(super()._split_scope(nodeid))
 
     def _assign_work_unit(self, node: Any) -> None:
         self.workqueue.move_to_end(min(self.workqueue, key=_place), last=False)

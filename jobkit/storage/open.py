@@ -30,7 +30,7 @@ def open_store(url: str, scratch: Path | None = None) -> ObjectStore:
     if parts.scheme == "file" and parts.netloc in ("", "localhost"):
         return LocalStore(Path(unquote(parts.path)))
     if parts.scheme == "s3" and _BUCKET.match(parts.netloc) and not parts.query:
-        # A box with local files needs no S3 client in memory.
+        # A process with local files needs no S3 client in memory.
         from jobkit.storage.s3 import S3Store  # noqa: PLC0415
 
         return S3Store(parts.netloc, parts.path.strip("/"), scratch or Path(tempfile.gettempdir(), "quadpatch-scratch"))

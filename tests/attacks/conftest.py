@@ -20,7 +20,7 @@ def shared_service(
     tmp_path_factory: pytest.TempPathFactory,
     valkey_url: str,
 ) -> Iterator[RunningService]:
-    """A box's service without keys, started once, for tests that need none of its data and leave it running."""
+    """A service without keys, started once, for tests that need none of its data and leave it running."""
     folder = tmp_path_factory.mktemp("shared-service")
     with new_places() as places:
         settings = Settings(

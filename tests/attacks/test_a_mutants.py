@@ -1,10 +1,13 @@
-"""Letters A and D: mutated files get a code or a mesh, and leave the box as it was. `make mutants` sends hundreds."""
+"""Letters A and D: mutated files get a code or a mesh; the local stack stays as it was.
+
+`make mutants` sends hundreds of them.
+"""
 
 from pathlib import Path
 
 import psutil
 
-from onebox.demo import running_box
+from onebox.demo import running_stack
 from tests.mutants.__main__ import memory_faults
 from tests.mutants.bases import FORMATS, made, real
 from tests.mutants.campaign import Mutant, judged, left_behind, mutant, peaks, send_all
@@ -18,9 +21,9 @@ def test_mutated_files_get_a_code_or_a_mesh_and_nothing_is_lost(tmp_path: Path) 
     files = made()
     mutants = [mutant(files, SEED, number) for number in range(COUNT)]
     assert {one.kind for one in mutants} == set(MUTATIONS)
-    with running_box(tmp_path / "box") as url:
-        (box,) = [p for p in psutil.Process().children() if str(tmp_path / "box") in p.cmdline()]
-        before = peaks(box)
+    with running_stack(tmp_path / "stack") as url:
+        (local_stack,) = [p for p in psutil.Process().children() if str(tmp_path / "stack") in p.cmdline()]
+        before = peaks(local_stack)
         assert {name for name, _ in before.mb} >= {
             "onebox",
             "service",
@@ -29,8 +32,8 @@ def test_mutated_files_get_a_code_or_a_mesh_and_nothing_is_lost(tmp_path: Path) 
             "worker.engine.fork_server",
         }
         outcomes = send_all(url, mutants)
-        wait_until(lambda: not left_behind(tmp_path / "box"))
-        assert memory_faults(before, peaks(box)) == []
+        wait_until(lambda: not left_behind(tmp_path / "stack"))
+        assert memory_faults(before, peaks(local_stack)) == []
     assert [outcome for outcome in outcomes if outcome.fault] == []
     assert len({outcome.answer for outcome in outcomes}) > 1
 

@@ -84,21 +84,21 @@ def test_any_text_parses_or_names_nothing(text: str) -> None:
         assert found is None or (set(found.host).isdisjoint("/@?#{}[] \\") and found.port <= 65_535)
 
 
-def test_a_box_without_keys_answers_to_its_own_names_alone(shared_service: RunningService) -> None:
-    open_box = shared_service.url
+def test_a_service_without_keys_answers_to_its_own_names_alone(shared_service: RunningService) -> None:
+    keyless_url = shared_service.url
     for host in ("127.0.0.1", "localhost:1", "[::1]:8000"):
-        assert exchange(open_box, f"GET /v1/jobs HTTP/1.1\r\nHost: {host}\r\n\r\n".encode())[0] == 200
+        assert exchange(keyless_url, f"GET /v1/jobs HTTP/1.1\r\nHost: {host}\r\n\r\n".encode())[0] == 200
     for host in ("attacker.example", "127.0.0.1.attacker.example", "localhost.", "127.0.0.2"):
-        assert exchange(open_box, f"GET /v1/jobs HTTP/1.1\r\nHost: {host}\r\n\r\n".encode())[0] == 403
+        assert exchange(keyless_url, f"GET /v1/jobs HTTP/1.1\r\nHost: {host}\r\n\r\n".encode())[0] == 403
     for host in DOES_NOT_PARSE:
-        assert exchange(open_box, f"GET /v1/jobs HTTP/1.1\r\nHost: {host}\r\n\r\n".encode("latin-1"))[0] == 400
+        assert exchange(keyless_url, f"GET /v1/jobs HTTP/1.1\r\nHost: {host}\r\n\r\n".encode("latin-1"))[0] == 400
     for request, status in (
         (b"GET /v1/jobs HTTP/1.1\r\n\r\n", 400),
         (b"GET /v1/jobs HTTP/1.1\r\nHost: 127.0.0.1\r\nHost: 127.0.0.1\r\n\r\n", 400),
         (b"GET /v1/jobs HTTP/1.1\r\nHost: 127.0.0.1\r\nHost: attacker.example\r\n\r\n", 400),
         (b"GET /v1/jobs HTTP/1.0\r\n\r\n", 403),
     ):
-        assert exchange(open_box, request)[0] == status, request
+        assert exchange(keyless_url, request)[0] == status, request
 
 
 @pytest.mark.parametrize("host", ["x/healthz?", "x/healthz#", "x/metrics?", "a{b", "[", "scanner.example/"])

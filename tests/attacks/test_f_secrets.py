@@ -12,11 +12,11 @@ from pydantic import SecretStr
 
 from jobkit import settings as settings_module
 from jobkit.settings import PREFIX, Settings
-from onebox.box import Box, programs
+from onebox.local_stack import LocalStack, programs
 from tests.attacks.manifests import APPLIED, WORKLOADS, Manifest
 
 ROOT = Path(__file__).resolve().parents[2]
-# Role by the folder of its code, and its name in the manifests and in one box.
+# Role by the folder of its code, and its name in the manifests and in a local stack.
 ROLES = {"service": "quadpatch-api", "dispatcher": "quadpatch-dispatcher", "worker": "quadpatch-worker"}
 COMPOSE: dict[str, Any] = yaml.safe_load((ROOT / "docker-compose.yml").read_text("utf-8"))["services"]
 IN_COMPOSE = {"service": "api", "dispatcher": "dispatcher", "worker": "worker"}
@@ -118,7 +118,9 @@ def test_a_container_of_compose_gets_the_secrets_that_its_code_reads_and_no_othe
 @pytest.mark.parametrize(
     ("role", "program"), [("dispatcher", "dispatcher"), ("worker", "worker-1"), ("service", "api")]
 )
-def test_a_process_of_one_box_is_denied_what_its_code_does_not_read(tmp_path: Path, role: str, program: str) -> None:
-    (found,) = (p for p in programs(Box(tmp_path, "127.0.0.1", 8000, 1)) if p.name == program)
+def test_a_process_of_a_local_stack_gets_no_secret_that_its_code_does_not_read(
+    tmp_path: Path, role: str, program: str
+) -> None:
+    (found,) = (p for p in programs(LocalStack(tmp_path, "127.0.0.1", 8000, 1)) if p.name == program)
     passed = {name for name in SECRET_SETTINGS if not name.startswith(found.withheld or ("-",))}
     assert passed == needed(role, SECRET_SETTINGS)

@@ -67,7 +67,7 @@ def test_the_wait_for_a_cancel_is_that_of_the_code() -> None:
     assert f"{CANCEL_PATIENCE_S} s" in life
 
 
-def test_a_box_that_is_stopped_while_it_starts_does_not_say_that_it_is_ready(tmp_path: Path) -> None:
+def test_a_local_stack_that_is_stopped_while_it_starts_does_not_say_that_it_is_ready(tmp_path: Path) -> None:
     command = [sys.executable, "-m", "onebox", "serve", "--data", str(tmp_path / "var"), "--port", "0"]
     said = tmp_path / "said"
     environment = {k: v for k, v in os.environ.items() if not k.startswith("QUADPATCH_")}

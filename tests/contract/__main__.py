@@ -1,4 +1,4 @@
-"""`python -m tests.contract`, or `make contract`: schemathesis with many examples against one box.
+"""`python -m tests.contract`, or `make contract`: schemathesis with many examples against a local stack.
 
 A real Valkey, dispatcher, API and workers run meanwhile. The exit code is 1 where a check failed, fewer requests were
 made than asked for, a process was lost, or `GET /v1/jobs` does not answer afterwards. The dispatcher looks up the
@@ -17,7 +17,7 @@ import psutil
 
 from client.sdk import Client
 from jobkit.schema import JobSpec
-from onebox.demo import running_box
+from onebox.demo import running_stack
 from tests.contract.running import HEADERS, KEY, Known, command, run, write_configuration
 from tests.quadpatch.shapes import open_grid, punched, write_ply
 from tests.servers import free_port
@@ -53,9 +53,9 @@ def main(arguments: list[str]) -> int:
 
 
 def _campaign(chosen: argparse.Namespace, folder: Path) -> int:
-    with running_box(folder / "box") as url:
+    with running_stack(folder / "stack") as url:
         configuration = write_configuration(folder / "schemathesis.toml", furnish(url, folder))
-        before, box = answered(url), processes(folder)
+        before, pids = answered(url), processes(folder)
         code, said = run(command(url, configuration, chosen.examples, chosen.seed), folder, None)
         n_answered = answered(url) - before
         jobs = httpx.get(f"{url}/v1/jobs", headers=HEADERS, timeout=GUARD_S)
@@ -63,7 +63,7 @@ def _campaign(chosen: argparse.Namespace, folder: Path) -> int:
             "schemathesis found failures": code != 0,
             f"{n_answered} requests, fewer than {chosen.requests}": n_answered < chosen.requests,
             f"GET /v1/jobs answers {jobs.status_code}": not jobs.is_success,
-            "a process was lost": processes(folder) != box,
+            "a process was lost": processes(folder) != pids,
         }
     sys.stdout.write(said)
     sys.stdout.write(f"\n{n_answered} requests answered; GET /v1/jobs: {jobs.status_code}\n")
@@ -92,9 +92,9 @@ def answered(url: str) -> int:
 
 
 def processes(folder: Path) -> set[int]:
-    """Return the ids of the box's own processes; engines come and go, and do not count."""
-    (box,) = [p for p in psutil.Process().children() if str(folder / "box") in p.cmdline()]
-    return {child.pid for child in box.children()}
+    """Return the ids of the local stack's own processes; engines come and go, and do not count."""
+    (local_stack,) = [p for p in psutil.Process().children() if str(folder / "stack") in p.cmdline()]
+    return {child.pid for child in local_stack.children()}
 
 
 if __name__ == "__main__":

@@ -242,7 +242,7 @@ def _s3(root: Path, host: str) -> Iterator[dict[str, str]]:
 
 
 def _valkey(folder: Path, host: str) -> tuple[str, list[str]]:
-    """Return the address and the command of a Valkey with its log on, as one box runs it."""
+    """Return the address and the command of a Valkey with its log on, as a local stack runs it."""
     folder.mkdir()
     port = free_port()
     options = {

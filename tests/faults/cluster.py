@@ -67,7 +67,7 @@ class Setup:
     environment : mapping
         Settings of all processes.
     shares_data : bool
-        Whether all have one data folder, as on one box.
+        Whether all have one data folder, as in a local stack.
     """
 
     root: Path

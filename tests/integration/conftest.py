@@ -1,4 +1,4 @@
-"""One real box per test process, and meshes built in code."""
+"""One real local stack for each test process, and meshes built in code."""
 
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, ExitStack
@@ -10,7 +10,7 @@ import psutil
 import pytest
 
 from client.sdk import Client
-from onebox.demo import running_box
+from onebox.demo import running_stack
 from quadpatch.types import Triangles, Vertices
 
 # Short leases, so that the loss of a worker shows within seconds.
@@ -23,8 +23,8 @@ FAST = {
 
 
 @dataclass(frozen=True)
-class RunningBox:
-    """A box, its folder and its processes."""
+class RunningStack:
+    """A local stack, its folder and its processes."""
 
     url: str
     data: Path
@@ -59,23 +59,23 @@ class RunningBox:
 
 
 @pytest.fixture(scope="session")
-def box(
+def local_stack(
     tmp_path_factory: pytest.TempPathFactory, new_places: Callable[[], AbstractContextManager[dict[str, str]]]
-) -> Iterator[RunningBox]:
-    data = tmp_path_factory.mktemp("box")
-    with ExitStack() as stack:
-        places = {f"QUADPATCH_{name.upper()}": url for name, url in stack.enter_context(new_places()).items()}
-        # For the box alone: other tests of this process read the environment, too.
+) -> Iterator[RunningStack]:
+    data = tmp_path_factory.mktemp("stack")
+    with ExitStack() as exits:
+        places = {f"QUADPATCH_{name.upper()}": url for name, url in exits.enter_context(new_places()).items()}
+        # For the local stack alone: other tests of this process read the environment, too.
         with pytest.MonkeyPatch.context() as environment:
             for name, value in {**FAST, **places}.items():
                 environment.setenv(name, value)
-            url = stack.enter_context(running_box(data))
-        yield RunningBox(url, data)
+            url = exits.enter_context(running_stack(data))
+        yield RunningStack(url, data)
 
 
 @pytest.fixture
-def client(box: RunningBox) -> Iterator[Client]:
-    with Client(box.url) as client:
+def client(local_stack: RunningStack) -> Iterator[Client]:
+    with Client(local_stack.url) as client:
         yield client
 
 

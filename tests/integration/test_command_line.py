@@ -1,4 +1,4 @@
-"""The client's command line against a real box."""
+"""The client's command line against a real local stack."""
 
 import json
 import os
@@ -21,11 +21,13 @@ from tests.waiting import GUARD_S, wait_until
 
 
 @pytest.fixture
-def run(box: Any) -> Callable[..., Result]:
+def run(local_stack: Any) -> Callable[..., Result]:
     """Runs a command of the client and returns how it ended."""
 
     def run_client(*arguments: str | Path) -> Result:
-        return CliRunner().invoke(app, [*map(str, arguments)], env={"QUADPATCH_CLIENT_URL": box.url, "COLUMNS": "200"})
+        return CliRunner().invoke(
+            app, [*map(str, arguments)], env={"QUADPATCH_CLIENT_URL": local_stack.url, "COLUMNS": "200"}
+        )
 
     return run_client
 
@@ -145,10 +147,10 @@ def test_ctrl_c_before_the_service_has_answered_cancels_the_job_all_the_same(
     assert client.job(made[0].id).state == JobState.CANCELED
 
 
-def test_ctrl_c_cancels_the_job_and_says_so(client: Any, box: Any, large_relief: Path, tmp_path: Path) -> None:
+def test_ctrl_c_cancels_the_job_and_says_so(client: Any, local_stack: Any, large_relief: Path, tmp_path: Path) -> None:
     command = [sys.executable, "-m", "client", "repair", str(large_relief), "-o", str(tmp_path / "out.ply")]
     process = subprocess.Popen(
-        [*command, "--model", "self", "--url", box.url, "--label", "interrupted"],
+        [*command, "--model", "self", "--url", local_stack.url, "--label", "interrupted"],
         stderr=subprocess.PIPE,
         text=True,
         # A run in the background is started with Ctrl-C ignored, and hands that on.

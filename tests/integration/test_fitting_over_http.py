@@ -38,18 +38,18 @@ def percents(url: str, job: Job) -> dict[str, list[float]]:
 
 @pytest.mark.slow
 def test_the_client_says_how_long_to_fit_a_network_to_the_mesh_and_the_job_how_far_it_is(
-    box: Any, relief_file: Callable[[str], Path], tmp_path: Path
+    local_stack: Any, relief_file: Callable[[str], Path], tmp_path: Path
 ) -> None:
     source, output, told = relief_file("float.ply"), tmp_path / "repaired.ply", tmp_path / "report.json"
     flags = ["--method", "cnn", "--model", "self", "--fit-steps", "12", "--fit-seconds", "500", "--overlap", "0"]
     arguments = ["repair", str(source), "-o", str(output), "--report", str(told), "--json", "--quiet", *flags]
-    done = CliRunner().invoke(app, arguments, env={"QUADPATCH_CLIENT_URL": box.url})
+    done = CliRunner().invoke(app, arguments, env={"QUADPATCH_CLIENT_URL": local_stack.url})
     assert done.exit_code == ExitCode.OK, done.stderr
     job = Job.model_validate_json(done.stdout)
     assert json.loads(done.stdout)["spec"]["method"]["fitting"] == FITTED["fitting"]
     assert job.state == JobState.SUCCEEDED, job.error
     assert (job.model.requested, job.model.kind) == ("self", "self_network")
-    learned = percents(box.url, job)["learn"]
+    learned = percents(local_stack.url, job)["learn"]
     assert len(set(learned)) >= 3
     assert learned == sorted(learned)
 

@@ -51,12 +51,12 @@ HOSTILE = {
 
 
 @pytest.fixture
-def steady_workers(box: Any) -> Iterator[None]:
-    """Holds the box to the processes that it had before the test."""
-    before = {worker.pid for worker in box.workers()}
+def steady_workers(local_stack: Any) -> Iterator[None]:
+    """Holds the local stack to the processes that it had before the test."""
+    before = {worker.pid for worker in local_stack.workers()}
     assert before
     yield
-    assert {worker.pid for worker in box.workers()} == before
+    assert {worker.pid for worker in local_stack.workers()} == before
 
 
 @pytest.mark.usefixtures("steady_workers")

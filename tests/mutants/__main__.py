@@ -1,4 +1,4 @@
-"""`python -m tests.mutants`, or `make mutants`: mutated files of all formats through a real box, and a table.
+"""`python -m tests.mutants`, or `make mutants`: mutated files of all formats through a real local stack, and a table.
 
 The exit code is 1 where a file got no answer with a code or a mesh, a process was lost, a file stayed in the folders of
 work, or a process grew by more than `MOST_GROWTH_MB`. Files with a fault stay in a folder.
@@ -14,7 +14,7 @@ from pathlib import Path
 import httpx
 import psutil
 
-from onebox.demo import running_box
+from onebox.demo import running_stack
 from tests.mutants.bases import made, real
 from tests.mutants.campaign import Outcome, Peaks, left_behind, mutant, peaks, send_all
 from tests.waiting import GUARD_S, wait_until
@@ -35,12 +35,12 @@ def main(arguments: list[str]) -> int:
         sys.stderr.write("no real files: there is no folder shared beside this repository\n")
     files |= made()
     mutants = [mutant(files, chosen.seed, chosen.first + i) for i in range(chosen.count)]
-    with tempfile.TemporaryDirectory(prefix="quadpatch-mutants-") as folder, running_box(Path(folder)) as url:
-        (box,) = [p for p in psutil.Process().children() if folder in p.cmdline()]
-        before = peaks(box)
+    with tempfile.TemporaryDirectory(prefix="quadpatch-mutants-") as folder, running_stack(Path(folder)) as url:
+        (local_stack,) = [p for p in psutil.Process().children() if folder in p.cmdline()]
+        before = peaks(local_stack)
         outcomes = send_all(url, mutants)
         wait_until(lambda: not left_behind(Path(folder)))
-        after = peaks(box)
+        after = peaks(local_stack)
         httpx.get(f"{url}/v1/jobs", params={"limit": 100}, timeout=GUARD_S).raise_for_status()
     faulty = [outcome for outcome in outcomes if outcome.fault]
     keep(faulty, chosen.keep)

@@ -44,7 +44,7 @@ class Outcome:
 
 @dataclass
 class Peaks:
-    """The most memory that each process of the box has had, in MiB, by name of its program and process id."""
+    """The most memory that each process of the local stack has had, in MiB, by name of its program and process id."""
 
     mb: dict[tuple[str, int], float] = field(default_factory=dict)
 

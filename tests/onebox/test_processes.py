@@ -29,7 +29,7 @@ def test_programs_start_in_order_and_each_waits_for_the_one_before(tmp_path: Pat
     supervisor.stop()
 
 
-def test_a_program_that_dies_is_started_again(tmp_path: Path) -> None:
+def test_a_program_that_ends_is_started_again(tmp_path: Path) -> None:
     starts = tmp_path / "starts"
     program = python("fragile", f"open({str(starts)!r}, 'a').write('x')")
     lines: list[str] = []
@@ -48,7 +48,7 @@ def test_a_program_that_dies_is_started_again(tmp_path: Path) -> None:
     assert lines[0] == "fragile ended (exit code 0); starting it again in 0.5 s"
 
 
-def test_a_program_that_ends_before_it_is_ready_is_an_error_with_its_last_words(tmp_path: Path) -> None:
+def test_a_program_that_ends_before_it_is_ready_is_an_error_with_the_end_of_its_log(tmp_path: Path) -> None:
     program = python("broken", "raise SystemExit('no such database')", ready=lambda: False)
     supervisor = Supervisor([program], tmp_path / "logs", say=lambda line: None)
     with pytest.raises(StartError, match=r"broken ended at once \(exit code 1\)(.|\n)*no such database"):
@@ -61,7 +61,7 @@ def test_a_missing_program_is_an_error(tmp_path: Path) -> None:
         supervisor.start()
 
 
-def test_a_program_deaf_to_sigterm_is_killed(tmp_path: Path) -> None:
+def test_a_program_that_ignores_sigterm_is_killed(tmp_path: Path) -> None:
     source = "import signal, time; signal.signal(15, signal.SIG_IGN); print('deaf', flush=True); time.sleep(999)"
     log = tmp_path / "logs" / "deaf.log"
     program = python("deaf", source, ready=lambda: "deaf" in log.read_text())

@@ -50,7 +50,7 @@ def test_a_server_that_can_not_start_says_why(tmp_path: Path) -> None:
         pass
 
 
-def test_the_server_dies_with_a_killed_parent(tmp_path: Path) -> None:
+def test_the_server_ends_with_a_killed_parent(tmp_path: Path) -> None:
     script = (
         "import sys, time; from pathlib import Path; from onebox.valkey import running_valkey\n"
         "with running_valkey(Path(sys.argv[1])): print('up', flush=True); time.sleep(999)"

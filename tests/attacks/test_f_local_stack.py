@@ -1,4 +1,4 @@
-"""Letter F: what one box keeps from other users of the machine, and its processes from each other."""
+"""Letter F: what a local stack keeps from other users of the machine, and its processes from each other."""
 
 import os
 import stat
@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from onebox import processes
-from onebox.box import Box, owned_folder, programs
+from onebox.local_stack import LocalStack, owned_folder, programs
 from onebox.processes import Program, Supervisor
 from tests.waiting import wait_until
 
@@ -56,7 +56,7 @@ def test_a_process_gets_the_secrets_that_it_needs_and_no_others(
     known = ("AWS_SECRET_ACCESS_KEY", "OTEL_EXPORTER_OTLP_HEADERS", "QUADPATCH_API_KEYS", "QUADPATCH_DATABASE_URL")
     for variable in known:
         monkeypatch.setenv(variable, "a secret of sixteen characters")
-    (program,) = (found for found in programs(Box(tmp_path, "127.0.0.1", 8000, 1)) if found.name == name)
+    (program,) = (found for found in programs(LocalStack(tmp_path, "127.0.0.1", 8000, 1)) if found.name == name)
     shown = Program("shown", (sys.executable, "-c", SHOW), withheld=program.withheld)
     supervisor = Supervisor([shown], tmp_path / "logs", lambda _: None)
     log = supervisor.log_path("shown")

@@ -1,4 +1,4 @@
-"""One box: which processes it is made of, and the folder that they share."""
+"""The local stack: which processes it is made of, and the folder that they share."""
 
 import contextlib
 import fcntl
@@ -23,7 +23,7 @@ from service.auth import check_exposure
 from worker.engine.limits import thread_environment
 
 LOCK_NAME = "box.lock"
-# Below the data folder; holds the address while the whole box is up.
+# Below the data folder; holds the address while all of its processes are up.
 ADDRESS_FILE = Path("run/address")
 _LOOPBACK = "127.0.0.1"
 # Handing back a job takes a worker some seconds.
@@ -35,8 +35,8 @@ _NOT_FOR_WORKERS = ("QUADPATCH_API_KEYS",)
 
 
 @dataclass(frozen=True)
-class Box:
-    """How one box is set up.
+class LocalStack:
+    """How a local stack is set up.
 
     Attributes
     ----------
@@ -70,29 +70,29 @@ def default_workers() -> int:
     return max(2, _n_cores() // 2)
 
 
-def programs(box: Box) -> list[Program]:
-    """Return the processes of a box, in the order in which they start."""
-    valkey = prepare_valkey(box.data / "valkey")
+def programs(stack: LocalStack) -> list[Program]:
+    """Return the processes of a local stack, in the order in which they start."""
+    valkey = prepare_valkey(stack.data / "valkey")
     shared = {
-        "QUADPATCH_DATA_DIR": str(box.data.resolve()),
+        "QUADPATCH_DATA_DIR": str(stack.data.resolve()),
         "QUADPATCH_REDIS_URL": valkey.url,
-        "QUADPATCH_HOST": box.host,
-        "QUADPATCH_PORT": str(box.port),
+        "QUADPATCH_HOST": stack.host,
+        "QUADPATCH_PORT": str(stack.port),
     }
-    n_threads = max(min(2, _n_cores()), _n_cores() // box.n_workers)
+    n_threads = max(min(2, _n_cores()), _n_cores() // stack.n_workers)
     threads = {**shared, **thread_environment(n_threads)}
-    workers = [_program(f"worker-{number}", box, threads) for number in range(1, box.n_workers + 1)]
+    workers = [_program(f"worker-{number}", stack, threads) for number in range(1, stack.n_workers + 1)]
     return [
         Program("valkey", valkey.command, ready=lambda: answers(valkey.socket_path), withheld=_NOT_FOR_VALKEY),
-        _program("dispatcher", box, shared),
-        Program("api", (sys.executable, "-m", "service"), shared, ready=ready_check(f"{box.url}/readyz")),
+        _program("dispatcher", stack, shared),
+        Program("api", (sys.executable, "-m", "service"), shared, ready=ready_check(f"{stack.url}/readyz")),
         *workers,
     ]
 
 
-def _program(name: str, box: Box, environment: dict[str, str]) -> Program:
+def _program(name: str, stack: LocalStack, environment: dict[str, str]) -> Program:
     """Describe a process that says by a file that it is ready: the dispatcher, or a worker by its number."""
-    ready_file = box.data / "run" / f"{name}.ready"
+    ready_file = stack.data / "run" / f"{name}.ready"
     ready_file.parent.mkdir(parents=True, exist_ok=True)
     ready_file.unlink(missing_ok=True)
     return Program(
@@ -108,7 +108,7 @@ def _program(name: str, box: Box, environment: dict[str, str]) -> Program:
 
 def ready_check(url: str) -> Callable[[], bool]:
     """Make a function that asks the service whether it can work."""
-    # A proxy from the environment has no business between a machine and itself.
+    # A proxy that the environment names is not for requests to this machine.
     opener = urllib.request.build_opener(urllib.request.ProxyHandler({}))
 
     def is_ready() -> bool:
@@ -158,12 +158,12 @@ def usable_port(host: str, wanted: int) -> int:
 
 @contextmanager
 def owned_folder(data: Path) -> Iterator[None]:
-    """Keep a data folder for one box alone.
+    """Keep a data folder for one local stack alone.
 
     Raises
     ------
     StartError
-        If another box uses it, or it can't be made.
+        If another local stack uses it, or it can't be made.
     """
     try:
         _make_private(data)
@@ -176,7 +176,9 @@ def owned_folder(data: Path) -> Iterator[None]:
             fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError as error:
             owner = os.read(descriptor, 32).decode(errors="replace").strip()
-            message = f"another box, process {owner}, uses {data}; stop it, or choose another folder with --data"
+            message = (
+                f"another local stack, process {owner}, uses {data}; stop it, or choose another folder with --data"
+            )
             raise StartError(message) from error
         os.truncate(descriptor, 0)
         os.write(descriptor, str(os.getpid()).encode())
@@ -184,7 +186,7 @@ def owned_folder(data: Path) -> Iterator[None]:
 
 
 def _make_private(data: Path) -> None:
-    """Make the folder for this user alone; a folder that holds anything else than a box keeps its mode."""
+    """Make the folder for this user alone; a folder that holds anything else than a local stack keeps its mode."""
     data.mkdir(mode=0o700, parents=True, exist_ok=True)
     if (data / LOCK_NAME).exists() or not any(data.iterdir()):
         data.chmod(0o700)

@@ -9,9 +9,9 @@ from pathlib import Path
 
 import pytest
 
-from onebox.box import Box, default_workers, owned_folder, programs, ready_check, usable_port
 from onebox.demo import find_scan
 from onebox.errors import StartError
+from onebox.local_stack import LocalStack, default_workers, owned_folder, programs, ready_check, usable_port
 from tests.waiting import GUARD_S
 
 
@@ -36,7 +36,7 @@ def test_an_address_of_another_machine_is_refused() -> None:
         usable_port("192.0.2.1", 0)
 
 
-def test_a_folder_belongs_to_one_box_at_a_time(tmp_path: Path) -> None:
+def test_a_folder_belongs_to_one_local_stack_at_a_time(tmp_path: Path) -> None:
     with (
         owned_folder(tmp_path / "data"),
         pytest.raises(StartError, match=f"process {os.getpid()}, uses"),
@@ -53,9 +53,9 @@ def test_a_folder_that_can_not_be_made_is_an_error(tmp_path: Path) -> None:
         pass
 
 
-def test_a_box_is_made_of_valkey_api_and_workers_that_share_a_folder(tmp_path: Path) -> None:
-    box = Box(tmp_path, "127.0.0.1", 8000, 3)
-    valkey, *rest = programs(box)
+def test_a_local_stack_is_made_of_valkey_api_and_workers_that_share_a_folder(tmp_path: Path) -> None:
+    stack = LocalStack(tmp_path, "127.0.0.1", 8000, 3)
+    valkey, *rest = programs(stack)
     assert [program.name for program in rest] == ["dispatcher", "api", "worker-1", "worker-2", "worker-3"]
     assert {program.environment["QUADPATCH_DATA_DIR"] for program in rest} == {str(tmp_path)}
     assert {program.environment["QUADPATCH_REDIS_URL"] for program in rest} == {f"unix://{tmp_path}/valkey/valkey.sock"}
@@ -67,11 +67,11 @@ def test_a_box_is_made_of_valkey_api_and_workers_that_share_a_folder(tmp_path: P
     ("host", "url"),
     [("127.0.0.1", "http://127.0.0.1:1"), ("0.0.0.0", "http://127.0.0.1:1"), ("::1", "http://[::1]:1")],
 )
-def test_a_box_is_reached_from_its_own_machine(host: str, url: str) -> None:
-    assert Box(Path(), host, 1, 1).url == url
+def test_a_local_stack_is_reached_from_its_own_machine(host: str, url: str) -> None:
+    assert LocalStack(Path(), host, 1, 1).url == url
 
 
-def test_nobody_there_is_not_ready() -> None:
+def test_a_service_that_does_not_answer_is_not_ready() -> None:
     assert not ready_check(f"http://127.0.0.1:{usable_port('127.0.0.1', 0)}/readyz")()
 
 
@@ -110,7 +110,7 @@ def test_serve_passes_on_why_a_process_ended(tmp_path: Path) -> None:
     assert "that object store is not supported" in ended.stderr
 
 
-def test_serve_shows_the_words_of_a_valkey_that_can_not_start(tmp_path: Path) -> None:
+def test_serve_shows_the_log_of_a_valkey_that_can_not_start(tmp_path: Path) -> None:
     (tmp_path / "valkey").mkdir()
     (tmp_path / "valkey" / "appendonlydir").write_text("in the way")
     broken = serve("--port", "0", "--data", tmp_path)
