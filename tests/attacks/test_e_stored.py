@@ -23,8 +23,8 @@ from jobkit.storage.base import CHUNK_BYTES, ObjectStore, StoredObject
 from jobkit.storage.digests import verified_chunks
 from service.app import create_app
 from tests.integration.conftest import ply_bytes, punched_relief
-from tests.jobkit.holdings import DAY, age_rows, finish, new_job
-from tests.jobkit.holdings import damage as damage_object
+from tests.jobkit.fixtures import DAY, age_rows, finish, new_job
+from tests.jobkit.fixtures import damage as damage_object
 from tests.worker.test_repairs import working
 from worker.jobs import inspect_mesh, run_job
 

@@ -11,7 +11,7 @@ from jobkit.models.registry import MODEL_PREFIX, Registry
 from jobkit.retention import delete_job
 from jobkit.schema import Mesh, MeshState
 from jobkit.storage.base import ObjectStore
-from tests.jobkit.holdings import AgingStore, finish, put, upload
+from tests.jobkit.fixtures import AgingStore, finish, put, upload
 
 
 @pytest.fixture

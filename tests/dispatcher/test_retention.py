@@ -13,7 +13,7 @@ from jobkit.queue import TaskQueue
 from jobkit.retention import pin_mesh
 from jobkit.settings import Settings
 from jobkit.storage.base import ObjectStore
-from tests.jobkit.holdings import DAY, AgingStore, age_rows, finish, keys_in, new_job, put, upload
+from tests.jobkit.fixtures import DAY, AgingStore, age_rows, finish, keys_in, new_job, put, upload
 
 
 def never() -> bool:

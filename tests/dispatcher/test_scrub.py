@@ -17,7 +17,7 @@ from jobkit.models.registry import MODEL_PREFIX, Registry
 from jobkit.schema import Mesh, MeshState
 from jobkit.storage.base import CHUNK_BYTES, ObjectStore, result_key
 from jobkit.storage.scrub_due import oldest_look
-from tests.jobkit.holdings import DAY, AgingStore, age_rows, damage, finish, new_job, put, upload
+from tests.jobkit.fixtures import DAY, AgingStore, age_rows, damage, finish, new_job, put, upload
 from tests.waiting import GUARD_S
 
 LIMITS = ScrubLimits(days=30, bytes_per_s=1e9)

@@ -17,7 +17,7 @@ from jobkit.schema import Job, Mesh
 from jobkit.storage.base import ObjectStore, result_key
 from jobkit.storage.open import open_store
 from jobkit.storage.removals import START_S, assure, claim, release
-from tests.jobkit.holdings import AgingStore, KilledError, age_rows, fail, finish, keys_in, put, upload
+from tests.jobkit.fixtures import AgingStore, KilledError, age_rows, fail, finish, keys_in, put, upload
 
 SOON = timedelta(minutes=1)
 
@@ -146,7 +146,7 @@ def test_a_sweep_that_is_killed_anywhere_is_done_by_the_next(
 ) -> None:
     orphans = {put(aging, b"one").key, put(aging, b"two").key, put(aging, b"three", MODEL_PREFIX).key}
     aging.wait(GRACE + SOON)
-    aging.kill_in, aging.kills_after = step, kills_after
+    aging.kill_countdown, aging.kills_after = step, kills_after
     with pytest.raises(KilledError):
         sweep(database, aging)
     age_rows(database, timedelta(hours=1))

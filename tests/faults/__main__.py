@@ -1,6 +1,6 @@
 """`python -m tests.faults`, or `make faults`: the whole suite, and its figures as a table.
 
-The exit code is 1 where a promise was broken, a limit passed, or a fault never struck.
+The exit code is 1 where a guarantee was violated, or a time limit was exceeded.
 """
 
 import argparse
@@ -10,17 +10,17 @@ import tempfile
 from pathlib import Path
 
 from tests.faults.campaign import Campaign, run_campaign
-from tests.faults.load import Plan
+from tests.faults.load import Workload
 from tests.faults.table import to_text
-from tests.faults.verdict import faults_found
+from tests.faults.violations import all_violations
 
 
 def main(arguments: list[str]) -> int:
     """Run one campaign; returns the exit code."""
     parser = argparse.ArgumentParser(prog="make faults ARGS=...", description=__doc__)
-    parser.add_argument("--seed", type=int, default=1, help="of all chance")
+    parser.add_argument("--seed", type=int, default=1, help="of the random numbers")
     parser.add_argument("--jobs", type=int, default=300, help="accepted jobs, at least")
-    parser.add_argument("--rounds", type=int, default=4, help="how often each outage strikes; kills do twice as often")
+    parser.add_argument("--rounds", type=int, default=4, help="how often each outage is injected; kills twice as often")
     parser.add_argument("--backend", choices=("sqlite-local", "postgres-s3"), default="postgres-s3")
     parser.add_argument("--loopback", action="store_true", help="make no network namespaces")
     parser.add_argument("--keep", type=Path, help="folder for logs and data, kept; default: a temporary one")
@@ -28,7 +28,7 @@ def main(arguments: list[str]) -> int:
     logging.basicConfig(level=logging.INFO, format="%(asctime)s %(message)s")
     logging.getLogger("httpx").setLevel(logging.WARNING)
     campaign = Campaign(
-        Plan(chosen.seed, chosen.jobs),
+        Workload(chosen.seed, chosen.jobs),
         chosen.backend,
         chosen.rounds,
         wants_namespaces=not chosen.loopback,
@@ -43,10 +43,10 @@ def main(arguments: list[str]) -> int:
 
 def _run(campaign: Campaign, folder: Path) -> int:
     outcome = run_campaign(campaign, folder)
-    found = faults_found(outcome)
-    sys.stdout.write(f"\n{campaign.backend}, seed {campaign.plan.seed}\n{to_text(outcome)}\n")
-    sys.stdout.write("".join(f"NOT KEPT: {line}\n" for line in found) or "all promises kept\n")
-    return 1 if found else 0
+    violations = all_violations(outcome)
+    sys.stdout.write(f"\n{campaign.backend}, seed {campaign.workload.seed}\n{to_text(outcome)}\n")
+    sys.stdout.write("".join(f"VIOLATION: {line}\n" for line in violations) or "no violations\n")
+    return 1 if violations else 0
 
 
 if __name__ == "__main__":

@@ -32,12 +32,12 @@ _S3_VARIABLES = {"AWS_ACCESS_KEY_ID": "test", "AWS_SECRET_ACCESS_KEY": "test", "
 
 
 class DatabaseServer(Protocol):
-    """A database that can be taken away."""
+    """A database that can be made unavailable."""
 
     url: str
 
-    def take_away(self, seconds: float) -> str:
-        """Let nobody write for so long; return what shows it."""
+    def make_unavailable(self, seconds: float) -> str:
+        """Prevent all writes for so long; return the evidence."""
         ...
 
 
@@ -46,11 +46,11 @@ class StoreServer(Protocol):
 
     url: str
 
-    def refuse(self) -> None:
+    def refuse_writes(self) -> None:
         """Take no more writes."""
         ...
 
-    def accept(self) -> None:
+    def accept_writes(self) -> None:
         """Take writes again."""
         ...
 
@@ -68,8 +68,7 @@ class Backend:
         Commands to be run beside the processes of the cluster.
     data : Disk
         For the data folders of processes.
-    full : tuple of Disk
-        Those that can be filled up.
+    fillable_disks : tuple of Disk
     environment : dict
         Variables that lead to all of it.
     shares_data : bool
@@ -81,7 +80,7 @@ class Backend:
     redis_url: str
     servers: dict[str, Sequence[str]]
     data: Disk
-    full: tuple[Disk, ...]
+    fillable_disks: tuple[Disk, ...]
     environment: dict[str, str]
     shares_data: bool
 
@@ -90,7 +89,7 @@ class Backend:
         with pytest.MonkeyPatch.context() as environment:
             for name, value in self.environment.items():
                 environment.setenv(name, value)
-            return open_store(self.store_server.url, self.data.folder / "ledger")
+            return open_store(self.store_server.url, self.data.folder / "scratch")
 
     def redis(self) -> Redis:
         """Connect to the queue."""
@@ -98,20 +97,20 @@ class Backend:
 
 
 class SqliteFile:
-    """A file; taken away by a writer that does not come to an end."""
+    """A file; made unavailable by a long write transaction."""
 
     def __init__(self, path: Path) -> None:
         self._path = path
         self.url = f"sqlite:///{path}"
 
-    def take_away(self, seconds: float) -> str:
+    def make_unavailable(self, seconds: float) -> str:
         connection = sqlite3.connect(self._path, timeout=60, isolation_level=None)
         try:
             connection.execute("BEGIN IMMEDIATE")
-            before = _n_events(connection)
+            started_before = _n_events(connection)
             time.sleep(seconds)
-            # A reader sees what has been committed, so this is what nobody could add to.
-            assert _n_events(connection) == before
+            # A reader sees what has been committed: no other process could add an event.
+            assert _n_events(connection) == started_before
             connection.execute("ROLLBACK")
         finally:
             connection.close()
@@ -123,22 +122,23 @@ def _n_events(connection: sqlite3.Connection) -> int:
 
 
 class PostgresDatabase:
-    """A server that is stopped, in turn in order and as in a crash, and started again."""
+    """A server that is stopped, alternately in order and as in a crash, and started again."""
 
     def __init__(self, server: PostgresServer) -> None:
         self._server = server
-        self._ways = itertools.cycle((signal.SIGINT, signal.SIGQUIT))
+        self._signals = itertools.cycle((signal.SIGINT, signal.SIGQUIT))
         self.url = server.url("faults")
 
-    def take_away(self, seconds: float) -> str:
-        before = self._started_at()
-        how = next(self._ways)
-        self._server.stop(how)
+    def make_unavailable(self, seconds: float) -> str:
+        started_before = self._started_at()
+        signal_number = next(self._signals)
+        self._server.stop(signal_number)
         time.sleep(seconds)
         self._server.start()
-        after = self._started_at()
-        assert after != before
-        return f"server of {before:%H:%M:%S} got {how.name}, away {seconds:.1f} s, started again {after:%H:%M:%S}"
+        started_after = self._started_at()
+        assert started_after != started_before
+        times = f"server of {started_before:%H:%M:%S}", f"started again {started_after:%H:%M:%S}"
+        return f"{times[0]} got {signal_number.name}, away {seconds:.1f} s, {times[1]}"
 
     def _started_at(self) -> datetime:
         with psycopg.connect(self.url.replace("+psycopg", ""), connect_timeout=5) as connection:
@@ -155,10 +155,10 @@ class LocalObjects:
         self._disk = disk
         self.url = f"file://{disk.folder}"
 
-    def refuse(self) -> None:
+    def refuse_writes(self) -> None:
         self._disk.make_read_only()
 
-    def accept(self) -> None:
+    def accept_writes(self) -> None:
         self._disk.make_writable()
 
 
@@ -170,10 +170,10 @@ class S3Objects:
     def __init__(self, refusal: Path) -> None:
         self._refusal = refusal
 
-    def refuse(self) -> None:
+    def refuse_writes(self) -> None:
         self._refusal.touch()
 
-    def accept(self) -> None:
+    def accept_writes(self) -> None:
         self._refusal.unlink()
 
 
@@ -188,19 +188,19 @@ def open_backend(name: BackendName, root: Path, network: Network) -> Iterator[Ba
         store: StoreServer
         if name == "sqlite-local":
             database, store = SqliteFile(data.folder / "quadpatch.db"), LocalObjects(objects)
-            full: tuple[Disk, ...] = (data, objects)
+            fillable_disks: tuple[Disk, ...] = (data, objects)
         else:
             database = PostgresDatabase(stack.enter_context(_postgres(network.server_host)))
             environment |= stack.enter_context(_s3(root, network.server_host))
-            store, full = S3Objects(root / "s3-refuses"), (data,)
+            store, fillable_disks = S3Objects(root / "s3-refuses"), (data,)
         environment |= {"QUADPATCH_DATABASE_URL": database.url, "QUADPATCH_OBJECT_STORE_URL": store.url}
         is_local = name == "sqlite-local"
-        yield Backend(database, store, valkey_url, {"valkey": valkey}, data, full, environment, is_local)
+        yield Backend(database, store, valkey_url, {"valkey": valkey}, data, fillable_disks, environment, is_local)
 
 
 @contextmanager
 def _postgres(host: str) -> Iterator[PostgresServer]:
-    # Whoever is told of a commit relies on it, also when the server is killed; the machine itself never is.
+    # A client relies on a confirmed commit, also when the server is killed; the machine itself is never stopped.
     server = PostgresServer(host, synchronous_commit="on")
     try:
         server.start()
@@ -229,7 +229,7 @@ def _s3(root: Path, host: str) -> Iterator[dict[str, str]]:
         def has_bucket() -> bool:
             try:
                 client.create_bucket(Bucket=_BUCKET)
-            except Exception:  # noqa: BLE001 - whatever a server answers that is just coming up
+            except Exception:  # noqa: BLE001 - a server that is starting may fail in any way
                 return False
             return True
 

@@ -1,4 +1,4 @@
-"""One campaign: a cluster under load and under faults, and the account of what it did."""
+"""One campaign: a cluster under load and under faults, and the check of what it left."""
 
 import logging
 import random
@@ -15,12 +15,12 @@ from jobkit.database.session import Database
 from jobkit.errors import DatabaseUnavailableError
 from tests.faults.backends import Backend, BackendName, open_backend
 from tests.faults.cluster import APIS, WORKERS, Cluster, Setup
-from tests.faults.faults import KILLS, OUTAGES, Fault, Field, cut_off
-from tests.faults.ledger import Account, cancels_s, recoveries_s, take_account
-from tests.faults.load import Book, Load, Plan, Station
+from tests.faults.consistency import ConsistencyReport, cancels_s, check_consistency, recoveries_s
+from tests.faults.faults import KILLS, OUTAGES, Fault, Testbed, cut_off
+from tests.faults.injections import Injection, InjectionLog
+from tests.faults.load import ExpectedState, Load, Station, Workload
 from tests.faults.network import open_network
 from tests.faults.probes import Probe
-from tests.faults.strikes import Record, Strike
 from tests.waiting import GUARD_S
 
 _TRIES = 20
@@ -31,28 +31,28 @@ _log = logging.getLogger("faults")
 
 @dataclass(frozen=True)
 class Campaign:
-    """What is to be done.
+    """How long and with what a cluster is tested.
 
     Attributes
     ----------
-    plan : Plan
+    workload : Workload
     backend : "sqlite-local" or "postgres-s3"
     rounds : int
-        How often each outage strikes.
+        How often each outage is injected.
     pause_s : (float, float)
         Shortest and longest pause between two kills, and between two outages.
     settings : dict
         Variables for all processes; by default they run as in a deployment.
     kills, outages : sequence of Fault
-        Both strike at the same time. Where there are namespaces, links go down, too.
+        Both are injected at the same time. Where there are namespaces, links go down, too.
     wants_namespaces : bool
     lease_s : float
         Of attempts.
     kills_per_outage : int
-        How often each kill strikes for every time that an outage does.
+        How often each kill is injected for each outage.
     """
 
-    plan: Plan
+    workload: Workload
     backend: BackendName
     rounds: int
     pause_s: tuple[float, float] = (1.0, 5.0)
@@ -66,21 +66,21 @@ class Campaign:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What came of it."""
+    """The result of a campaign."""
 
-    account: Account
-    record: Record
-    book: Book
+    consistency: ConsistencyReport
+    injection_log: InjectionLog
+    expected: ExpectedState
     recoveries_s: dict[str, list[float]]
     cancels_s: dict[str, list[float]]
     network: str
     seconds: float
-    logged: dict[str, int]
+    phrase_counts: dict[str, int]
 
 
 def run_campaign(campaign: Campaign, root: Path) -> Outcome:
     """Run a campaign in an empty folder."""
-    began = time.monotonic()
+    started = time.monotonic()
     with ExitStack() as stack:
         network = stack.enter_context(open_network(campaign.wants_namespaces))
         backend = stack.enter_context(open_backend(campaign.backend, root, network))
@@ -89,77 +89,90 @@ def run_campaign(campaign: Campaign, root: Path) -> Outcome:
         cluster = stack.enter_context(_running(Cluster(setup, backend.servers)))
         database = stack.enter_context(closing(Database(backend.database.url)))
         urls = {name: cluster.url(name) for name in APIS}
-        book, record = Book(), Record()
-        station = stack.enter_context(closing(Station(list(urls.values()), book)))
-        field = Field(
+        expected, injection_log = ExpectedState(), InjectionLog()
+        station = stack.enter_context(closing(Station(list(urls.values()), expected)))
+        testbed = Testbed(
             cluster,
             backend,
             database,
             station,
             Probe(urls),
-            record,
+            injection_log,
             campaign.lease_s,
-            random.Random(campaign.plan.seed),
+            random.Random(campaign.workload.seed),
         )
         outages = [*campaign.outages, *([cut_off] if network.can_cut else [])]
-        _fight(campaign, field, list(urls.values()), book, outages)
-        _wait_until_quiet(cluster, backend)
-        account = take_account(database, backend.open_store(), book, cluster.data_folders(), _engines(cluster))
-        recoveries, cancels = recoveries_s(database, record.strikes), cancels_s(database, book)
-        logged = _logged(root / "logs", ("may write no more", "could not connect", "lead could not be"))
-    return Outcome(account, record, book, recoveries, cancels, network.words, time.monotonic() - began, logged)
+        _run_load_and_faults(campaign, testbed, list(urls.values()), expected, outages)
+        _wait_until_idle(cluster, backend)
+        consistency = check_consistency(
+            database, backend.open_store(), expected, cluster.data_folders(), _engines(cluster)
+        )
+        recoveries, cancels = recoveries_s(database, injection_log.injections), cancels_s(database, expected)
+        phrase_counts = _count_phrases(root / "logs", ("may write no more", "could not connect", "lead could not be"))
+    return Outcome(
+        consistency,
+        injection_log,
+        expected,
+        recoveries,
+        cancels,
+        network.description,
+        time.monotonic() - started,
+        phrase_counts,
+    )
 
 
-def _fight(campaign: Campaign, field: Field, urls: list[str], book: Book, outages: Sequence[Fault]) -> None:
-    """Let stations work while two rows of faults strike, one in a thread of its own."""
-    kills_over = threading.Event()
+def _run_load_and_faults(
+    campaign: Campaign, testbed: Testbed, urls: list[str], expected: ExpectedState, outages: Sequence[Fault]
+) -> None:
+    """Let stations work while kills and outages are injected, the kills from a thread of their own."""
+    kills_done = threading.Event()
     failures: list[BaseException] = []
 
     def kill() -> None:
         try:
-            # Each is over sooner than an outage, so there is time for more of them.
-            _strike_all(campaign, field, campaign.kills, campaign.kills_per_outage)
-        except BaseException as error:  # noqa: BLE001 - raised again below, in the thread that everybody sees
+            # A kill takes less time than an outage, so there are more of them.
+            _inject_all(campaign, testbed, campaign.kills, campaign.kills_per_outage)
+        except BaseException as error:  # noqa: BLE001 - raised again below, in the main thread
             failures.append(error)
         finally:
-            kills_over.set()
+            kills_done.set()
 
-    outages_over = threading.Event()
-    load = Load(campaign.plan, urls, book, lambda: not (kills_over.is_set() and outages_over.is_set()))
+    outages_done = threading.Event()
+    load = Load(campaign.workload, urls, expected, lambda: not (kills_done.is_set() and outages_done.is_set()))
     thread = threading.Thread(target=kill, name="kills")
     thread.start()
     try:
-        # In this thread: the database's server is tied to the one that starts it.
-        _strike_all(campaign, field, outages)
+        # In this thread: the server of the database ends with the thread that starts it.
+        _inject_all(campaign, testbed, outages)
     finally:
-        outages_over.set()
+        outages_done.set()
         thread.join()
         load.finish()
     if failures:
         raise failures[0]
 
 
-def _strike_all(campaign: Campaign, field: Field, faults: Sequence[Fault], times: int = 1) -> None:
-    rng = random.Random(f"{campaign.plan.seed}-{faults[0].__name__}")
-    row = [fault for fault in faults for _ in range(campaign.rounds * times)]
-    rng.shuffle(row)
-    for fault in row:
+def _inject_all(campaign: Campaign, testbed: Testbed, faults: Sequence[Fault], times: int = 1) -> None:
+    rng = random.Random(f"{campaign.workload.seed}-{faults[0].__name__}")
+    sequence = [fault for fault in faults for _ in range(campaign.rounds * times)]
+    rng.shuffle(sequence)
+    for fault in sequence:
         time.sleep(rng.uniform(*campaign.pause_s))
-        strike = _strike(fault, field)
-        if strike is None:
-            field.record.note_missed(fault.__name__)
+        injection = _inject(fault, testbed)
+        if injection is None:
+            testbed.injection_log.note_skipped(fault.__name__)
         else:
-            field.record.note(strike)
-            _log.info("%s: %s", strike.fault, strike.evidence)
+            testbed.injection_log.note(injection)
+            _log.info("%s: %s", injection.fault, injection.evidence)
 
 
-def _strike(fault: Fault, field: Field) -> Strike | None:
-    """Let a fault strike; where its victim, or the database, is gone at that moment it tries once more."""
+def _inject(fault: Fault, testbed: Testbed) -> Injection | None:
+    """Inject a fault; where its target or the database is missing at that moment, try again."""
     for _ in range(_TRIES):
         with suppress(DatabaseUnavailableError, psutil.NoSuchProcess):
-            strike = fault(field)
-            if strike is not None:
-                return strike
+            injection = fault(testbed)
+            if injection is not None:
+                return injection
         time.sleep(_LOOK_S)
     return None
 
@@ -173,8 +186,8 @@ def _running(cluster: Cluster) -> Iterator[Cluster]:
         cluster.stop()
 
 
-def _wait_until_quiet(cluster: Cluster, backend: Backend, timeout_s: float = GUARD_S) -> None:
-    """Wait until all workers are back and idle; what is not ended or swept up by then is left over."""
+def _wait_until_idle(cluster: Cluster, backend: Backend, timeout_s: float = GUARD_S) -> None:
+    """Wait until all workers are back and idle; processes and folders that remain after that are orphans."""
     deadline = time.monotonic() + timeout_s
     while time.monotonic() < deadline:
         folders = [path for folder in cluster.data_folders() for path in folder.glob("work/*/request-*")]
@@ -189,6 +202,6 @@ def _engines(cluster: Cluster) -> list[psutil.Process]:
     return [process for children in below for process in children if process not in children[:1]]
 
 
-def _logged(folder: Path, words: Sequence[str]) -> dict[str, int]:
+def _count_phrases(folder: Path, phrases: Sequence[str]) -> dict[str, int]:
     text = "".join(path.read_text(errors="replace") for path in sorted(folder.glob("*.log")))
-    return {phrase: text.count(phrase) for phrase in words}
+    return {phrase: text.count(phrase) for phrase in phrases}

@@ -1,4 +1,4 @@
-"""Two APIs, two dispatchers and three workers as real processes, looked after as a supervisor would."""
+"""Two APIs, two dispatchers and three workers as real processes under a supervisor."""
 
 import os
 import signal
@@ -29,13 +29,13 @@ VALKEY = "valkey"
 _MODULES = {"api": "service", "dispatcher": "dispatcher", "worker": "worker"}
 _TICK_S = 0.05
 _STOP_TIMEOUT_S = 120.0
-# As those do that look after processes elsewhere.
+# Supervisors elsewhere restart a process after a similar pause.
 RESTART_S = 0.75
 
 
 @dataclass(frozen=True)
-class Death:
-    """An end of a process, and how: negative for a signal."""
+class ProcessEnd:
+    """A process that has ended; `returncode` is negative for a signal."""
 
     name: str
     pid: int
@@ -50,7 +50,7 @@ class _Process:
     log: Path
     popen: subprocess.Popen[bytes] | None = None
     start_at: float = 0.0
-    away_s: float = RESTART_S
+    restart_delay_s: float = RESTART_S
 
 
 @dataclass(frozen=True)
@@ -87,9 +87,9 @@ class Cluster:
         self._setup = setup
         self.network = setup.network
         self._processes: dict[str, _Process] = {}
-        self.deaths: list[Death] = []
+        self.process_ends: list[ProcessEnd] = []
         self._is_over = threading.Event()
-        self._thread = threading.Thread(target=self._look_after, name="supervisor", daemon=True)
+        self._thread = threading.Thread(target=self._supervise, name="supervisor", daemon=True)
         (setup.root / "logs").mkdir(parents=True)
         for name, command in servers.items():
             self._processes[name] = _Process(name, list(command), dict(os.environ), self.log(name))
@@ -117,22 +117,26 @@ class Cluster:
         """Return the name of the process with that id."""
         return next((name for name in self._processes if self.pid(name) == pid), None)
 
-    def kill(self, name: str, how: signal.Signals = signal.SIGKILL, away_s: float = RESTART_S) -> int:
-        """Send a signal; the process comes back after `away_s` seconds. Returns its id."""
+    def kill(self, name: str, how: signal.Signals = signal.SIGKILL, restart_delay_s: float = RESTART_S) -> int:
+        """Send a signal; the process comes back after `restart_delay_s` seconds. Returns its id."""
         self._wait(lambda: self.pid(name) is not None, f"{name} is down")
         process, pid = self._processes[name], self.pid(name)
         assert pid is not None
-        process.away_s = away_s
+        process.restart_delay_s = restart_delay_s
         os.kill(pid, how)
         return pid
 
-    def wait_for_death(self, pid: int, timeout_s: float = GUARD_S) -> Death:
+    def wait_for_end(self, pid: int, timeout_s: float = GUARD_S) -> ProcessEnd:
         """Return how a process ended."""
-        self._wait(lambda: any(death.pid == pid for death in self.deaths), f"process {pid} lives on", timeout_s)
-        return next(death for death in self.deaths if death.pid == pid)
+        self._wait(
+            lambda: any(process_end.pid == pid for process_end in self.process_ends),
+            f"process {pid} still runs",
+            timeout_s,
+        )
+        return next(process_end for process_end in self.process_ends if process_end.pid == pid)
 
     def children(self, name: str) -> list[psutil.Process]:
-        """Return the living processes below a worker: its fork server, and the engines of that."""
+        """Return the running processes below a worker: its fork server, and the engines of that."""
         pid = self.pid(name)
         try:
             below = [] if pid is None else psutil.Process(pid).children(recursive=True)
@@ -144,14 +148,14 @@ class Cluster:
         """Start everything and wait until it is ready."""
         self._thread.start()
         for name in (*APIS, *DISPATCHERS, *WORKERS):
-            self._wait(partial(self.is_ready, name), f"{name} never came up", name=name)
+            self._wait(partial(self.is_ready, name), f"{name} did not become ready", name=name)
 
     def is_ready(self, name: str) -> bool:
         """Tell whether an API, a dispatcher or a worker does its work."""
         if not name.startswith("api"):
             return self._ready_file(name).exists()
         try:
-            # Without certificates: to load them costs more than the answer, and this is asked twenty times a second.
+            # Without certificates: to load them costs more than the request, which is sent twenty times a second.
             return httpx.get(f"{self.url(name)}/readyz", timeout=5, trust_env=False, verify=False).is_success
         except httpx.TransportError:
             return False
@@ -161,10 +165,10 @@ class Cluster:
         self._is_over.set()
         self._thread.join()
 
-    def _look_after(self) -> None:
+    def _supervise(self) -> None:
         while not self._is_over.is_set():
             for process in self._processes.values():
-                self._tend(process)
+                self._restart_if_ended(process)
             time.sleep(_TICK_S)
         for group in (WORKERS, DISPATCHERS, APIS, tuple(self._processes)):
             running = [popen for name in group if (popen := self._processes[name].popen) is not None]
@@ -173,12 +177,12 @@ class Cluster:
             for popen in running:
                 _reap(popen)
 
-    def _tend(self, process: _Process) -> None:
+    def _restart_if_ended(self, process: _Process) -> None:
         if process.popen is not None and process.popen.poll() is not None:
-            self.deaths.append(Death(process.name, process.popen.pid, process.popen.returncode))
+            self.process_ends.append(ProcessEnd(process.name, process.popen.pid, process.popen.returncode))
             self._ready_file(process.name).unlink(missing_ok=True)
-            process.popen, process.start_at = None, time.monotonic() + process.away_s
-            process.away_s = RESTART_S
+            process.popen, process.start_at = None, time.monotonic() + process.restart_delay_s
+            process.restart_delay_s = RESTART_S
         if process.popen is None and time.monotonic() >= process.start_at:
             process.popen = self._launch(process)
 
@@ -215,10 +219,10 @@ class Cluster:
     def _ready_file(self, name: str) -> Path:
         return self._setup.root / f"{name}.ready"
 
-    def _wait(self, condition: Callable[[], object], words: str, timeout_s: float = GUARD_S, name: str = "") -> None:
+    def _wait(self, condition: Callable[[], object], message: str, timeout_s: float = GUARD_S, name: str = "") -> None:
         deadline = time.monotonic() + timeout_s
         while not condition():
-            assert time.monotonic() < deadline, f"{words}; {log_tail(self.log(name)) if name else ''}"
+            assert time.monotonic() < deadline, f"{message}; {log_tail(self.log(name)) if name else ''}"
             time.sleep(_TICK_S)
 
 

@@ -41,14 +41,14 @@ class Disk:
                     size //= 2
 
     def empty(self) -> None:
-        """Give the room back."""
+        """Free the space again."""
         (self.folder / _FILLER).unlink(missing_ok=True)
 
     def make_read_only(self) -> None:
         """Refuse writes; files that are just being written hold it up for a moment."""
         deadline = time.monotonic() + GUARD_S
         while not self._remount("ro"):
-            assert time.monotonic() < deadline, "the disk never stood still long enough to be made read-only"
+            assert time.monotonic() < deadline, "the disk could not be made read-only: it was written to all the time"
             time.sleep(0.01)
 
     def make_writable(self) -> None:

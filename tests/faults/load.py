@@ -21,15 +21,15 @@ from tests.integration.conftest import ply_bytes
 from tests.quadpatch.shapes import punched, relief, sphere
 from tests.waiting import GUARD_S
 
-CancelKind = Literal["queued", "running", "dead worker"]
+CancelKind = Literal["queued", "running", "killed worker"]
 SMOOTH: dict[str, Any] = {"method": "smooth"}
-# Learns from the mesh itself: seconds in native code, for kills to fall into.
+# Learns from the mesh itself: seconds in native code, long enough to be killed in.
 LEARN: dict[str, Any] = {"method": "dictionary", "model": "self"}
-_PATIENCE_S = 2 * GUARD_S
+_ANSWER_TIMEOUT_S = 2 * GUARD_S
 _TRY_AGAIN = frozenset({429, 502, 503, 504})
 
 
-class ImpatienceError(AssertionError):
+class NoAnswerError(AssertionError):
     """A request was not answered although it was repeated for minutes."""
 
 
@@ -44,8 +44,8 @@ class Cancel:
 
 
 @dataclass
-class Book:
-    """What clients saw; written by many threads."""
+class ExpectedState:
+    """What clients were answered, and so what must be true at the end; written by many threads."""
 
     accepted: dict[str, str] = field(default_factory=dict)
     cancels: list[Cancel] = field(default_factory=list)
@@ -60,19 +60,19 @@ class Book:
 
 
 class Station:
-    """A client that reaches the service at one of several addresses, whichever answers.
+    """A client that sends each request to one of several addresses, the next one after a failure.
 
     Parameters
     ----------
     urls : sequence of str
-    book : Book
+    expected : ExpectedState
     number : int
-        Where it begins in the row of addresses.
+        Index of the address that it begins with.
     """
 
-    def __init__(self, urls: Sequence[str], book: Book, number: int = 0) -> None:
+    def __init__(self, urls: Sequence[str], expected: ExpectedState, number: int = 0) -> None:
         self._urls = itertools.cycle([*urls[number % len(urls) :], *urls[: number % len(urls)]])
-        self._book = book
+        self._expected = expected
         self._url = next(self._urls)
         self._client = httpx.Client(
             headers={"Authorization": f"Bearer {API_KEY}"}, timeout=httpx.Timeout(60, connect=3), trust_env=False
@@ -84,19 +84,19 @@ class Station:
 
     def request(self, method: str, path: str, **options: Any) -> tuple[httpx.Response, datetime]:
         """Repeat a request until it is answered; return the answer, and when the request that brought it was sent."""
-        deadline, pause_s = time.monotonic() + _PATIENCE_S, 0.2
+        deadline, pause_s = time.monotonic() + _ANSWER_TIMEOUT_S, 0.2
         while True:
             at = utc_now()
             try:
                 answer = self._client.request(method, self._url + path, **options)
             except httpx.TransportError as error:
-                self._book.note(f"no answer ({type(error).__name__})")
+                self._expected.note(f"no answer ({type(error).__name__})")
             else:
-                self._book.note(f"{answer.status_code} {_code(answer)}".strip())
+                self._expected.note(f"{answer.status_code} {_code(answer)}".strip())
                 if answer.status_code not in _TRY_AGAIN:
                     return answer, at
             if time.monotonic() > deadline:
-                raise ImpatienceError(f"{method} {path} was not answered for {_PATIENCE_S:.0f} s")
+                raise NoAnswerError(f"{method} {path} was not answered for {_ANSWER_TIMEOUT_S:.0f} s")
             self._url = next(self._urls)
             time.sleep(pause_s)
             pause_s = min(2 * pause_s, 2.0)
@@ -110,19 +110,19 @@ class Station:
         """Ask for a repair and return the job's id."""
         spec = {"mesh_id": mesh_id, "method": method, "output": {"preview": False}}
         answer, _ = self.request("POST", "/v1/jobs", json=spec, headers={"Idempotency-Key": key})
-        # 200: the first request was heard after all, and the job has ended since.
+        # 200: an earlier try had arrived without an answer, and the job has ended since.
         assert answer.status_code in (httpx.codes.ACCEPTED, httpx.codes.OK), answer.text
         job_id = str(answer.json()["id"])
-        with self._book.lock:
-            self._book.accepted[key] = job_id
+        with self._expected.lock:
+            self._expected.accepted[key] = job_id
         return job_id
 
     def cancel(self, job_id: str, kind: CancelKind, stage: str | None) -> None:
         """Cancel a job, which may have ended by now."""
         answer, at = self.request("POST", f"/v1/jobs/{job_id}/cancel")
         if answer.is_success:
-            with self._book.lock:
-                self._book.cancels.append(Cancel(job_id, at, kind, stage))
+            with self._expected.lock:
+                self._expected.cancels.append(Cancel(job_id, at, kind, stage))
 
     def job(self, job_id: str) -> dict[str, Any]:
         """Look at a job."""
@@ -132,14 +132,14 @@ class Station:
 
 
 @dataclass(frozen=True)
-class Plan:
-    """How much work there is.
+class Workload:
+    """What the stations do.
 
     Attributes
     ----------
     seed : int
     n_jobs : int
-        At least so many.
+        Lower bound: stations go on until all faults are injected.
     n_stations : int
         Each has one job at a time.
     long_share : float
@@ -148,8 +148,8 @@ class Plan:
         Share of jobs that are cancelled.
     long_width : int
         Vertices along a side of the mesh of a long job.
-    patience_s : float
-        How long a station waits for the end of its job before it gives it up as stuck.
+    job_timeout_s : float
+        How long a station waits for the end of its job; then the job counts as stuck.
     """
 
     seed: int
@@ -158,25 +158,22 @@ class Plan:
     long_share: float = 0.3
     cancel_share: float = 0.2
     long_width: int = 80
-    patience_s: float = 2 * GUARD_S
+    job_timeout_s: float = 2 * GUARD_S
 
 
 class Load:
-    """All stations, at work until there were enough jobs and nobody wants more."""
+    """All stations, at work until there were enough jobs and `wants_more` is false."""
 
-    def __init__(self, plan: Plan, urls: Sequence[str], book: Book, wants_more: Callable[[], bool]) -> None:
-        self._plan = plan
+    def __init__(
+        self, workload: Workload, urls: Sequence[str], expected: ExpectedState, wants_more: Callable[[], bool]
+    ) -> None:
+        self._workload = workload
         self._urls = urls
-        self._book = book
+        self._expected = expected
         self._wants_more = wants_more
         self._numbers = itertools.count()
-        self._pool = ThreadPoolExecutor(plan.n_stations, thread_name_prefix="station")
-        self._futures = [self._pool.submit(self._work, number) for number in range(plan.n_stations)]
-
-    @property
-    def is_over(self) -> bool:
-        """Whether all stations have gone home."""
-        return all(future.done() for future in self._futures)
+        self._pool = ThreadPoolExecutor(workload.n_stations, thread_name_prefix="station")
+        self._futures = [self._pool.submit(self._work, number) for number in range(workload.n_stations)]
 
     def finish(self) -> None:
         """Wait for all stations; raise what one of them raised."""
@@ -185,23 +182,23 @@ class Load:
         self._pool.shutdown()
 
     def _work(self, number: int) -> None:
-        rng = random.Random(f"{self._plan.seed}-{number}")
-        station = Station(self._urls, self._book, number)
+        rng = random.Random(f"{self._workload.seed}-{number}")
+        station = Station(self._urls, self._expected, number)
         try:
-            while (job := next(self._numbers)) < self._plan.n_jobs or self._wants_more():
-                self._do_job(station, rng, f"{self._plan.seed}-{job}")
+            while (job := next(self._numbers)) < self._workload.n_jobs or self._wants_more():
+                self._do_job(station, rng, f"{self._workload.seed}-{job}")
         finally:
             station.close()
 
     def _do_job(self, station: Station, rng: random.Random, key: str) -> None:
-        is_long = rng.random() < self._plan.long_share
-        mesh_id = station.upload(make_mesh(rng.randrange(2**32), self._plan.long_width if is_long else 0))
+        is_long = rng.random() < self._workload.long_share
+        mesh_id = station.upload(make_mesh(rng.randrange(2**32), self._workload.long_width if is_long else 0))
         job_id = station.submit(mesh_id, LEARN if is_long else SMOOTH, key)
-        if rng.random() < self._plan.cancel_share:
+        if rng.random() < self._workload.cancel_share:
             self._cancel_later(station, job_id, rng)
         job = self._wait(station, job_id, lambda job: JobState(job["state"]).is_terminal)
-        with self._book.lock:
-            self._book.ended[str(job["state"])] += 1
+        with self._expected.lock:
+            self._expected.ended[str(job["state"])] += 1
 
     def _cancel_later(self, station: Station, job_id: str, rng: random.Random) -> None:
         if rng.random() < 0.3:
@@ -212,7 +209,7 @@ class Load:
         station.cancel(job_id, "running", station.job(job_id)["stage"])
 
     def _wait(self, station: Station, job_id: str, is_done: Callable[[dict[str, Any]], bool]) -> dict[str, Any]:
-        deadline = time.monotonic() + self._plan.patience_s
+        deadline = time.monotonic() + self._workload.job_timeout_s
         while not is_done(job := station.job(job_id)):
             if time.monotonic() > deadline:
                 break
@@ -221,7 +218,7 @@ class Load:
 
 
 def make_mesh(seed: int, width: int) -> bytes:
-    """Write a mesh with a hole that nobody has sent before: a sphere, or a relief of `width` squared vertices."""
+    """Write a mesh with a hole, another one for each seed: a sphere, or a relief of `width` squared vertices."""
     if width:
         mesh = punched(relief(width), (0.3, 0.2, 0.0), radius=0.25)
     else:

@@ -1,6 +1,6 @@
 """Where processes run: each in a network namespace with an address of its own, or all of them on loopback.
 
-In namespaces a process can be cut off from all others by taking its link down, which no loopback can show.
+In namespaces a process can be cut off from all others by taking its link down, which is not possible on loopback.
 """
 
 import os
@@ -18,7 +18,7 @@ class Network(Protocol):
     """How processes reach each other."""
 
     server_host: str
-    words: str
+    description: str
     can_cut: bool
 
     def host(self, name: str) -> str:
@@ -30,15 +30,15 @@ class Network(Protocol):
         ...
 
     def command(self, name: str, command: Sequence[str]) -> list[str]:
-        """Return the command that runs the named process where it belongs."""
+        """Return the command that runs the named process in its namespace."""
         ...
 
     def cut(self, name: str) -> None:
         """Take the process's link down."""
         ...
 
-    def heal(self, name: str) -> None:
-        """Bring the link back."""
+    def restore(self, name: str) -> None:
+        """Bring the link up again."""
         ...
 
     def has_link(self, name: str) -> bool:
@@ -51,7 +51,7 @@ class Loopback:
     """All processes on 127.0.0.1."""
 
     server_host: str = "127.0.0.1"
-    words: str = "plain processes on loopback, no partitions"
+    description: str = "plain processes on loopback, no partitions"
     can_cut: bool = False
     _ports: dict[str, int] = field(default_factory=dict)
 
@@ -67,7 +67,7 @@ class Loopback:
     def cut(self, name: str) -> None:
         raise NotImplementedError("loopback has no links")
 
-    def heal(self, name: str) -> None:
+    def restore(self, name: str) -> None:
         raise NotImplementedError("loopback has no links")
 
     def has_link(self, name: str) -> bool:
@@ -77,7 +77,7 @@ class Loopback:
 class Namespaces:
     """A bridge for the servers, and a namespace with a link to it for each other process."""
 
-    words = "a network namespace with an address of its own for each process"
+    description = "a network namespace with an address of its own for each process"
     can_cut = True
 
     def __init__(self) -> None:
@@ -103,7 +103,7 @@ class Namespaces:
     def cut(self, name: str) -> None:
         _ip("link", "set", f"{self._tag}h{self._index(name)}", "down")
 
-    def heal(self, name: str) -> None:
+    def restore(self, name: str) -> None:
         _ip("link", "set", f"{self._tag}h{self._index(name)}", "up")
 
     def has_link(self, name: str) -> bool:
@@ -167,5 +167,5 @@ def _can_make_namespaces() -> bool:
     return True
 
 
-def _ip(*words: str) -> None:
-    subprocess.run(["ip", *words], check=True, capture_output=True)
+def _ip(*arguments: str) -> None:
+    subprocess.run(["ip", *arguments], check=True, capture_output=True)

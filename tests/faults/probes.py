@@ -1,4 +1,4 @@
-"""Single requests without patience: they show that the service says no while something is broken."""
+"""Single requests without retries: they show that the service refuses while something is broken."""
 
 import itertools
 import time
@@ -13,7 +13,7 @@ _PAUSE_S = 0.2
 
 
 class Probe:
-    """Asks the APIs.
+    """Sends requests to the APIs.
 
     Parameters
     ----------
@@ -26,7 +26,7 @@ class Probe:
         self._numbers = itertools.count()
 
     def wait_for_refusal(self) -> str:
-        """Upload what nobody has uploaded before, again and again until that is refused; return the answer."""
+        """Upload new bytes again and again until an upload is refused; return the answer."""
         deadline = time.monotonic() + GUARD_S
         for url in itertools.cycle(self._urls.values()):
             body = f"solid {time.time_ns()} {next(self._numbers)}".encode() + b" " * (1 << 16)

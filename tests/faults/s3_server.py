@@ -1,6 +1,6 @@
 """`python -m tests.faults.s3_server HOST PORT REFUSAL`: moto's S3 in a process of its own.
 
-As long as the file REFUSAL exists every request is answered with 503, as S3 does when it wants to be left alone.
+As long as the file REFUSAL exists every request is answered with 503, as S3 does under too many requests.
 """
 
 import logging
@@ -17,7 +17,7 @@ Application = Callable[[dict[str, Any], Callable[..., Any]], Iterable[bytes]]
 
 
 def refusing(application: Application, refusal: Path) -> Application:
-    """Put a refusal in front of an application."""
+    """Wrap an application so that it refuses requests while the file exists."""
 
     def answer(environ: dict[str, Any], start_response: Callable[..., Any]) -> Iterable[bytes]:
         if not refusal.exists():

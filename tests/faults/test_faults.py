@@ -4,11 +4,11 @@ import pytest
 
 from tests.faults import faults
 from tests.faults.campaign import Campaign, Outcome, run_campaign
-from tests.faults.load import Plan
+from tests.faults.load import Workload
 from tests.faults.table import to_text
-from tests.faults.verdict import broken_promises
+from tests.faults.violations import consistency_violations
 
-# Short leases, so that what falls silent is missed within seconds.
+# Short leases, so that the loss of a worker shows within seconds.
 FAST = {"QUADPATCH_HEARTBEAT_S": "0.5", "QUADPATCH_DISPATCH_S": "0.3", "QUADPATCH_LEADER_LEASE_S": "4"}
 KILLS = (faults.kill_worker, faults.kill_engine, faults.kill_api, faults.kill_dispatcher)
 OUTAGES = (faults.kill_valkey, faults.flush_valkey, faults.stop_database, faults.refuse_store, faults.freeze_worker)
@@ -19,7 +19,7 @@ pytestmark = pytest.mark.slow
 @pytest.fixture(scope="module")
 def outcome(tmp_path_factory: pytest.TempPathFactory) -> Outcome:
     campaign = Campaign(
-        Plan(seed=5, n_jobs=25, n_stations=5, long_width=60),
+        Workload(seed=5, n_jobs=25, n_stations=5, long_width=60),
         "sqlite-local",
         rounds=1,
         pause_s=(0.2, 1.0),
@@ -27,19 +27,19 @@ def outcome(tmp_path_factory: pytest.TempPathFactory) -> Outcome:
         kills=KILLS,
         outages=OUTAGES,
         wants_namespaces=False,
-        # Longer than the database is ever away, even on a busy machine: no worker falls silent for that.
+        # Longer than the database is ever unavailable, even on a busy machine: no lease runs out for that.
         lease_s=10.0,
     )
     return run_campaign(campaign, tmp_path_factory.mktemp("faults"))
 
 
-def test_every_accepted_job_ends_once_and_nothing_stays_behind(outcome: Outcome) -> None:
-    assert broken_promises(outcome) == [], to_text(outcome)
-    assert outcome.account.n_accepted >= 25
+def test_every_accepted_job_ends_once_and_leaves_nothing_behind(outcome: Outcome) -> None:
+    assert consistency_violations(outcome) == [], to_text(outcome)
+    assert outcome.consistency.n_accepted >= 25
 
 
-def test_every_fault_has_struck(outcome: Outcome) -> None:
-    struck = {strike.fault for strike in outcome.record.strikes}
+def test_every_fault_has_been_injected(outcome: Outcome) -> None:
+    injected = {injection.fault for injection in outcome.injection_log.injections}
     expected = {
         "worker killed",
         "engine killed",
@@ -51,4 +51,4 @@ def test_every_fault_has_struck(outcome: Outcome) -> None:
         "store refuses",
         "worker frozen",
     }
-    assert struck == expected, to_text(outcome)
+    assert injected == expected, to_text(outcome)

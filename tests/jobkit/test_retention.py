@@ -21,7 +21,7 @@ from jobkit.meshes import Meshes
 from jobkit.retention import BATCH, delete_job, delete_mesh, expire_jobs, expire_meshes, pin_job, pin_mesh
 from jobkit.schema import Job, Mesh
 from jobkit.storage.base import ObjectStore
-from tests.jobkit.holdings import DAY, AgingStore, KilledError, age_rows, fail, finish, keys_in, upload
+from tests.jobkit.fixtures import DAY, AgingStore, KilledError, age_rows, fail, finish, keys_in, upload
 
 KEY = Idempotency("station", "order-17", "a" * 64)
 
@@ -213,7 +213,7 @@ def test_a_process_killed_between_row_and_files_leaves_no_row_behind(
     job = Jobs(database).create(new_job)[0]
     finish(database, store, job.id)
     killing = AgingStore(store)
-    killing.kill_in, killing.kills_after = 0, kills_after
+    killing.kill_countdown, killing.kills_after = 0, kills_after
 
     def remove() -> None:
         if is_asked_for:

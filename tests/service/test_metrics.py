@@ -21,7 +21,7 @@ from jobkit.settings import Settings
 from service.app import create_app
 from service.metrics import CACHE_S, StateCollector
 from service.services import Services
-from tests.jobkit.holdings import DAY, age_rows, damage
+from tests.jobkit.fixtures import DAY, age_rows, damage
 
 Sample = tuple[str, frozenset[tuple[str, str]]]
 

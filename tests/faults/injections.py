@@ -1,4 +1,4 @@
-"""What a fault leaves on record: when it struck, whom, and what shows that it did."""
+"""What is recorded of a fault: when it was injected, into which attempt, and the evidence of its effect."""
 
 import threading
 from dataclasses import dataclass, field
@@ -13,8 +13,8 @@ from tests.faults.cluster import WORKERS, Cluster
 
 
 @dataclass(frozen=True)
-class Victim:
-    """An attempt at work, and the worker that it runs on."""
+class Target:
+    """A running attempt, and the worker that it runs on."""
 
     job_id: str
     attempt: int
@@ -23,46 +23,46 @@ class Victim:
 
 
 @dataclass(frozen=True)
-class Strike:
-    """One fault that happened."""
+class Injection:
+    """One fault that was injected."""
 
     fault: str
     at: datetime
     evidence: str
-    victim: Victim | None = None
+    target: Target | None = None
 
 
 @dataclass
-class Record:
-    """All strikes; written by two threads."""
+class InjectionLog:
+    """All injections, and the faults that found no target; written by two threads."""
 
-    strikes: list[Strike] = field(default_factory=list)
-    missed: list[str] = field(default_factory=list)
+    injections: list[Injection] = field(default_factory=list)
+    skipped: list[str] = field(default_factory=list)
     lock: threading.Lock = field(default_factory=threading.Lock)
 
-    def note(self, strike: Strike) -> None:
-        """Keep a strike."""
+    def note(self, injection: Injection) -> None:
+        """Add an injection."""
         with self.lock:
-            self.strikes.append(strike)
+            self.injections.append(injection)
 
-    def note_missed(self, fault: str) -> None:
-        """Keep in mind that a fault found nothing to strike."""
+    def note_skipped(self, fault: str) -> None:
+        """Add a fault that found no target."""
         with self.lock:
-            self.missed.append(fault)
+            self.skipped.append(fault)
 
 
-def victims(database: Database, cluster: Cluster) -> list[Victim]:
-    """Return the attempts at work that may be struck: a job's last attempt is spared, or it would fail by rule."""
+def targets(database: Database, cluster: Cluster) -> list[Target]:
+    """Return the running attempts that may be interrupted: not the last one of a job, or the job would have to fail."""
     with database.read() as session:
         rows = session.scalars(select(JobRow).where(JobRow.state == JobState.RUNNING.value)).all()
-    found = []
+    candidates = []
     for row in rows:
         if row.worker is None or row.attempt - row.forgiven >= row.max_attempts:
             continue
         name = cluster.name_of(pid_in(row.worker))
         if name in WORKERS:
-            found.append(Victim(row.id, row.attempt, row.stage, name))
-    return found
+            candidates.append(Target(row.id, row.attempt, row.stage, name))
+    return candidates
 
 
 def leader_name(database: Database, cluster: Cluster) -> str | None:

@@ -1,4 +1,4 @@
-"""The account at the end: what the database and the store say, next to what clients were promised."""
+"""The check at the end: what the database and the store hold, compared with what clients were answered."""
 
 import hashlib
 from collections import Counter
@@ -14,36 +14,36 @@ from jobkit.database.tables import AttemptRow, EventRow, JobRow
 from jobkit.errors import ObjectNotFoundError
 from jobkit.schema import JobResult, JobState
 from jobkit.storage.base import ObjectStore, result_key
-from tests.faults.load import Book
-from tests.faults.strikes import Strike
+from tests.faults.injections import Injection
+from tests.faults.load import ExpectedState
 
 
 @dataclass(frozen=True)
-class Account:
-    """Every promise that was broken, by its job; and what it took to keep the others.
+class ConsistencyReport:
+    """Violations of what clients were answered, by job, and counts.
 
     Attributes
     ----------
     n_accepted : int
     states : Counter
         Of accepted jobs.
-    lost : list of str
-        Accepted, and not there.
-    stuck : list of str
-        There, and not ended.
-    unasked : list of str
-        There, and nobody was promised them: a repeated request made a second job.
-    twice : list of str
-        With another number of published results than their state says: one or none.
-    broken_logs : list of str
+    lost_jobs : list of str
+        Accepted, and without a row.
+    stuck_jobs : list of str
+        With a row, and not ended.
+    duplicate_jobs : list of str
+        With a row, and in no answer to a client: a repeated request made a second job.
+    wrong_result_counts : list of str
+        With another number of published results, 0 or 1, than their state implies.
+    event_gaps : list of str
         Whose events are not numbered 1, 2, 3 and so on.
     broken_files : list of str
-        Published files that are missing or have other bytes than was said.
+        Published files that are missing or have another sha256 than their row says.
     open_attempts : list of str
         Attempts of ended jobs that never ended.
-    left_processes, left_folders : list of str
-        Engines and folders of requests that nobody works in.
-    unpublished : int
+    orphan_processes, orphan_folders : list of str
+        Engines without a request, and folders of requests without an engine.
+    n_unpublished_files : int
         Files of attempts that were killed before they could publish them; the sweep removes them.
     attempts : Counter
         Ends of attempts, by outcome and code.
@@ -51,16 +51,16 @@ class Account:
 
     n_accepted: int
     states: Counter[str]
-    lost: list[str]
-    stuck: list[str]
-    unasked: list[str]
-    twice: list[str]
-    broken_logs: list[str]
+    lost_jobs: list[str]
+    stuck_jobs: list[str]
+    duplicate_jobs: list[str]
+    wrong_result_counts: list[str]
+    event_gaps: list[str]
     broken_files: list[str]
     open_attempts: list[str]
-    left_processes: list[str]
-    left_folders: list[str]
-    unpublished: int
+    orphan_processes: list[str]
+    orphan_folders: list[str]
+    n_unpublished_files: int
     attempts: Counter[str]
 
     @property
@@ -70,15 +70,19 @@ class Account:
         return {name: getattr(self, name) for name in (*names, "left_processes", "left_folders")}
 
 
-def take_account(
-    database: Database, store: ObjectStore, book: Book, folders: Iterable[Path], processes: Iterable[psutil.Process]
-) -> Account:
-    """Compare promises with rows, rows with events, and rows with files."""
+def check_consistency(
+    database: Database,
+    store: ObjectStore,
+    expected: ExpectedState,
+    folders: Iterable[Path],
+    processes: Iterable[psutil.Process],
+) -> ConsistencyReport:
+    """Compare answers with rows, rows with events, and rows with files."""
     with database.read() as session:
         jobs = {row.id: row for row in session.scalars(select(JobRow))}
         attempts = list(session.scalars(select(AttemptRow)))
         events = list(session.execute(select(EventRow.job_id, EventRow.sequence, EventRow.type)))
-    accepted = set(book.accepted.values())
+    accepted = set(expected.accepted.values())
     numbers: dict[str, list[int]] = {job_id: [] for job_id in jobs}
     published: Counter[str] = Counter()
     for job_id, sequence, kind in events:
@@ -86,56 +90,54 @@ def take_account(
         published[job_id] += kind == "succeeded"
     ended = {job_id for job_id, row in jobs.items() if JobState(row.state).is_terminal}
     files = {key for job_id, row in jobs.items() for key in _keys(job_id, row)}
-    return Account(
+    return ConsistencyReport(
         n_accepted=len(accepted),
         states=Counter(jobs[job_id].state for job_id in accepted & jobs.keys()),
-        lost=sorted(accepted - jobs.keys()),
-        stuck=[f"{job_id} {jobs[job_id].state}" for job_id in sorted(jobs.keys() - ended)],
-        unasked=sorted(jobs.keys() - accepted),
-        twice=[f"{job_id} {published[job_id]}" for job_id, row in jobs.items() if published[job_id] != _due(row)],
-        broken_logs=[
-            job_id for job_id, row in jobs.items() if sorted(numbers[job_id]) != [*range(1, row.revision + 1)]
+        lost_jobs=sorted(accepted - jobs.keys()),
+        stuck_jobs=[f"{job_id} {jobs[job_id].state}" for job_id in sorted(jobs.keys() - ended)],
+        duplicate_jobs=sorted(jobs.keys() - accepted),
+        wrong_result_counts=[
+            f"{job_id} {published[job_id]}"
+            for job_id, row in jobs.items()
+            if published[job_id] != _expected_results(row)
         ],
+        event_gaps=[job_id for job_id, row in jobs.items() if sorted(numbers[job_id]) != [*range(1, row.revision + 1)]],
         broken_files=[broken for job_id, row in jobs.items() for broken in _broken_files(store, job_id, row)],
         open_attempts=[f"{row.job_id} {row.number}" for row in attempts if row.outcome is None and row.job_id in ended],
-        left_processes=[f"{process.pid} {' '.join(process.cmdline())}" for process in processes],
-        left_folders=[str(path) for folder in folders for path in folder.glob("work/*/request-*")],
-        unpublished=sum(listed.key not in files for listed in store.keys("results")),
+        orphan_processes=[f"{process.pid} {' '.join(process.cmdline())}" for process in processes],
+        orphan_folders=[str(path) for folder in folders for path in folder.glob("work/*/request-*")],
+        n_unpublished_files=sum(listed.key not in files for listed in store.keys("results")),
         attempts=Counter(_end_of(row) for row in attempts),
     )
 
 
-def recoveries_s(database: Database, strikes: Iterable[Strike]) -> dict[str, list[float]]:
-    """Return for each fault the seconds until the next attempt at the job that was struck."""
-    found: dict[str, list[float]] = {}
+def recoveries_s(database: Database, injections: Iterable[Injection]) -> dict[str, list[float]]:
+    """Return for each fault the seconds until the next attempt at the job that was the target."""
+    seconds: dict[str, list[float]] = {}
     with database.read() as session:
-        for strike in strikes:
-            victim = strike.victim
-            if victim is None:
+        for injection in injections:
+            target = injection.target
+            if target is None:
                 continue
-            row = session.get(AttemptRow, (victim.job_id, victim.attempt + 1))
+            row = session.get(AttemptRow, (target.job_id, target.attempt + 1))
             # Without another attempt the job was canceled, or had its result a moment before the fault.
             if row is not None:
-                found.setdefault(strike.fault, []).append((row.started_at - strike.at).total_seconds())
-    return found
+                seconds.setdefault(injection.fault, []).append((row.started_at - injection.at).total_seconds())
+    return seconds
 
 
-def cancels_s(database: Database, book: Book) -> dict[str, list[float]]:
+def cancels_s(database: Database, expected: ExpectedState) -> dict[str, list[float]]:
     """Return for each kind of cancel the seconds from the request to the end of the job."""
-    found: dict[str, list[float]] = {}
+    seconds: dict[str, list[float]] = {}
     with database.read() as session:
-        for cancel in book.cancels:
+        for cancel in expected.cancels:
             row = session.get(JobRow, cancel.job_id)
             if row is not None and row.finished_at is not None:
-                found.setdefault(cancel.kind, []).append((row.finished_at - cancel.at).total_seconds())
-    return found
+                seconds.setdefault(cancel.kind, []).append((row.finished_at - cancel.at).total_seconds())
+    return seconds
 
 
-def _numbers(row: JobRow) -> list[int]:
-    return list(range(1, row.revision + 1))
-
-
-def _due(row: JobRow) -> int:
+def _expected_results(row: JobRow) -> int:
     return int(JobState(row.state).has_result)
 
 

@@ -21,7 +21,7 @@ from jobkit.retention import delete_job, delete_mesh, expire_jobs, expire_meshes
 from jobkit.schema import JobState
 from jobkit.storage.base import ObjectStore, StoredObject, result_key
 from jobkit.storage.removals import assure, named_keys
-from tests.jobkit.holdings import (
+from tests.jobkit.fixtures import (
     AgingStore,
     KilledError,
     age_rows,
@@ -94,7 +94,7 @@ class World:
         pin_job(self.database, self._job(which), is_pinned)
 
     def _load(self, which: int, kills_after: bool) -> None:
-        self.store.kill_in, self.store.kills_after = which, kills_after
+        self.store.kill_countdown, self.store.kills_after = which, kills_after
 
     def _mesh(self, which: int) -> str:
         return sha256(b"%d" % which)
@@ -142,7 +142,7 @@ def test_no_row_lacks_its_object_and_no_old_object_its_row(
         assert world.named() <= keys_in(store), name
         if name in ("expire", "sweep"):
             assert pinned <= world.kept_by_a_pin()
-    world.store.kill_in = None
+    world.store.kill_countdown = None
     world.wait(timedelta(hours=25))
     sweep_objects(database, world.store, utc_now())
     assert MissingObjects(database, world.store).look() == Missing()

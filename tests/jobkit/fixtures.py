@@ -1,4 +1,4 @@
-"""Builders of what retention and sweeps are about, and a store whose objects age and whose user can be killed."""
+"""Rows and objects for tests of retention and sweeps, and a store whose objects age and whose user can be killed."""
 
 import contextlib
 import hashlib
@@ -84,7 +84,7 @@ def clear(database: Database, store: ObjectStore) -> None:
 
 
 def age_rows(database: Database, by: timedelta) -> None:
-    """Let everything in the database have happened so much earlier."""
+    """Set all moments in the database back."""
     columns = [
         (MeshRow, MeshRow.used_at),
         (MeshRow, MeshRow.created_at),
@@ -109,26 +109,26 @@ class KilledError(Exception):
 
 
 class AgingStore:
-    """A real store with a clock that can be put forward, and with an arm that can be stopped.
+    """A real store with a clock that can be set forward, and that can end its user.
 
-    Its user is killed at the `kill_in`-th deletion or listing from now: before it, or right after it where
+    Its user is killed at the `kill_countdown`-th deletion or listing from now: before it, or right after it where
     `kills_after`. `on_delete` and `on_list` are called before a deletion and at the beginning of a listing.
     """
 
     def __init__(self, store: ObjectStore) -> None:
         self._store = store
-        self._passed = timedelta(0)
+        self._elapsed = timedelta(0)
         self._put_at: dict[str, timedelta] = {}
-        self.kill_in: int | None = None
+        self.kill_countdown: int | None = None
         self.kills_after = False
         self.on_delete: Callable[[str], object] = lambda key: None
         self.on_list: Callable[[str], object] = lambda prefix: None
 
     def wait(self, by: timedelta) -> None:
-        self._passed += by
+        self._elapsed += by
 
     def writer(self, prefix: str, max_bytes: int | None = None) -> ObjectWriter:
-        return _NotingWriter(self._store.writer(prefix, max_bytes), self._note)
+        return _RecordingWriter(self._store.writer(prefix, max_bytes), self._note)
 
     def put_file(self, key: str, path: Path) -> StoredObject:
         self._note(key)
@@ -162,23 +162,23 @@ class AgingStore:
             self._store.delete_prefix(prefix)
 
     def _note(self, key: str) -> None:
-        self._put_at[key] = self._passed
+        self._put_at[key] = self._elapsed
 
     def _aged(self, found: ListedObject) -> datetime:
-        return found.modified_at - (self._passed - self._put_at.get(found.key, timedelta(0)))
+        return found.modified_at - (self._elapsed - self._put_at.get(found.key, timedelta(0)))
 
     @contextlib.contextmanager
     def _killing(self) -> Iterator[None]:
-        strikes = self.kill_in == 0
-        self.kill_in = None if self.kill_in in (None, 0) else self.kill_in - 1
-        if strikes and not self.kills_after:
+        is_killed = self.kill_countdown == 0
+        self.kill_countdown = None if self.kill_countdown in (None, 0) else self.kill_countdown - 1  # type: ignore[operator]
+        if is_killed and not self.kills_after:
             raise KilledError
         yield
-        if strikes:
+        if is_killed:
             raise KilledError
 
 
-class _NotingWriter:
+class _RecordingWriter:
     def __init__(self, writer: ObjectWriter, note: Callable[[str], None]) -> None:
         self._writer = writer
         self._note = note
@@ -191,7 +191,7 @@ class _NotingWriter:
         self._note(stored.key)
         return stored
 
-    def __enter__(self) -> "_NotingWriter":
+    def __enter__(self) -> "_RecordingWriter":
         self._writer.__enter__()
         return self
 

@@ -1,4 +1,4 @@
-"""A 202 is a promise: it outlives the process that gave it, and the queue."""
+"""What a 202 guarantees: the job outlives the process that answered, and the queue."""
 
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
