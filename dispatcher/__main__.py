@@ -11,7 +11,7 @@ import sys
 from contextlib import ExitStack, closing
 
 from dispatcher.loop import Dispatch
-from dispatcher.periodic_tasks import duties_of
+from dispatcher.periodic_tasks import periodic_tasks
 from jobkit.database.leadership import DISPATCHER, Leadership
 from jobkit.database.session import Database
 from jobkit.errors import SettingsError
@@ -48,7 +48,7 @@ def _run(settings: Settings, store: ObjectStore) -> None:
         redis_url = settings.redis_url.get_secret_value()
         queue = stack.enter_context(closing(TaskQueue(redis_url, settings.queue_name, settings.job_time_limit_s)))
         leadership = Leadership(database, DISPATCHER, _own_name(), settings.leader_lease_s)
-        tasks = duties_of(settings, database, store, queue, leadership)
+        tasks = periodic_tasks(settings, database, store, queue, leadership)
         dispatch = Dispatch(leadership, settings.leader_lease_s / _RENEWALS_PER_LEASE, tasks)
         for number in (signal.SIGTERM, signal.SIGINT):
             signal.signal(number, lambda *_: dispatch.stop())

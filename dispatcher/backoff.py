@@ -5,7 +5,7 @@ from email.utils import parsedate_to_datetime
 
 # Pauses after the first, second, … failed try; after one more the delivery is given up.
 DELAYS_S = (5.0, 30.0, 120.0, 600.0, 3_600.0, 10_800.0, 21_600.0, 43_200.0)
-# A pause is longer by up to this share, so that what failed together does not come back together.
+# A pause is longer by up to this share, so that deliveries that failed together are not all retried together.
 JITTER = 0.2
 
 
@@ -19,7 +19,7 @@ def next_delay_s(n_tries: int, chance: float, retry_after_s: float | None = None
     chance : float
         A random number in [0, 1).
     retry_after_s : float, optional
-        Seconds that the receiver asked for; it gets them, up to the longest pause.
+        Seconds that the receiver asked for; used up to the longest pause.
     """
     if n_tries > len(DELAYS_S):
         return None

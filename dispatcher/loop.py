@@ -1,7 +1,7 @@
 """Periodic tasks, each in a thread of its own, done by the dispatcher that leads.
 
-A slow one, such as a webhook that does not answer, holds up no other. What goes wrong in a task is logged, and the task
-is done again at its next turn.
+A slow one, such as a webhook that does not answer, holds up no other. An error in a task is logged, and the task
+is done again after its interval.
 """
 
 import logging
@@ -17,14 +17,14 @@ _log = logging.getLogger("quadpatch.dispatcher")
 
 @dataclass(frozen=True)
 class PeriodicTask:
-    """Something to do again and again.
+    """A task that is repeated at an interval.
 
     Attributes
     ----------
     name : str
         For the log.
     interval_s : float
-        Seconds between two turns.
+        Seconds between two runs.
     work : callable
         Does what is due, in a way that does no harm if another dispatcher does it at the same moment; returns words
         about it for the log, empty where nothing was due. Given a callable that says whether to break off.
@@ -49,17 +49,17 @@ class Dispatch:
     def __init__(self, leadership: Leadership, renew_s: float, tasks: Sequence[PeriodicTask]) -> None:
         self._leadership = leadership
         self._renew_s = renew_s
-        self._duties = tasks
+        self._tasks = tasks
         self._leads = threading.Event()
         self._stopped = threading.Event()
 
     def stop(self) -> None:
-        """Come to an end soon."""
+        """Ask `run` to return soon."""
         self._stopped.set()
 
     def run(self) -> None:
         """Work until stopped, then let another dispatcher lead."""
-        threads = [threading.Thread(target=self._keep_doing, args=(task,), name=task.name) for task in self._duties]
+        threads = [threading.Thread(target=self._keep_doing, args=(task,), name=task.name) for task in self._tasks]
         for thread in threads:
             thread.start()
         try:
@@ -85,7 +85,7 @@ class Dispatch:
 
     def _keep_doing(self, task: PeriodicTask) -> None:
         while not self._stopped.is_set():
-            # Wakes at once when the lead comes, and often enough to see the end.
+            # Returns at once when this dispatcher leads, and often enough to notice a stop.
             if self._leads.wait(timeout=min(task.interval_s, 1.0)):
                 _do(task, self._is_over)
                 self._stopped.wait(task.interval_s)
@@ -105,7 +105,7 @@ def _do(task: PeriodicTask, is_over: Callable[[], bool]) -> None:
         words = task.work(is_over)
     except JobkitError as error:
         _log.warning("%s: %s", task.name, error)
-    except Exception:  # noqa: BLE001 - the outermost frame of a thread that has to live for years
+    except Exception:  # noqa: BLE001 - the outermost handler of a task; its thread must go on
         _log.exception("%s failed", task.name)
     else:
         if words:

@@ -1,9 +1,9 @@
-"""Rows whose object is gone from the store: a disk that was restored in part, a bucket that was tidied by hand.
+"""Rows whose object is gone from the store: after a partial restore, or a deletion by hand.
 
 A mesh is marked as rejected with the code `mesh_missing`, and jobs that still wait for it fail with the same; it is
-analysed again once its bytes are there again, by an upload or because the disk is back. A finished job keeps its row
+analysed again once the store has its bytes again. A finished job keeps its row
 and its events, and what was lost of its result is answered with `result_missing`. Each look asks the store for some
-objects only, and goes on where the last one stopped.
+objects only, and continues after the last one.
 """
 
 from collections.abc import Callable, Iterator
@@ -27,7 +27,7 @@ _PROBLEM = MeshProblem(code=MESH_MISSING, message="the bytes of the mesh are gon
 
 
 @dataclass(frozen=True)
-class Missing:
+class MissingCounts:
     """What one look found: meshes that were marked or found again, results and models without their files."""
 
     meshes: int = 0
@@ -54,7 +54,7 @@ class MissingObjects:
         self._last_mesh = ""
         self._last_job = ""
 
-    def look(self, is_over: Callable[[], bool] = lambda: False) -> Missing:
+    def look(self, is_over: Callable[[], bool] = lambda: False) -> MissingCounts:
         """Look at the next rows, and mark what is missing.
 
         Parameters
@@ -67,10 +67,10 @@ class MissingObjects:
         StoreUnavailableError
             If the store does not answer: then nothing is known to be missing.
         """
-        meshes = [self._judge(row) for row in _until(is_over, self._next_meshes())]
+        meshes = [self._check_mesh(row) for row in _until(is_over, self._next_meshes())]
         results = sum(self._lacks_files(row) for row in _until(is_over, self._next_jobs()))
         models = sum(not self._is_there(key) for key in _until(is_over, self._model_keys()))
-        return Missing(meshes.count("missing"), meshes.count("found again"), results, models)
+        return MissingCounts(meshes.count("missing"), meshes.count("found again"), results, models)
 
     def _next_meshes(self) -> list[MeshRow]:
         with self._database.read() as session:
@@ -90,8 +90,8 @@ class MissingObjects:
         with self._database.read() as session:
             return list(session.scalars(select(ModelRow.key).distinct()))
 
-    def _judge(self, row: MeshRow) -> str:
-        """Hold a mesh against the store; an upload that comes in between leaves another `used_at`."""
+    def _check_mesh(self, row: MeshRow) -> str:
+        """Compare a mesh with the store; an upload in between changes `used_at`, and nothing is marked then."""
         is_there = self._is_there(row.key)
         if is_there != is_missing(row):
             return ""
@@ -112,7 +112,7 @@ class MissingObjects:
         if all(self._is_there(result_key(row.id, row.attempt, name)) for name in names):
             return False
         with self._database.read() as session:
-            # Or was the job deleted meanwhile, with its files?
+            # No files are missing where the job was deleted meanwhile.
             return session.scalars(select(JobRow.id).where(JobRow.id == row.id)).first() is not None
 
     def _is_there(self, key: str) -> bool:

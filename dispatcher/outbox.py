@@ -1,8 +1,8 @@
-"""Claims on deliveries that are due, and what became of them.
+"""Claims on deliveries that are due, and their results.
 
 A claim raises the number of tries and pushes the next one ahead, both in one conditional update: of two dispatchers
-that see the same delivery one sends it. Where the one that claimed it dies, it is due again when the claim runs out;
-the receiver may then get the message twice, under the same id.
+that see the same delivery one sends it. Where the dispatcher that claimed it ends, the delivery is due again when the
+claim runs out; the receiver may then get the message twice, under the same id.
 """
 
 import json
@@ -25,8 +25,8 @@ from jobkit.webhooks.deliveries import message_id
 from jobkit.webhooks.subscriptions import give_up_pending
 
 MAX_PER_WEBHOOK = 4
-# A subscriber who takes nothing for this long when a message is given up is sent no more of them.
-PATIENCE = timedelta(days=3)
+# A subscription that has failed for this long when a message is given up is disabled.
+DISABLE_AFTER = timedelta(days=3)
 _BATCH = 100
 
 
@@ -59,27 +59,27 @@ def claim_due(database: Database, most: int, at_work: Mapping[str, int], claim_s
         How many deliveries to each subscriber are being sent now; none gets more than MAX_PER_WEBHOOK at a time, so a
         slow one holds up no other.
     claim_s : float
-        Seconds after which a delivery is due again that nothing was heard of.
+        Seconds after which a delivery without an answer is due again.
     """
     if most <= 0 or not is_anything_due(database):
         return []
-    taken, claims = Counter(at_work), list[Claim]()
+    n_sending, claims = Counter(at_work), list[Claim]()
     with database.write() as session:
         now = shared_now(session)
         while len(claims) < most:
-            full = [webhook_id for webhook_id, count in taken.items() if count >= MAX_PER_WEBHOOK]
-            rows = session.execute(_due(now, full).limit(_BATCH)).all()
+            busy_ids = [webhook_id for webhook_id, count in n_sending.items() if count >= MAX_PER_WEBHOOK]
+            rows = session.execute(_due(now, busy_ids).limit(_BATCH)).all()
             for delivery, webhook in rows:
-                if len(claims) < most and taken[webhook.id] < MAX_PER_WEBHOOK:
+                if len(claims) < most and n_sending[webhook.id] < MAX_PER_WEBHOOK:
                     claims += _claim(session, delivery, webhook, now, claim_s)
-                    taken[webhook.id] += 1
+                    n_sending[webhook.id] += 1
             if len(rows) < _BATCH:
                 break
     return claims
 
 
 def note_answer(database: Database, claim: Claim, answer: Answer, chance: float) -> None:
-    """Write down a try, and what follows from it for the delivery and for the subscription.
+    """Record a try, and update the delivery and the subscription.
 
     Parameters
     ----------
@@ -92,8 +92,8 @@ def note_answer(database: Database, claim: Claim, answer: Answer, chance: float)
     with database.write() as session:
         now = shared_now(session)
         # The subscription before the delivery, as all code that writes both: else two writers wait for each other.
-        locked = select(WebhookRow).where(WebhookRow.id == claim.webhook_id).with_for_update()
-        webhook = session.scalars(locked).one_or_none()
+        query = select(WebhookRow).where(WebhookRow.id == claim.webhook_id).with_for_update()
+        webhook = session.scalars(query).one_or_none()
         if webhook is None or session.get(DeliveryRow, claim.delivery_id) is None:
             return
         session.add(
@@ -116,23 +116,23 @@ def note_answer(database: Database, claim: Claim, answer: Answer, chance: float)
             _write(session, claim, {"next_try_at": now + timedelta(seconds=delay_s)}, *_still_mine(claim))
             return
         is_given_up = _end(session, claim, DeliveryState.DEAD, now, *_still_mine(claim))
-        if is_given_up and (answer.is_gone or webhook.failing_since <= now - PATIENCE):
+        if is_given_up and (answer.is_gone or webhook.failing_since <= now - DISABLE_AFTER):
             webhook.enabled, webhook.updated_at = False, now
             give_up_pending(session, webhook.id)
 
 
-def _due(now: datetime, full: list[str]) -> Select[DeliveryRow, WebhookRow]:
+def _due(now: datetime, busy_ids: list[str]) -> Select[DeliveryRow, WebhookRow]:
     query = select(DeliveryRow, WebhookRow).join(WebhookRow, WebhookRow.id == DeliveryRow.webhook_id)
     return query.where(
         WebhookRow.enabled,
         DeliveryRow.state == DeliveryState.PENDING.value,
         DeliveryRow.next_try_at <= now,
-        DeliveryRow.webhook_id.not_in(full),
+        DeliveryRow.webhook_id.not_in(busy_ids),
     ).order_by(DeliveryRow.next_try_at, DeliveryRow.id)
 
 
 def _claim(session: Session, delivery: DeliveryRow, webhook: WebhookRow, now: datetime, claim_s: float) -> list[Claim]:
-    """Return the claim, nothing where another dispatcher was faster."""
+    """Return the claim, an empty list where another dispatcher has it."""
     number = delivery.tries + 1
     outgoing = Outgoing(webhook.url, message_id(delivery), _secrets(webhook, now), _body(delivery.payload))
     claim = Claim(delivery.id, webhook.id, number, now, outgoing)

@@ -3,8 +3,7 @@
 from dispatcher.lease_reaper import LeaseReaper
 from dispatcher.loop import PeriodicTask
 from dispatcher.retention import Sweeper, remove_expired
-from dispatcher.scrub import ROUND_S
-from dispatcher.scrubbing import Scrubbing
+from dispatcher.scrub import ROUND_S, scrub_task
 from dispatcher.webhooks import deliver_webhooks, forget_old_deliveries
 from jobkit.database.leadership import Leadership
 from jobkit.database.session import Database
@@ -17,10 +16,10 @@ from jobkit.storage.base import ObjectStore
 _HOUR_S = 3_600.0
 
 
-def duties_of(
+def periodic_tasks(
     settings: Settings, database: Database, store: ObjectStore, queue: TaskQueue, leadership: Leadership
 ) -> list[PeriodicTask]:
-    """Return the duties.
+    """Return the periodic tasks of a leading dispatcher.
 
     Parameters
     ----------
@@ -32,20 +31,19 @@ def duties_of(
         Of this dispatcher.
     """
     limits = TimeLimits(settings.queue_time_limit_s, settings.total_time_limit_s, settings.job_memory_limit_mb)
-    keeper = LeaseReaper(
+    reaper = LeaseReaper(
         lambda takes_leases: reconcile(database, queue, limits, takes_leases=takes_leases),
-        lambda: leadership.found_unled_at,
+        lambda: leadership.found_leaderless_at,
         settings.heartbeat_s,
     )
     sweeper = Sweeper(database, store)
-    scrubbing = Scrubbing(settings, database, store)
     return [
-        PeriodicTask("jobs", settings.dispatch_s, keeper.look),
+        PeriodicTask("jobs", settings.dispatch_s, reaper.look),
         PeriodicTask("webhooks", settings.dispatch_s, lambda is_over: deliver_webhooks(database, settings, is_over)),
         PeriodicTask(
             "webhook log", _HOUR_S, lambda is_over: forget_old_deliveries(database, settings.webhook_log_days, is_over)
         ),
         PeriodicTask("retention", settings.sweep_s, lambda is_over: remove_expired(settings, database, store, is_over)),
         PeriodicTask("sweep", settings.sweep_s, sweeper.sweep),
-        PeriodicTask("scrub", ROUND_S, scrubbing.round),
+        PeriodicTask("scrub", ROUND_S, scrub_task(settings, database, store)),
     ]

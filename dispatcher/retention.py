@@ -1,8 +1,8 @@
-"""The duties that remove what is past its retention, and hold database and store against each other."""
+"""Periodic tasks that remove what is past its retention, and compare database and store."""
 
 from collections.abc import Callable
 
-from dispatcher.missing_objects import Missing, MissingObjects
+from dispatcher.missing_objects import MissingCounts, MissingObjects
 from dispatcher.unreferenced_objects import SweepResult, sweep_objects
 from jobkit.database.clock import shared_now
 from jobkit.database.idempotency import forget_keys
@@ -13,11 +13,11 @@ from jobkit.storage.base import ObjectStore
 
 
 def remove_expired(settings: Settings, database: Database, store: ObjectStore, is_over: Callable[[], bool]) -> str:
-    """Remove jobs and meshes past their retention; return how many went, in words."""
+    """Remove jobs and meshes past their retention; return how many were removed, in words."""
     with database.read() as session:
         now = shared_now(session)
     jobs = expire_jobs(database, store, settings.job_retention_days, now, is_over)
-    # After the jobs, which hold on to their meshes.
+    # After the jobs: a mesh is kept as long as a job names it.
     meshes = expire_meshes(database, settings.mesh_retention_days, now, is_over)
     forget_keys(database, now)
     return f"removed {jobs} jobs and {meshes} meshes" if jobs or meshes else ""
@@ -38,17 +38,17 @@ class Sweeper:
         self._missing = MissingObjects(database, store)
 
     def sweep(self, is_over: Callable[[], bool]) -> str:
-        """Sweep both ways; return what was found, in words."""
+        """Sweep objects and rows; return what was found, in words."""
         with self._database.read() as session:
             now = shared_now(session)
-        swept = sweep_objects(self._database, self._store, now, is_over)
+        deleted = sweep_objects(self._database, self._store, now, is_over)
         missing = self._missing.look(is_over)
-        return "; ".join(_words(swept, missing))
+        return "; ".join(_describe(deleted, missing))
 
 
-def _words(swept: SweepResult, missing: Missing) -> list[str]:
+def _describe(deleted: SweepResult, missing: MissingCounts) -> list[str]:
     counts = [
-        (swept.objects, f"deleted {swept.objects} objects without a row, {swept.size_bytes} bytes"),
+        (deleted.objects, f"deleted {deleted.objects} objects without a row, {deleted.size_bytes} bytes"),
         (missing.meshes, f"{missing.meshes} meshes are gone from the store and were marked"),
         (missing.found_again, f"{missing.found_again} meshes are in the store again"),
         (missing.results, f"{missing.results} finished jobs lack files of their result"),

@@ -1,4 +1,4 @@
-"""The scrub: every object that a row names is read within a set number of days, and held against its sha256.
+"""The scrub: every object that a row names is read within a set number of days and checked against its sha256.
 
 Disks lose bits without an error, and in an object that is not read the damage stays unknown until the object is
 needed. An object that differs is read a second time, since a transfer may lose bits as well, and then remembered in
@@ -25,12 +25,14 @@ from jobkit.database.tables import MeshRow, ScrubRow
 from jobkit.errors import ObjectNotFoundError, StoreUnavailableError
 from jobkit.meshes import MESH_DAMAGED, is_damaged, restart
 from jobkit.schema import MeshProblem, MeshState
+from jobkit.settings import Settings
 from jobkit.storage.base import ObjectStore
 from jobkit.storage.damage import NamedObject, forget_damaged, note_damaged
-from jobkit.storage.scrub_due import Due, due_objects
+from jobkit.storage.scrub_schedule import ScheduledRead, due_reads
 
 # Of one round; the next one comes as long after it.
 ROUND_S = 60.0
+_MB = 1 << 20
 _TRIES = 2
 _PROBLEM = MeshProblem(
     code=MESH_DAMAGED, message="the bytes of the mesh in the store are not those that were uploaded; upload it again"
@@ -40,17 +42,17 @@ IsOver = Callable[[], bool]
 _log = logging.getLogger("quadpatch.scrub")
 
 
-class Verdict(Enum):
-    """What reading an object tells."""
+class ObjectState(Enum):
+    """The state of an object after it was read."""
 
     SOUND = "sound"
     DAMAGED = "damaged"
     UNREADABLE = "unreadable"
-    GONE = "gone"
+    MISSING = "missing"
 
 
 @dataclass(frozen=True)
-class Scrubbed:
+class ScrubCounts:
     """What one round read, and how many objects it found to be damaged that were not known to be."""
 
     objects: int = 0
@@ -71,18 +73,18 @@ class ScrubLimits:
 class _Reading:
     """`used_at` is that of the mesh before it was read."""
 
-    named: NamedObject
-    verdict: Verdict
+    named_object: NamedObject
+    state: ObjectState
     size_bytes: int
     used_at: datetime | None
 
 
-class _BrokenOffError(Exception):
-    """The process has to end, or leads no more."""
+class _StoppedError(Exception):
+    """The round has to stop: the process ends, or leads no longer."""
 
 
 class Scrub:
-    """Reads what is due, a round at a time; the database remembers how far it came.
+    """Reads the objects that are due, one round at a time; the database records which were read.
 
     Parameters
     ----------
@@ -101,7 +103,7 @@ class Scrub:
         self._limits = limits
         self._pause = pause
 
-    def round(self, is_over: IsOver = lambda: False) -> Scrubbed:
+    def round(self, is_over: IsOver = lambda: False) -> ScrubCounts:
         """Read what is due, up to the limits; an object that was begun is read to its end.
 
         Parameters
@@ -117,71 +119,91 @@ class Scrub:
         objects = size_bytes = damaged = 0
         if self._limits.days > 0:
             pace = _Pace(self._limits, self._pause)
-            for due in self._due(pace, is_over):
+            for scheduled in self._due(pace, is_over):
                 try:
-                    readings = [self._read(named, pace, is_over) for named in due.objects]
-                except _BrokenOffError:
+                    readings = [self._read(named_object, pace, is_over) for named_object in scheduled.objects]
+                except _StoppedError:
                     break
-                damaged += self._note(due, readings)
+                damaged += self._note(scheduled, readings)
                 objects += len(readings)
                 size_bytes += sum(reading.size_bytes for reading in readings)
-        return Scrubbed(objects, size_bytes, damaged)
+        return ScrubCounts(objects, size_bytes, damaged)
 
-    def _due(self, pace: "_Pace", is_over: IsOver) -> Iterator[Due]:
+    def _due(self, pace: "_Pace", is_over: IsOver) -> Iterator[ScheduledRead]:
         while True:
             with self._database.read() as session:
-                batch = due_objects(session, self._limits.days, shared_now(session))
-            for due in batch:
+                batch = due_reads(session, self._limits.days, shared_now(session))
+            for scheduled in batch:
                 if is_over() or pace.is_used_up:
                     return
-                yield due
+                yield scheduled
             if not batch:
                 return
 
-    def _read(self, named: NamedObject, pace: "_Pace", is_over: IsOver) -> _Reading:
-        verdict, size_bytes, used_at = Verdict.SOUND, 0, self._used_at(named)
+    def _read(self, named_object: NamedObject, pace: "_Pace", is_over: IsOver) -> _Reading:
+        state, size_bytes, used_at = ObjectState.SOUND, 0, self._used_at(named_object)
         for _ in range(_TRIES):
-            verdict, read_bytes = self._read_once(named, pace, is_over)
+            state, read_bytes = self._read_once(named_object, pace, is_over)
             size_bytes += read_bytes
-            if verdict in (Verdict.SOUND, Verdict.GONE):
+            if state in (ObjectState.SOUND, ObjectState.MISSING):
                 break
-        return _Reading(named, verdict, size_bytes, used_at)
+        return _Reading(named_object, state, size_bytes, used_at)
 
-    def _used_at(self, named: NamedObject) -> datetime | None:
-        if named.kind != "mesh":
+    def _used_at(self, named_object: NamedObject) -> datetime | None:
+        if named_object.kind != "mesh":
             return None
         with self._database.read() as session:
-            return session.scalar(select(MeshRow.used_at).where(MeshRow.id == named.sha256))
+            return session.scalar(select(MeshRow.used_at).where(MeshRow.id == named_object.sha256))
 
-    def _read_once(self, named: NamedObject, pace: "_Pace", is_over: IsOver) -> tuple[Verdict, int]:
+    def _read_once(self, named_object: NamedObject, pace: "_Pace", is_over: IsOver) -> tuple[ObjectState, int]:
         digest, size_bytes = hashlib.sha256(), 0
         try:
-            for chunk in self._store.read(named.key):
+            for chunk in self._store.read(named_object.key):
                 if is_over():
-                    raise _BrokenOffError
+                    raise _StoppedError
                 digest.update(chunk)
                 size_bytes += len(chunk)
-                pace.spend(len(chunk))
+                pace.count(len(chunk))
         except ObjectNotFoundError:
-            return Verdict.GONE, size_bytes
+            return ObjectState.MISSING, size_bytes
         except StoreUnavailableError as error:
-            # Is it the store, or a sector of the disk under this object?
+            # Raises where the whole store fails; otherwise only this object is unreadable.
             self._store.check()
-            _log.warning("%s can't be read: %s", named.key, error)
-            return Verdict.UNREADABLE, size_bytes
-        return Verdict.SOUND if digest.hexdigest() == named.sha256 else Verdict.DAMAGED, size_bytes
+            _log.warning("%s can't be read: %s", named_object.key, error)
+            return ObjectState.UNREADABLE, size_bytes
+        return ObjectState.SOUND if digest.hexdigest() == named_object.sha256 else ObjectState.DAMAGED, size_bytes
 
-    def _note(self, due: Due, readings: list[_Reading]) -> int:
-        """Write down what was found; return how many objects are damaged that were not known to be."""
+    def _note(self, scheduled: ScheduledRead, readings: list[_Reading]) -> int:
+        """Record the results; return how many objects are damaged that were not known to be."""
         with self._database.write() as session:
             now = shared_now(session)
-            if due.table is not None and due.row is not None:
-                session.execute(update(due.table).where(due.row).values(checked_at=now))
+            if scheduled.table is not None and scheduled.row is not None:
+                session.execute(update(scheduled.table).where(scheduled.row).values(checked_at=now))
             damaged = sum(_note_one(session, reading, now) for reading in readings)
             if readings:
-                kinds = {"kind": readings[0].named.kind, "objects": len(readings)}
+                kinds = {"kind": readings[0].named_object.kind, "objects": len(readings)}
                 add_up(session, ScrubRow, [kinds | {"size_bytes": sum(reading.size_bytes for reading in readings)}])
         return damaged
+
+
+def scrub_task(settings: Settings, database: Database, store: ObjectStore) -> Callable[[IsOver], str]:
+    """Return the periodic task that runs one round of the scrub and says in words what it read.
+
+    Parameters
+    ----------
+    settings : Settings
+    database : Database
+    store : ObjectStore
+    """
+    scrub = Scrub(database, store, ScrubLimits(settings.scrub_days, settings.scrub_mb_s * _MB))
+
+    def run_round(is_over: IsOver) -> str:
+        counts = scrub.round(is_over)
+        if not counts.objects:
+            return ""
+        return f"checked {counts.objects} objects, {counts.size_bytes} bytes; {counts.damaged} more are damaged"
+
+    return run_round
 
 
 class _Pace:
@@ -191,36 +213,38 @@ class _Pace:
         self._limits = limits
         self._pause = pause
         self._began = time.monotonic()
-        self._spent = 0
+        self._n_bytes = 0
 
     @property
     def is_used_up(self) -> bool:
         """Whether the round has read as much as it may."""
-        return self._spent >= self._limits.bytes_per_s * self._limits.round_s
+        return self._n_bytes >= self._limits.bytes_per_s * self._limits.round_s
 
-    def spend(self, n_bytes: int) -> None:
+    def count(self, n_bytes: int) -> None:
         """Count bytes that were read, and wait until so many may be."""
-        self._spent += n_bytes
-        ahead_s = self._spent / self._limits.bytes_per_s - (time.monotonic() - self._began)
+        self._n_bytes += n_bytes
+        ahead_s = self._n_bytes / self._limits.bytes_per_s - (time.monotonic() - self._began)
         if ahead_s > 0:
             self._pause(ahead_s)
 
 
 def _note_one(session: Session, reading: _Reading, now: datetime) -> bool:
-    named, mesh = reading.named, None
-    if named.kind == "mesh":
-        mesh = session.get(MeshRow, named.sha256, with_for_update=True)
+    named_object, mesh = reading.named_object, None
+    if named_object.kind == "mesh":
+        mesh = session.get(MeshRow, named_object.sha256, with_for_update=True)
         if mesh is not None and mesh.used_at != reading.used_at:
-            return False  # its bytes came again meanwhile
-    if reading.verdict in (Verdict.SOUND, Verdict.GONE):
-        forget_damaged(session, named.key)
-        if mesh is not None and reading.verdict is Verdict.SOUND and is_damaged(mesh):
+            return False  # its bytes were uploaded again meanwhile
+    if reading.state in (ObjectState.SOUND, ObjectState.MISSING):
+        forget_damaged(session, named_object.key)
+        if mesh is not None and reading.state is ObjectState.SOUND and is_damaged(mesh):
             restart(mesh, mesh.filename, mesh.format)
         return False
-    if mesh is not None and reading.verdict is Verdict.DAMAGED and not is_damaged(mesh):
+    if mesh is not None and reading.state is ObjectState.DAMAGED and not is_damaged(mesh):
         mesh.state, mesh.problem = MeshState.REJECTED.value, _PROBLEM.model_dump(mode="json")
         mesh.lease_until, mesh.updated_at = None, now
-    is_new = note_damaged(session, named, now)
+    is_new = note_damaged(session, named_object, now)
     if is_new:
-        _log.error("%s is %s: its sha256 was %s when it was stored", named.key, reading.verdict.value, named.sha256)
+        _log.error(
+            "%s is %s: its sha256 was %s when it was stored", named_object.key, reading.state.value, named_object.sha256
+        )
     return is_new

@@ -1,8 +1,8 @@
 """One signed request to one receiver, by the rules of Standard Webhooks.
 
-The name in the URL is resolved once, all its addresses are judged, and the connection goes to one of them; certificate
-and Host header are those of the name. No redirect is followed, no proxy asked, no cookie kept, no connection used
-twice: two names may share an address, and what was checked for one of them says nothing of the other. What a receiver
+The name in the URL is resolved once, all its addresses are checked, and the connection goes to one of them; certificate
+and Host header are those of the name. No redirect is followed, no proxy used, no cookie stored, no connection used
+twice: two names may share an address, and a check of one is not a check of the other. What a receiver
 answers besides its status is read up to a bound and thrown away, so an inner service can't be read through this one.
 """
 
@@ -56,7 +56,7 @@ class Answer:
 
     @property
     def is_gone(self) -> bool:
-        """Whether the receiver wants nothing more, ever."""
+        """Whether the receiver wants no further messages: 410 Gone."""
         return self.status == httpx.codes.GONE
 
 
@@ -77,7 +77,7 @@ class Sender:
         self._allowed = allowed
         self._timeout_s = timeout_s
         self._look_up = look_up
-        # Of their own: names that no server answers for must not keep others, or the database, waiting.
+        # Separate threads: names without an answer must not block other look-ups, or the database.
         self._resolvers = ThreadPoolExecutor(_MAX_RESOLVERS, "resolver")
 
     @cached_property
@@ -87,8 +87,8 @@ class Sender:
         return httpx.AsyncHTTPTransport(verify=httpx.create_ssl_context(), trust_env=False, limits=limits)
 
     async def send(self, outgoing: Outgoing) -> Answer:
-        """Send a message; whatever goes wrong with the receiver is an answer, too."""
-        begun, status, retry_after_s, error = time.monotonic(), None, None, None
+        """Send a message; an error of the receiver or of the connection is an answer, too."""
+        started, status, retry_after_s, error = time.monotonic(), None, None, None
         try:
             async with asyncio.timeout(self._timeout_s):
                 response = await self._post(outgoing)
@@ -96,11 +96,11 @@ class Sender:
             retry_after_s = read_retry_after(response.headers.get("retry-after"), utc_now())
             error = _refusal(response)
         except (httpx.HTTPError, httpx.InvalidURL, OSError, JobkitError) as failure:
-            error = self._words(failure)
-        return Answer(status, error, retry_after_s, round(1000 * (time.monotonic() - begun)))
+            error = self._describe(failure)
+        return Answer(status, error, retry_after_s, round(1000 * (time.monotonic() - started)))
 
     def close(self) -> None:
-        """Let go of the threads that resolve names."""
+        """End the threads that resolve names."""
         self._resolvers.shutdown(wait=False, cancel_futures=True)
 
     async def _post(self, outgoing: Outgoing) -> httpx.Response:
@@ -136,7 +136,7 @@ class Sender:
             await response.aclose()
         return response
 
-    def _words(self, failure: Exception) -> str:
+    def _describe(self, failure: Exception) -> str:
         if isinstance(failure, JobkitError):
             return f"{failure.code}: {failure}"
         if isinstance(failure, httpx.ConnectTimeout):

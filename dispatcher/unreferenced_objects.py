@@ -1,8 +1,8 @@
 """Objects that no row names: left behind by crashes, deletions and uploads that were broken off.
 
 Only an object that has not changed for GRACE is deleted: the writer of an object lets a row name it soon after. And a
-database that is younger than that deletes nothing at all: one that was just set up, by a slip of a setting or before
-its backup was restored, knows nothing of what the store holds. (What tells its age are its models and meshes: the
+database that is younger than that deletes nothing at all: one that was just set up, by a wrong setting or before
+its backup was restored, has no rows for the objects of the store. (Its age is that of its oldest model or mesh: the
 models that ship are registered at the first start, and stay.)
 
 A store belongs to one database. Where two share one, each takes the objects of the other for unreferenced.
@@ -29,7 +29,7 @@ from jobkit.storage.removals import START_S, claim, named_keys, release
 GRACE = timedelta(hours=24)
 CONTENT_PREFIXES = ("meshes", "models")
 RESULT_PREFIX = "results"
-# Objects of one question to the database, and claims of one turn.
+# Objects of one query, and claims of one transaction.
 _BATCH = 500
 _CLAIMS = 50
 
@@ -69,35 +69,35 @@ def sweep_objects(
     if not _is_older(database, before):
         _log.info("nothing is swept: the oldest row of the database is younger than %s", GRACE)
         return SweepResult()
-    swept = SweepResult()
+    deleted = SweepResult()
     for batch in _old_objects(store, RESULT_PREFIX, before):
         if is_over():
-            return swept
-        swept += _sweep_results(database, store, batch)
+            return deleted
+        deleted += _sweep_results(database, store, batch)
     for prefix in CONTENT_PREFIXES:
         for batch in _old_objects(store, prefix, before):
             if is_over():
-                return swept
-            swept += _sweep_contents(database, store, batch, before)
-    return swept
+                return deleted
+            deleted += _sweep_contents(database, store, batch, before)
+    return deleted
 
 
 def _is_older(database: Database, moment: datetime) -> bool:
     with database.read() as session:
-        births = [session.scalar(select(func.min(table.created_at))) for table in (ModelRow, MeshRow)]
-    return any(birth is not None and birth < moment for birth in births)
+        oldest_rows = [session.scalar(select(func.min(table.created_at))) for table in (ModelRow, MeshRow)]
+    return any(created_at is not None and created_at < moment for created_at in oldest_rows)
 
 
 def _old_objects(store: ObjectStore, prefix: str, before: datetime) -> Iterator[list[ListedObject]]:
-    old = (found for found in store.keys(prefix) if found.modified_at < before)
+    old = (listed for listed in store.keys(prefix) if listed.modified_at < before)
     while batch := list(islice(old, _BATCH)):
         yield batch
 
 
 def _sweep_results(database: Database, store: ObjectStore, batch: list[ListedObject]) -> SweepResult:
-    """Delete results of jobs that are gone, of attempts that published nothing, and of names that were never given."""
-    wanted = _wanted_results(database, {_job_of(found.key) for found in batch})
-    return _delete(store, (found for found in batch if not _is_wanted(found.key, wanted)))
+    """Delete results of jobs that are gone, of attempts that published nothing, and under names that no result has."""
+    wanted = _wanted_results(database, {_job_of(listed.key) for listed in batch})
+    return _delete(store, (listed for listed in batch if not _is_wanted(listed.key, wanted)))
 
 
 def _job_of(key: str) -> str:
@@ -123,17 +123,17 @@ def _is_wanted(key: str, wanted: dict[str, set[str]]) -> bool:
 
 def _sweep_contents(database: Database, store: ObjectStore, batch: list[ListedObject], before: datetime) -> SweepResult:
     """Delete meshes and models that no row names; `jobkit.storage.removals` handles uploads of the same bytes."""
-    keys = {found.key for found in batch}
+    keys = {listed.key for listed in batch}
     with database.read() as session:
         keys -= named_keys(session, keys)
     folders: defaultdict[str, list[str]] = defaultdict(list)
     for key in sorted(keys):
         folders[key.rpartition("/")[0]].append(key)
-    swept = SweepResult()
+    deleted = SweepResult()
     for folder, orphans in folders.items():
         for start in range(0, len(orphans), _CLAIMS):
-            swept += _remove(database, store, folder, orphans[start : start + _CLAIMS], before)
-    return swept
+            deleted += _remove(database, store, folder, orphans[start : start + _CLAIMS], before)
+    return deleted
 
 
 def _remove(database: Database, store: ObjectStore, folder: str, keys: list[str], before: datetime) -> SweepResult:
@@ -141,19 +141,19 @@ def _remove(database: Database, store: ObjectStore, folder: str, keys: list[str]
     claimed = claim(database, keys)
     if not claimed:
         return SweepResult()
-    # The last look at their age, now that they are claimed.
-    found = [found for found in store.keys(folder) if found.key in claimed and found.modified_at < before]
+    # Their age is checked again, now that they are claimed.
+    unreferenced = [listed for listed in store.keys(folder) if listed.key in claimed and listed.modified_at < before]
     # A deletion that failed may still take effect, so an error leaves the claims to run out.
-    swept = _delete(store, (orphan for orphan in found if time.monotonic() < deadline))
+    deleted = _delete(store, (orphan for orphan in unreferenced if time.monotonic() < deadline))
     release(database, claimed)
-    return swept
+    return deleted
 
 
 def _delete(store: ObjectStore, orphans: Iterable[ListedObject]) -> SweepResult:
-    swept = SweepResult()
+    deleted = SweepResult()
     for orphan in orphans:
-        # A file that was put there under no name of ours stays.
+        # A file whose name the store itself would not give is left alone.
         with contextlib.suppress(ObjectNotFoundError):
             store.delete(orphan.key)
-            swept += SweepResult(1, orphan.size_bytes)
-    return swept
+            deleted += SweepResult(1, orphan.size_bytes)
+    return deleted

@@ -1,7 +1,7 @@
 """The periodic task that delivers messages to subscribers: many at a time, a few to each, none waiting for another.
 
-A turn lasts as long as there is anything to send. Deliveries are at least once: what a dispatcher sent and could not
-note is sent again, under the same id.
+A round lasts as long as there is anything to send. Deliveries are at least once: a message whose answer could not be
+recorded is sent again, under the same id.
 """
 
 import asyncio
@@ -21,11 +21,11 @@ from jobkit.settings import Settings
 from jobkit.webhooks.deliveries import Deliveries
 
 MAX_PARALLEL = 64
-# Between two looks for what has become due while other deliveries are under way.
+# Between two queries for due deliveries while others are being sent.
 _LOOK_S = 0.5
-# A request that is under way at the end gets this long; broken off, it is sent again later.
+# A request that is being sent at the end gets this long; if it is broken off, it is sent again later.
 _GRACE_S = 2.0
-# Beyond the longest request, for the look-up before it and the note after it.
+# Beyond the longest request, for the look-up before it and the record after it.
 _CLAIM_MARGIN_S = 30.0
 _BATCH = 1000
 
@@ -38,9 +38,9 @@ def deliver_webhooks(database: Database, settings: Settings, is_over: IsOver) ->
     if is_over() or not is_anything_due(database):
         return ""
     with closing(Sender(settings.webhook_networks, settings.webhook_timeout_s)) as sender:
-        round_of_sending = _Round(database, sender, settings.webhook_timeout_s + _CLAIM_MARGIN_S, is_over)
-        asyncio.run(round_of_sending.run())
-    return str(dict(round_of_sending.outcomes))
+        sending = _Round(database, sender, settings.webhook_timeout_s + _CLAIM_MARGIN_S, is_over)
+        asyncio.run(sending.run())
+    return str(dict(sending.outcomes))
 
 
 def forget_old_deliveries(database: Database, days: float, is_over: IsOver) -> str:
@@ -55,7 +55,7 @@ def forget_old_deliveries(database: Database, days: float, is_over: IsOver) -> s
 
 
 class _Round:
-    """One turn of the periodic task."""
+    """One run of the periodic task."""
 
     def __init__(self, database: Database, sender: Sender, claim_s: float, is_over: IsOver) -> None:
         self._database = database
@@ -67,7 +67,7 @@ class _Round:
 
     async def run(self) -> None:
         try:
-            while not self._is_over() and await self._begin_what_is_due():
+            while not self._is_over() and await self._start_due_deliveries():
                 await self._wait_for_one(_LOOK_S)
             deadline = time.monotonic() + _GRACE_S
             while self._at_work and time.monotonic() < deadline:
@@ -77,11 +77,11 @@ class _Round:
                 task.cancel()
             await asyncio.gather(*self._at_work, return_exceptions=True)
 
-    async def _begin_what_is_due(self) -> bool:
-        """Begin to send what is due, and return whether anything is under way."""
-        busy = Counter(claim.webhook_id for claim in self._at_work.values())
-        free = MAX_PARALLEL - len(self._at_work)
-        for claim in await asyncio.to_thread(claim_due, self._database, free, busy, self._claim_s):
+    async def _start_due_deliveries(self) -> bool:
+        """Start to send what is due, and return whether anything is being sent."""
+        n_sending = Counter(claim.webhook_id for claim in self._at_work.values())
+        n_free = MAX_PARALLEL - len(self._at_work)
+        for claim in await asyncio.to_thread(claim_due, self._database, n_free, n_sending, self._claim_s):
             self._at_work[asyncio.create_task(self._send(claim))] = claim
         return bool(self._at_work)
 

@@ -26,7 +26,7 @@ from jobkit.database.tables import (
 from jobkit.jobs.attempts import AT_WORK
 from jobkit.schema import DeliveryState, JobState, MeshState, ModelState
 from jobkit.storage.damage import OBJECT_KINDS
-from jobkit.storage.scrub_due import oldest_look
+from jobkit.storage.scrub_schedule import oldest_check
 
 # They show from the start with a 0: a rate does not see what comes into being as a 1.
 _EXPECTED_OUTCOMES = (
@@ -165,7 +165,7 @@ def _scrub(session: Session, now: datetime, days: float) -> Iterator[Metric]:
         size.add_metric([kind], read[kind].size_bytes if kind in read else 0)
         damaged.add_metric([kind], found.get(kind, 0))
     yield from (objects, size, damaged)
-    oldest = oldest_look(session)
+    oldest = oldest_check(session)
     yield GaugeMetricFamily(
         "quadpatch_scrub_oldest_check_age_seconds",
         "How long ago the object was checked, or else stored, that was checked longest ago; 0: there is none.",

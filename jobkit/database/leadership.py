@@ -1,7 +1,7 @@
 """One leader among many processes: a row with a lease, taken and renewed under a lock on that row.
 
-Any number of dispatchers may run; the others stand by until the leader's lease runs out. A leader that was held up may
-believe in its lease for a moment too long, so what leaders do has to be harmless when it is done twice.
+Any number of dispatchers may run; the others stand by until the leader's lease runs out. A leader that was delayed may
+act on a lease that has just run out, so what leaders do has to be harmless when it is done twice.
 """
 
 import time
@@ -46,9 +46,9 @@ class Leadership:
 
     Attributes
     ----------
-    found_unled_at : float
+    found_leaderless_at : float
         When, by the monotonic clock, this candidate last found that none had led for longer than a handover takes:
-        all dispatchers were gone, or the database was. Minus infinity before that.
+        no dispatcher ran, or the database was unavailable. Minus infinity before that.
     """
 
     def __init__(self, database: Database, name: str, holder: str, lease_s: float) -> None:
@@ -56,24 +56,24 @@ class Leadership:
         self._name = name
         self._holder = holder
         self._lease_s = lease_s
-        self.found_unled_at = float("-inf")
+        self.found_leaderless_at = float("-inf")
 
     def lead(self) -> bool:
-        """Take the lead if it is free, or renew it; return whether this candidate leads now."""
+        """Take the lead if it is vacant, or renew it; return whether this candidate leads now."""
         with self._database.write() as session:
             now = shared_now(session)
             until = now + timedelta(seconds=self._lease_s)
             row = session.scalars(select(LeaderRow).where(LeaderRow.name == self._name).with_for_update()).one_or_none()
             if row is not None:
                 return self._take(row, now, until)
-        return self._found(until, now)
+        return self._insert_first(until, now)
 
     def _take(self, row: LeaderRow, now: datetime, until: datetime) -> bool:
         if row.holder != self._holder and row.until >= now:
             return False
-        unled_s = (now - row.until).total_seconds() + self._lease_s
-        if unled_s > _LONGEST_HANDOVER * self._lease_s:
-            self.found_unled_at = time.monotonic()
+        leaderless_s = (now - row.until).total_seconds() + self._lease_s
+        if leaderless_s > _LONGEST_HANDOVER * self._lease_s:
+            self.found_leaderless_at = time.monotonic()
         if row.holder != self._holder:
             row.holder, row.since = self._holder, now
         row.until = until
@@ -84,8 +84,8 @@ class Leadership:
         with self._database.write() as session:
             session.execute(delete(LeaderRow).where(LeaderRow.name == self._name, LeaderRow.holder == self._holder))
 
-    def _found(self, until: datetime, now: datetime) -> bool:
-        """Write the first row; of several who try at once the database lets one."""
+    def _insert_first(self, until: datetime, now: datetime) -> bool:
+        """Insert the first row; of several candidates at once one succeeds."""
         try:
             with self._database.write() as session:
                 session.add(LeaderRow(name=self._name, holder=self._holder, until=until, since=now))

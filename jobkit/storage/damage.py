@@ -22,13 +22,17 @@ class NamedObject:
     sha256: str
 
 
-def note_damaged(session: Session, named: NamedObject, now: datetime) -> bool:
+def note_damaged(session: Session, named_object: NamedObject, now: datetime) -> bool:
     """Remember that the object is damaged; return whether that is new."""
-    row = session.get(DamagedRow, named.key, with_for_update=True)
+    row = session.get(DamagedRow, named_object.key, with_for_update=True)
     if row is not None:
         row.checked_at = now
         return False
-    session.add(DamagedRow(key=named.key, kind=named.kind, sha256=named.sha256, found_at=now, checked_at=now))
+    session.add(
+        DamagedRow(
+            key=named_object.key, kind=named_object.kind, sha256=named_object.sha256, found_at=now, checked_at=now
+        )
+    )
     return True
 
 

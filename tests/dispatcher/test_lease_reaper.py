@@ -14,17 +14,17 @@ def test_workers_get_a_heartbeat_where_nobody_led_and_none_otherwise() -> None:
         return Reconciled(0, 0, 0)
 
     found_at = float("-inf")
-    keeper = LeaseReaper(reconcile, lambda: found_at, heartbeat_s=HEARTBEAT_S)
-    keeper.look(lambda: False)
+    reaper = LeaseReaper(reconcile, lambda: found_at, heartbeat_s=HEARTBEAT_S)
+    reaper.look(lambda: False)
     found_at = time.monotonic()
-    keeper.look(lambda: False)
+    reaper.look(lambda: False)
     found_at -= HEARTBEAT_S
-    keeper.look(lambda: False)
+    reaper.look(lambda: False)
     assert took_leases == [True, False, True]
 
 
 def test_what_was_found_is_told_in_words_and_nothing_in_none() -> None:
     found = [Reconciled(0, 0, 0), Reconciled(2, 1, 0)]
-    keeper = LeaseReaper(lambda _: found.pop(0), time.monotonic, heartbeat_s=1.0)
-    assert keeper.look(lambda: False) == ""
-    assert "ended=2" in keeper.look(lambda: False)
+    reaper = LeaseReaper(lambda _: found.pop(0), time.monotonic, heartbeat_s=1.0)
+    assert reaper.look(lambda: False) == ""
+    assert "ended=2" in reaper.look(lambda: False)

@@ -2,7 +2,7 @@ from collections.abc import Callable
 
 import pytest
 
-from dispatcher.missing_objects import Missing, MissingObjects
+from dispatcher.missing_objects import MissingCounts, MissingObjects
 from jobkit.database.session import Database
 from jobkit.errors import StoreUnavailableError
 from jobkit.jobs.jobs import Jobs, NewJob
@@ -26,14 +26,14 @@ def lose(database: Database, store: ObjectStore, mesh: Mesh) -> None:
 def test_a_mesh_whose_bytes_are_gone_is_marked_once(
     database: Database, store: ObjectStore, mesh: Mesh, look: MissingObjects
 ) -> None:
-    assert look.look() == Missing()
+    assert look.look() == MissingCounts()
     lose(database, store, mesh)
-    assert look.look() == Missing(meshes=1)
+    assert look.look() == MissingCounts(meshes=1)
     seen = Meshes(database).get(mesh.id)
     assert seen.state == MeshState.REJECTED
     assert seen.problem is not None
     assert seen.problem.code == MESH_MISSING
-    assert look.look() == Missing()
+    assert look.look() == MissingCounts()
 
 
 def test_a_missing_mesh_is_analysed_again_once_it_is_uploaded_again(
@@ -43,7 +43,7 @@ def test_a_missing_mesh_is_analysed_again_once_it_is_uploaded_again(
     look.look()
     again = upload(database, store, b"ply\n")
     assert (again.id, again.state, again.problem, again.format) == (mesh.id, MeshState.ANALYSING, None, "ply")
-    assert look.look() == Missing()
+    assert look.look() == MissingCounts()
 
 
 def test_a_missing_mesh_is_analysed_again_once_the_disk_is_back(
@@ -52,7 +52,7 @@ def test_a_missing_mesh_is_analysed_again_once_the_disk_is_back(
     lose(database, store, mesh)
     look.look()
     put(store, b"ply\n")
-    assert look.look() == Missing(found_again=1)
+    assert look.look() == MissingCounts(found_again=1)
     assert Meshes(database).get(mesh.id).state == MeshState.ANALYSING
 
 
@@ -69,7 +69,7 @@ def test_bytes_that_arrive_while_the_sweep_looks_are_not_missing(
             finally:
                 upload(database, store, b"ply\n")
 
-    assert MissingObjects(database, LateStore(store)).look() == Missing()
+    assert MissingObjects(database, LateStore(store)).look() == MissingCounts()
     assert Meshes(database).get(mesh.id).problem is None
 
 
@@ -87,12 +87,12 @@ def test_finished_jobs_without_their_files_are_counted_and_kept(
     database: Database, store: ObjectStore, new_job: NewJob, look: MissingObjects
 ) -> None:
     job = finish(database, store, Jobs(database).create(new_job)[0].id)
-    assert look.look() == Missing()
+    assert look.look() == MissingCounts()
     store.delete_prefix(f"results/{job.id}")
-    assert look.look() == look.look() == Missing(results=1)
+    assert look.look() == look.look() == MissingCounts(results=1)
     assert Jobs(database).get(job.id) == job
     delete_job(database, store, job.id)
-    assert look.look() == Missing()
+    assert look.look() == MissingCounts()
 
 
 def test_models_without_their_file_are_counted(
@@ -100,9 +100,9 @@ def test_models_without_their_file_are_counted(
 ) -> None:
     stored = put(store, dictionary_bytes(1), MODEL_PREFIX)
     Registry(database, store).publish("general-dictionary", stored)
-    assert look.look() == Missing()
+    assert look.look() == MissingCounts()
     store.delete(stored.key)
-    assert look.look() == Missing(models=1)
+    assert look.look() == MissingCounts(models=1)
 
 
 def test_a_look_at_few_rows_goes_on_where_the_last_one_stopped(database: Database, store: ObjectStore) -> None:
@@ -115,4 +115,4 @@ def test_a_look_at_few_rows_goes_on_where_the_last_one_stopped(database: Databas
 
 def test_a_look_breaks_off_when_told(database: Database, store: ObjectStore, mesh: Mesh, look: MissingObjects) -> None:
     lose(database, store, mesh)
-    assert look.look(lambda: True) == Missing()
+    assert look.look(lambda: True) == MissingCounts()

@@ -4,7 +4,7 @@ from datetime import timedelta
 from sqlalchemy import update
 
 from dispatcher.backoff import DELAYS_S, JITTER
-from dispatcher.outbox import MAX_PER_WEBHOOK, PATIENCE, Claim, claim_due, is_anything_due, note_answer
+from dispatcher.outbox import DISABLE_AFTER, MAX_PER_WEBHOOK, Claim, claim_due, is_anything_due, note_answer
 from dispatcher.sending import Answer
 from jobkit.database.clock import utc_now
 from jobkit.database.session import Database
@@ -148,7 +148,7 @@ def test_a_subscription_that_took_nothing_for_days_is_switched_off(
 ) -> None:
     webhook = subscribe(URL)
     delivery = deliveries.send_test(webhook.id)
-    set_failing(database, webhook.id, PATIENCE)
+    set_failing(database, webhook.id, DISABLE_AFTER)
     exhaust(database, delivery.id)
     assert not webhooks.get(webhook.id).enabled
 
@@ -158,7 +158,7 @@ def test_a_success_wipes_the_history_of_failure(
 ) -> None:
     webhook = subscribe(URL)
     deliveries.send_test(webhook.id)
-    set_failing(database, webhook.id, 2 * PATIENCE)
+    set_failing(database, webhook.id, 2 * DISABLE_AFTER)
     (claim,) = claims_of(database)
     note_answer(database, claim, TAKEN, 0.5)
     assert webhooks.get(webhook.id).failing_since is None

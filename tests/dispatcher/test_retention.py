@@ -2,7 +2,7 @@
 
 from datetime import timedelta
 
-from dispatcher.periodic_tasks import duties_of
+from dispatcher.periodic_tasks import periodic_tasks
 from dispatcher.retention import Sweeper, remove_expired
 from dispatcher.unreferenced_objects import GRACE
 from jobkit.database.leadership import Leadership
@@ -57,7 +57,7 @@ def test_a_sweep_tells_what_it_found_in_either_direction(database: Database, sto
 def test_all_are_duties_of_the_dispatcher(settings: Settings, database: Database, store: ObjectStore) -> None:
     queue = TaskQueue(settings.redis_url.get_secret_value(), settings.queue_name, 60)
     leadership = Leadership(database, "dispatcher", "a", 60)
-    tasks = {task.name: task for task in duties_of(settings, database, store, queue, leadership)}
+    tasks = {task.name: task for task in periodic_tasks(settings, database, store, queue, leadership)}
     upload(database, store, b"scan")
     age_rows(database, 31 * DAY)
     assert tasks["retention"].work(never) == "removed 0 jobs and 1 meshes"

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from dispatcher.missing_objects import Missing, MissingObjects
-from dispatcher.scrub import Scrub, Scrubbed, ScrubLimits
+from dispatcher.missing_objects import MissingCounts, MissingObjects
+from dispatcher.scrub import Scrub, ScrubCounts, ScrubLimits
 from jobkit.database.clock import utc_now
 from jobkit.database.session import Database
 from jobkit.errors import StoreUnavailableError
@@ -16,7 +16,7 @@ from jobkit.meshes import MESH_DAMAGED, Meshes
 from jobkit.models.registry import MODEL_PREFIX, Registry
 from jobkit.schema import Mesh, MeshState
 from jobkit.storage.base import CHUNK_BYTES, ObjectStore, result_key
-from jobkit.storage.scrub_due import oldest_look
+from jobkit.storage.scrub_schedule import oldest_check
 from tests.jobkit.fixtures import DAY, AgingStore, age_rows, damage, finish, new_job, put, upload
 from tests.waiting import GUARD_S
 
@@ -76,12 +76,12 @@ def test_every_object_that_a_row_names_is_read_once_in_the_period(
 ) -> None:
     keys = hold_everything(database, reads, dictionary_bytes)
     put(reads, b"no row names it")
-    assert scrub.round() == Scrubbed()
+    assert scrub.round() == ScrubCounts()
     age_rows(database, 28 * DAY)
     size_bytes = sum(reads.size(key) for key in keys)
-    assert scrub.round() == Scrubbed(objects=3, size_bytes=size_bytes)
+    assert scrub.round() == ScrubCounts(objects=3, size_bytes=size_bytes)
     assert sorted(reads.read_keys) == sorted(keys)
-    assert scrub.round() == Scrubbed()
+    assert scrub.round() == ScrubCounts()
     age_rows(database, 28 * DAY)
     assert scrub.round().objects == 3
 
@@ -101,7 +101,7 @@ def test_damage_is_found_told_once_and_over_when_the_bytes_are_back(
     damage(any_store, key, tmp_path)
     age_rows(database, 28 * DAY)
     assert scrub.round().damaged == 1
-    assert scrub.round() == Scrubbed()
+    assert scrub.round() == ScrubCounts()
     age_rows(database, DAY)
     assert (found := scrub.round()).objects == 1
     assert found.damaged == 0
@@ -109,7 +109,7 @@ def test_damage_is_found_told_once_and_over_when_the_bytes_are_back(
     age_rows(database, DAY)
     assert scrub.round().objects == 1
     age_rows(database, DAY)
-    assert scrub.round() == Scrubbed()
+    assert scrub.round() == ScrubCounts()
 
 
 def test_a_damaged_mesh_is_rejected_and_analysed_again_once_it_is_whole(
@@ -131,7 +131,7 @@ def test_a_damaged_mesh_is_rejected_and_analysed_again_once_it_is_whole(
 def test_bits_that_flip_on_the_way_are_no_damage(database: Database, reads: Reads, scrub: Scrub, mesh: Mesh) -> None:
     age_rows(database, 28 * DAY)
     reads.flips = 1
-    assert scrub.round() == Scrubbed(objects=1, size_bytes=2 * mesh.size_bytes)
+    assert scrub.round() == ScrubCounts(objects=1, size_bytes=2 * mesh.size_bytes)
     assert len(reads.read_keys) == 2
 
 
@@ -154,7 +154,7 @@ def test_a_sector_that_cannot_be_read_holds_up_no_other_object(
     age_rows(database, DAY)
     upload(database, reads, b"another")
     age_rows(database, 28 * DAY)
-    assert scrub.round() == Scrubbed(objects=2, size_bytes=len(b"another"), damaged=1)
+    assert scrub.round() == ScrubCounts(objects=2, size_bytes=len(b"another"), damaged=1)
 
 
 def test_a_store_that_is_away_damages_nothing(
@@ -173,7 +173,7 @@ def test_an_object_that_is_gone_is_left_to_the_sweep(
     reads.delete(key_of(database, mesh))
     age_rows(database, 28 * DAY)
     assert scrub.round().damaged == 0
-    assert MissingObjects(database, reads).look() == Missing(meshes=1)
+    assert MissingObjects(database, reads).look() == MissingCounts(meshes=1)
 
 
 def test_a_round_reads_no_faster_and_no_more_than_it_may(database: Database, reads: Reads) -> None:
@@ -198,13 +198,13 @@ def test_a_round_breaks_off_in_the_middle_of_an_object_and_counts_it_not(
     age_rows(database, 28 * DAY)
     chunks: list[None] = []
     reads.on_chunk = lambda: chunks.append(None)
-    assert scrub.round(lambda: len(chunks) >= 2) == Scrubbed()
+    assert scrub.round(lambda: len(chunks) >= 2) == ScrubCounts()
     assert scrub.round().objects == 1
 
 
 def test_zero_days_switch_it_off(database: Database, reads: Reads, mesh: Mesh) -> None:
     age_rows(database, 3_000 * DAY)
-    assert Scrub(database, reads, replace(LIMITS, days=0)).round() == Scrubbed()
+    assert Scrub(database, reads, replace(LIMITS, days=0)).round() == ScrubCounts()
     assert reads.read_keys == []
 
 
@@ -215,7 +215,7 @@ def test_the_oldest_look_moves_on_with_what_is_read(
     age_rows(any_database, 28 * DAY)
     for age, act in ((28 * DAY, lambda: Scrub(any_database, reads, LIMITS).round()), (0 * DAY, lambda: None)):
         with any_database.read() as session:
-            oldest = oldest_look(session)
+            oldest = oldest_check(session)
         assert oldest is not None
         assert age <= utc_now() - oldest < age + DAY
         act()

@@ -9,7 +9,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from sqlalchemy import select
 
-from dispatcher.missing_objects import Missing, MissingObjects
+from dispatcher.missing_objects import MissingCounts, MissingObjects
 from dispatcher.unreferenced_objects import GRACE, sweep_objects
 from jobkit.database.clock import utc_now
 from jobkit.database.session import Database
@@ -145,7 +145,7 @@ def test_no_row_lacks_its_object_and_no_old_object_its_row(
     world.store.kill_countdown = None
     world.wait(timedelta(hours=25))
     sweep_objects(database, world.store, utc_now())
-    assert MissingObjects(database, world.store).look() == Missing()
+    assert MissingObjects(database, world.store).look() == MissingCounts()
     with database.read() as session:
         unnamed = world.old_objects() - world.named() - named_keys(session, keys_in(store))
         at_work = {row.id for row in session.scalars(select(JobRow)) if not JobState(row.state).is_terminal}

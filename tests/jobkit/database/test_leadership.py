@@ -78,9 +78,9 @@ def test_a_handover_is_no_outage_and_a_long_vacancy_is_one(database: Database) -
     assert same.lead()
     let_pass(database, 1.1 * lease_s)
     assert same.lead()
-    assert same.found_unled_at == float("-inf")
+    assert same.found_leaderless_at == float("-inf")
     for late in (same, other):
         let_pass(database, 2 * lease_s)
         before = time.monotonic()
         assert late.lead()
-        assert late.found_unled_at >= before
+        assert late.found_leaderless_at >= before

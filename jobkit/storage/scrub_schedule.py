@@ -1,7 +1,4 @@
-"""Which objects the scrub reads next: those that were not looked at for longest, and damaged ones once an hour.
-
-Tested in `tests/dispatcher/test_scrub.py`.
-"""
+"""Which objects the scrub reads next: the one checked longest ago first, and damaged ones once an hour."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -15,7 +12,7 @@ from jobkit.database.tables import DamagedRow, JobRow, MeshRow, ModelRow
 from jobkit.storage.base import result_key
 from jobkit.storage.damage import NamedObject
 
-DAMAGED_AGAIN = timedelta(hours=1)
+RECHECK_DAMAGED_AFTER = timedelta(hours=1)
 # A tenth of the period is left for the reading itself.
 DUE_SHARE = 0.9
 _BATCH = 100
@@ -25,16 +22,16 @@ Since = InstrumentedAttribute[datetime] | InstrumentedAttribute[datetime | None]
 
 
 @dataclass(frozen=True)
-class Due:
+class ScheduledRead:
     """Objects that are read together.
 
     Attributes
     ----------
     at : datetime
-        The latest look at them, or when they were stored.
+        The latest check, or when they were stored.
     objects : tuple of NamedObject
     row : condition on one row, optional
-        The row of `table` that names them; None where they are looked at again because they are damaged.
+        The row of `table` that names them; None where they are read again because they are damaged.
     """
 
     at: datetime
@@ -43,7 +40,7 @@ class Due:
     row: ColumnElement[bool] | None = None
 
 
-def due_objects(session: Session, days: float, now: datetime) -> list[Due]:
+def due_reads(session: Session, days: float, now: datetime) -> list[ScheduledRead]:
     """Return what is due, the longest overdue first; at most a hundred of each kind.
 
     Parameters
@@ -54,11 +51,11 @@ def due_objects(session: Session, days: float, now: datetime) -> list[Due]:
     now : datetime
     """
     before = now - DUE_SHARE * timedelta(days=days)
-    found = [*_damaged(session, now), *_meshes(session, before), *_models(session, before), *_jobs(session, before)]
-    return sorted(found, key=lambda due: due.at)
+    reads = [*_damaged(session, now), *_meshes(session, before), *_models(session, before), *_jobs(session, before)]
+    return sorted(reads, key=lambda scheduled: scheduled.at)
 
 
-def oldest_look(session: Session) -> datetime | None:
+def oldest_check(session: Session) -> datetime | None:
     """Return when the object was checked, or else stored, that was checked longest ago; None: there is none."""
     has_result = JobRow.result.is_not(None)
     queries = [
@@ -70,36 +67,38 @@ def oldest_look(session: Session) -> datetime | None:
 
 
 def _oldest(checked_at: Checked, since: Since, *conditions: ColumnElement[bool]) -> list[Select[Any]]:
-    """Ask for the oldest check and for the oldest birth without one, so that an index can answer either."""
+    """Ask for the oldest check and for the oldest row without one, so that an index can answer either."""
     first = select(checked_at).where(checked_at.is_not(None), *conditions).order_by(checked_at).limit(1)
-    unseen = select(since).where(checked_at.is_(None), since.is_not(None), *conditions).order_by(since).limit(1)
-    return [first, unseen]
+    never_checked = select(since).where(checked_at.is_(None), since.is_not(None), *conditions).order_by(since).limit(1)
+    return [first, never_checked]
 
 
-def _damaged(session: Session, now: datetime) -> Iterator[Due]:
-    query = select(DamagedRow).where(DamagedRow.checked_at < now - DAMAGED_AGAIN)
+def _damaged(session: Session, now: datetime) -> Iterator[ScheduledRead]:
+    query = select(DamagedRow).where(DamagedRow.checked_at < now - RECHECK_DAMAGED_AFTER)
     for row in session.scalars(query.order_by(DamagedRow.checked_at).limit(_BATCH)):
-        yield Due(row.checked_at, (NamedObject(row.kind, row.key, row.sha256),))
+        yield ScheduledRead(row.checked_at, (NamedObject(row.kind, row.key, row.sha256),))
 
 
-def _meshes(session: Session, before: datetime) -> Iterator[Due]:
+def _meshes(session: Session, before: datetime) -> Iterator[ScheduledRead]:
     for row in _rows(session, MeshRow, MeshRow.created_at, before):
-        named = NamedObject("mesh", row.key, row.id)
-        yield Due(row.checked_at or row.created_at, (named,), MeshRow, MeshRow.id == row.id)
+        named_object = NamedObject("mesh", row.key, row.id)
+        yield ScheduledRead(row.checked_at or row.created_at, (named_object,), MeshRow, MeshRow.id == row.id)
 
 
-def _models(session: Session, before: datetime) -> Iterator[Due]:
+def _models(session: Session, before: datetime) -> Iterator[ScheduledRead]:
     for row in _rows(session, ModelRow, ModelRow.created_at, before):
         same = and_(ModelRow.name == row.name, ModelRow.version == row.version)
-        named = NamedObject("model", row.key, row.sha256)
-        yield Due(row.checked_at or row.created_at, (named,), ModelRow, same)
+        named_object = NamedObject("model", row.key, row.sha256)
+        yield ScheduledRead(row.checked_at or row.created_at, (named_object,), ModelRow, same)
 
 
-def _jobs(session: Session, before: datetime) -> Iterator[Due]:
+def _jobs(session: Session, before: datetime) -> Iterator[ScheduledRead]:
     for row in _rows(session, JobRow, JobRow.finished_at, before, JobRow.result.is_not(None)):
         files = (row.result or {}).get("files", [])
-        named = [NamedObject("result", result_key(row.id, row.attempt, f["name"]), f["sha256"]) for f in files]
-        yield Due(row.checked_at or row.finished_at or before, tuple(named), JobRow, JobRow.id == row.id)
+        named_object = [NamedObject("result", result_key(row.id, row.attempt, f["name"]), f["sha256"]) for f in files]
+        yield ScheduledRead(
+            row.checked_at or row.finished_at or before, tuple(named_object), JobRow, JobRow.id == row.id
+        )
 
 
 def _rows(session: Session, table: Any, since: Since, before: datetime, *conditions: ColumnElement[bool]) -> list[Any]:
