@@ -1,4 +1,4 @@
-"""`python -m service` serves; `python -m service openapi` prints the document; `settings` prints what can be set."""
+"""`python -m service` serves; with `openapi` it prints the OpenAPI document, with `settings` the table of settings."""
 
 import socket
 import sys
@@ -56,7 +56,7 @@ def _serve(app: FastAPI, settings: Settings) -> None:
         host=settings.host,
         port=settings.port,
         log_level=settings.log_level,
-        # Its lines, those of requests among them, go the way of all others.
+        # Its log lines, those of requests among them, go to the log of this process.
         log_config=None,
         # What stands in front may be trusted with the scheme, but never with the client's address.
         proxy_headers=False,
@@ -76,8 +76,8 @@ class _Server(uvicorn.Server):
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
         """Stop serving."""
         services = cast(FastAPI, self.config.app).state.services
-        for held in (services.streams, services.job_waiters, services.mesh_waiters, services.model_waiters):
-            held.close()
+        for waiting_requests in (services.streams, services.job_waiters, services.mesh_waiters, services.model_waiters):
+            waiting_requests.close()
         await super().shutdown(sockets)
 
 

@@ -12,14 +12,15 @@ from fastapi import FastAPI
 from jobkit.settings import Settings
 from jobkit.telemetry import Telemetry
 from service.auth import AuthMiddleware, check_exposure
-from service.bodies import BodiesMiddleware
+from service.body_limit import BodyLimitMiddleware
+from service.cached_answer import READINESS_CACHE_S, CachedAnswer
 from service.document import TITLE, VERSION, install_document, operation_id
 from service.handlers import install_handlers
-from service.head import HeadMiddleware
-from service.kept import KEPT_S, Kept
+from service.head_requests import HeadMiddleware
 from service.metrics import StateCollector, new_registry
-from service.observe import ObserveMiddleware
+from service.pacing import Pacer, PacingMiddleware
 from service.request_context import RequestContextMiddleware
+from service.request_telemetry import RequestTelemetryMiddleware
 from service.routes import (
     deliveries,
     events,
@@ -35,7 +36,6 @@ from service.routes import (
     webhooks,
 )
 from service.services import open_services
-from service.turns import Turns, TurnsMiddleware
 
 
 def create_app(settings: Settings, telemetry: Telemetry | None = None) -> FastAPI:
@@ -66,7 +66,7 @@ def create_app(settings: Settings, telemetry: Telemetry | None = None) -> FastAP
     app.state.settings = settings
     app.state.max_json_bytes = settings.max_json_kb << 10
     app.state.registry = new_registry()
-    app.state.readiness = Kept(KEPT_S)
+    app.state.readiness = CachedAnswer(READINESS_CACHE_S)
     app.state.documents = {}
     app.state.telemetry = telemetry or Telemetry()
     about_jobs = (meshes, jobs, events, results, repairs, retention)
@@ -78,11 +78,11 @@ def create_app(settings: Settings, telemetry: Telemetry | None = None) -> FastAP
     install_handlers(app, [route for router in routers for route in router.routes])
     # The last one added is the outermost: ids and headers also stand on the answers of the auth middleware.
     app.add_middleware(HeadMiddleware)
-    app.add_middleware(BodiesMiddleware, most=settings.max_bodies)
+    app.add_middleware(BodyLimitMiddleware, most=settings.max_bodies)
     app.add_middleware(AuthMiddleware, settings=settings)
     app.add_middleware(RequestContextMiddleware)
-    app.add_middleware(ObserveMiddleware, registry=app.state.registry, telemetry=app.state.telemetry)
-    app.add_middleware(TurnsMiddleware, turns=Turns())
+    app.add_middleware(RequestTelemetryMiddleware, registry=app.state.registry, telemetry=app.state.telemetry)
+    app.add_middleware(PacingMiddleware, pacer=Pacer())
     return app
 
 

@@ -1,4 +1,4 @@
-"""Who may call. Without keys only this machine may, and only its own pages' scripts."""
+"""Authentication: API keys; without keys only requests from this machine and from pages of the same origin."""
 
 import hashlib
 import hmac
@@ -10,7 +10,7 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 
 from jobkit.errors import SettingsError
 from jobkit.settings import Settings
-from service.authority import Authority, parse_origin, plain_host, requested_authority
+from service.host_header import Authority, parse_origin, plain_host, requested_authority
 from service.problems import ProblemError, problem_response
 
 PUBLIC_PATHS = frozenset({"/", "/healthz", "/readyz", "/openapi.yaml", "/openapi.json"})
@@ -45,7 +45,7 @@ def public_paths(settings: Settings) -> frozenset[str]:
 
 
 class KeyRing:
-    """The accepted keys, as hashes: a dump of this process's memory should not hand them out."""
+    """The accepted keys, as hashes: a dump of the memory of this process does not show them."""
 
     def __init__(self, keys: list[str]) -> None:
         self._hashes = [hashlib.sha256(key.encode()).digest() for key in keys]
@@ -82,7 +82,7 @@ class AuthMiddleware:
     def _principal(self, request: Request) -> str:
         authority = requested_authority(request.scope)
         if self._keys is None:
-            self._refuse_strange_pages(request, authority)
+            self._refuse_foreign_pages(request, authority)
             return LOCAL_PRINCIPAL
         if request.scope["path"] in self._public_paths:
             return "anonymous"
@@ -96,7 +96,7 @@ class AuthMiddleware:
             )
         return principal
 
-    def _refuse_strange_pages(self, request: Request, authority: Authority | None) -> None:
+    def _refuse_foreign_pages(self, request: Request, authority: Authority | None) -> None:
         # A page from elsewhere can make the user's browser call this machine. Its name then stands in Origin, or,
         # when its own name was made to mean 127.0.0.1, in Host.
         if authority is None or authority.host not in self._own_names:

@@ -1,10 +1,8 @@
 """Connections under limits: how many there are, how long and how large the head of a request may be, how slow its body.
 
 uvicorn has none of these limits. A connection costs a client a packet and the service a descriptor, so a client that
-opens thousands and sends nothing would keep all others out. Where there are too many, the one goes that has waited
-longest for its client; where all of them have a request at work, the newest is refused.
-
-Tested in `tests/attacks/test_d_one_client_alone.py`.
+opens thousands and sends nothing would keep all others out. Where there are too many, the connection that has waited
+longest for its client is closed; where all of them have a request at work, the newest is refused.
 """
 
 import asyncio
@@ -45,7 +43,7 @@ class ConnectionLimits:
         self.head_s = head_s
         self.body_s = body_s
         self.n_open = 0
-        # Those that wait for their client, with the moment at which that was enough; the longest waiting first.
+        # Those that wait for their client, with the time at which the wait ends; the longest waiting first.
         self._idle: OrderedDict[LimitedProtocol, float] = OrderedDict()
         self._timer: asyncio.TimerHandle | None = None
 
@@ -65,10 +63,10 @@ class ConnectionLimits:
         """End the connection that has waited longest where there are too many; return whether there is room."""
         if self.n_open <= self.most:
             return True
-        victim = next(iter(self._idle), None)
-        if victim is None:
+        oldest = next(iter(self._idle), None)
+        if oldest is None:
             return False
-        victim.drop()
+        oldest.drop()
         return True
 
     def _end_overdue(self, loop: asyncio.AbstractEventLoop) -> None:
@@ -100,7 +98,7 @@ class LimitedProtocol(HttpToolsProtocol):
         self.limits.wait_for(self, self.limits.head_s)
 
     def connection_lost(self, exc: Exception | None) -> None:
-        """Give its place back."""
+        """Count it no longer."""
         self.limits.n_open -= 1
         self.limits.heard(self)
         super().connection_lost(exc)
@@ -120,7 +118,7 @@ class LimitedProtocol(HttpToolsProtocol):
             self.limits.wait_for(self, self.limits.body_s)
 
     def on_message_begin(self) -> None:
-        """Start with a head: its clock runs from the first byte, and no later byte winds it back."""
+        """Start with a head: its clock runs from the first byte, and later bytes do not reset it."""
         super().on_message_begin()
         self._in_head = True
         self.limits.wait_for(self, self.limits.head_s)
@@ -135,7 +133,7 @@ class LimitedProtocol(HttpToolsProtocol):
         super().on_headers_complete()
 
     def on_message_complete(self) -> None:
-        """Leave the clock: what takes time now is ours."""
+        """Stop the clock: from here on the service takes the time."""
         self._n_whole += 1
         self.limits.heard(self)
         super().on_message_complete()
@@ -147,12 +145,12 @@ class LimitedProtocol(HttpToolsProtocol):
             self.limits.wait_for(self, self.limits.head_s)
 
     def pause_writing(self) -> None:
-        """Wait for a client that does not read, but not for ever."""
+        """Wait for a client that does not read, up to the limit of a body."""
         super().pause_writing()
         self.limits.wait_for(self, self.limits.body_s)
 
     def resume_writing(self) -> None:
-        """Leave the clock to the request again."""
+        """Stop the clock again."""
         super().resume_writing()
         self.limits.heard(self)
 
@@ -170,7 +168,7 @@ class LimitedProtocol(HttpToolsProtocol):
             self.drop()
 
     def drop(self) -> None:
-        """Close a connection without a word, and at once: its client may never take what waits for it."""
+        """Close a connection at once and without an answer: its client may never read what is buffered."""
         self._is_ended = True
         self.limits.heard(self)
         self.transport.abort()
@@ -202,7 +200,7 @@ class LimitedProtocol(HttpToolsProtocol):
         if code == TOO_MANY:
             self.transport.close()
             return
-        # What a client still sends is read and thrown away for a moment: a reset would take the answer from it.
+        # What a client still sends is read and discarded for a moment: a reset would discard the answer at the client.
         if self.transport.can_write_eof():
             self.transport.write_eof()
         self.loop.call_later(_LINGER_S, self.transport.abort)

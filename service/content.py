@@ -15,7 +15,7 @@ from starlette.responses import Response, StreamingResponse
 
 from jobkit.storage.damage import refuse_damaged
 from jobkit.storage.digests import digest_field, verified_chunks
-from service.head import is_head
+from service.head_requests import is_head
 from service.problems import ProblemError
 from service.services import Services
 
@@ -67,14 +67,14 @@ def content_response(request: Request, services: Services, content: Content) -> 
     if etag_matches(request.headers.get("if-none-match"), headers["ETag"]):
         return Response(status_code=HTTPStatus.NOT_MODIFIED, headers=headers)
     refuse_damaged(services.database, content.key)
-    span = _asked_range(request, content)
+    span = _requested_range(request, content)
     status, start, length = HTTPStatus.OK, 0, content.size_bytes
     if span is not None:
         status, (start, length) = HTTPStatus.PARTIAL_CONTENT, span
         headers["Content-Range"] = f"bytes {start}-{start + length - 1}/{content.size_bytes}"
     headers["Content-Length"] = str(length)
     if is_head(request.scope):
-        services.store.size(content.key)  # or the answer would promise what the store has lost
+        services.store.size(content.key)  # raises where the store has lost the object
         return Response(None, status, headers, content.media_type)
     chunks = services.store.read(content.key, start, length)
     if span is None:
@@ -115,7 +115,7 @@ def repaired_name(filename: str | None, mesh_id: str, suffix: str) -> str:
     return f"{stem}-repaired{suffix}"
 
 
-def _asked_range(request: Request, content: Content) -> tuple[int, int] | None:
+def _requested_range(request: Request, content: Content) -> tuple[int, int] | None:
     header = request.headers.get("range")
     condition = request.headers.get("if-range")
     if header is None or (condition is not None and condition != f'"{content.sha256}"'):

@@ -1,7 +1,4 @@
-"""What the tables say, as families of metrics.
-
-Tested in `tests/service/test_metrics.py`.
-"""
+"""Metrics that are read from the tables."""
 
 from collections.abc import Iterator
 from datetime import datetime, timedelta
@@ -28,7 +25,7 @@ from jobkit.schema import DeliveryState, JobState, MeshState, ModelState
 from jobkit.storage.damage import OBJECT_KINDS
 from jobkit.storage.scrub_schedule import oldest_check
 
-# They show from the start with a 0: a rate does not see what comes into being as a 1.
+# They start at 0: the rate of a counter that first appears with 1 is 0.
 _EXPECTED_OUTCOMES = (
     (JobState.SUCCEEDED.value, ""),
     (JobState.SUCCEEDED_WITH_WARNINGS.value, ""),
@@ -46,7 +43,7 @@ def database_figures(database: Database, lease_s: float, scrub_days: float) -> l
     ----------
     database : Database
     lease_s : float
-        How long leases last, in seconds: they tell only when they end.
+        How long leases last, in seconds: the rows hold only when they end.
     scrub_days : float
         Days within which all objects are to be read; 0: never.
 
@@ -59,7 +56,7 @@ def database_figures(database: Database, lease_s: float, scrub_days: float) -> l
         now = shared_now(session)
         return [
             *_states(session),
-            *_waiting(session, now),
+            *_waiting_tasks(session, now),
             *_leases(session, now, lease_s),
             *_totals(session),
             *_models(session),
@@ -70,34 +67,38 @@ def database_figures(database: Database, lease_s: float, scrub_days: float) -> l
 def _states(session: Session) -> Iterator[Metric]:
     job_states = [state.value for state in JobState]
     mesh_states = [state.value for state in MeshState]
-    yield _by("quadpatch_jobs", "Jobs that are kept, by state.", _counts(session, JobRow.state), job_states)
-    yield _by("quadpatch_meshes", "Meshes that are kept, by state.", _counts(session, MeshRow.state), mesh_states)
+    yield _gauge_by_state("quadpatch_jobs", "Jobs that are kept, by state.", _counts(session, JobRow.state), job_states)
+    yield _gauge_by_state(
+        "quadpatch_meshes", "Meshes that are kept, by state.", _counts(session, MeshRow.state), mesh_states
+    )
     models, proof_states = _counts(session, ModelRow.state), [state.value for state in ModelState]
-    yield _by("quadpatch_models", "Versions of models, by state.", models, proof_states)
+    yield _gauge_by_state("quadpatch_models", "Versions of models, by state.", models, proof_states)
     deliveries, states = _counts(session, DeliveryRow.state), [state.value for state in DeliveryState]
-    yield _by("quadpatch_webhook_deliveries", "Messages to subscribers that are kept, by state.", deliveries, states)
+    yield _gauge_by_state(
+        "quadpatch_webhook_deliveries", "Messages to subscribers that are kept, by state.", deliveries, states
+    )
 
 
-def _waiting(session: Session, now: datetime) -> Iterator[Metric]:
-    queued = JobRow.state == JobState.QUEUED.value
-    at_hand = or_(MeshRow.lease_until.is_(None), MeshRow.lease_until < now)
-    unseen = (MeshRow.state == MeshState.ANALYSING.value) & at_hand
-    n_jobs, first_job = _count_and_first(session, JobRow.queued_at, queued)
-    n_meshes, first_mesh = _count_and_first(session, MeshRow.updated_at, unseen)
-    working = session.scalars(select(func.count()).where(JobRow.state.in_(AT_WORK))).one()
-    analysed = (MeshRow.state == MeshState.ANALYSING.value) & (MeshRow.lease_until >= now)
-    inspecting = session.scalars(select(func.count()).where(analysed)).one()
+def _waiting_tasks(session: Session, now: datetime) -> Iterator[Metric]:
+    is_queued = JobRow.state == JobState.QUEUED.value
+    is_free = or_(MeshRow.lease_until.is_(None), MeshRow.lease_until < now)
+    is_unstarted = (MeshRow.state == MeshState.ANALYSING.value) & is_free
+    n_jobs, first_job = _count_and_first(session, JobRow.queued_at, is_queued)
+    n_meshes, first_mesh = _count_and_first(session, MeshRow.updated_at, is_unstarted)
+    n_running = session.scalars(select(func.count()).where(JobRow.state.in_(AT_WORK))).one()
+    is_analysed = (MeshRow.state == MeshState.ANALYSING.value) & (MeshRow.lease_until >= now)
+    n_analysing = session.scalars(select(func.count()).where(is_analysed)).one()
     n_models, first_model = _count_and_first(session, ModelRow.created_at, _is_proving() & ~_is_leased(now))
-    proven = session.scalars(select(func.count()).where(_is_proving() & _is_leased(now))).one()
+    n_proving = session.scalars(select(func.count()).where(_is_proving() & _is_leased(now))).one()
     length = GaugeMetricFamily("quadpatch_queue_length", "Tasks that wait for a worker, by kind.", labels=["kind"])
     oldest = GaugeMetricFamily(
         "quadpatch_queue_oldest_age_seconds", "How long the longest of them has waited; 0: none waits.", labels=["kind"]
     )
     at_work = GaugeMetricFamily("quadpatch_tasks_at_work", "Tasks that workers are at, by kind.", labels=["kind"])
     for kind, n_waiting, first, n_working in (
-        ("repair", n_jobs, first_job, working),
-        ("analysis", n_meshes, first_mesh, inspecting),
-        ("proof", n_models, first_model, proven),
+        ("repair", n_jobs, first_job, n_running),
+        ("analysis", n_meshes, first_mesh, n_analysing),
+        ("proof", n_models, first_model, n_proving),
     ):
         length.add_metric([kind], n_waiting)
         oldest.add_metric([kind], 0 if first is None else max(0.0, (now - first).total_seconds()))
@@ -158,12 +159,12 @@ def _scrub(session: Session, now: datetime, days: float) -> Iterator[Metric]:
     objects = CounterMetricFamily("quadpatch_scrub_objects", "Objects that the scrub has read.", labels=["kind"])
     size = CounterMetricFamily("quadpatch_scrub_bytes", "Bytes that the scrub has read.", labels=["kind"])
     damaged = GaugeMetricFamily("quadpatch_damaged_objects", "Objects known to be damaged, by kind.", labels=["kind"])
-    read = {row.kind: row for row in session.scalars(select(ScrubRow))}
-    found = _counts(session, DamagedRow.kind)
+    counts = {row.kind: row for row in session.scalars(select(ScrubRow))}
+    damaged_counts = _counts(session, DamagedRow.kind)
     for kind in OBJECT_KINDS:
-        objects.add_metric([kind], read[kind].objects if kind in read else 0)
-        size.add_metric([kind], read[kind].size_bytes if kind in read else 0)
-        damaged.add_metric([kind], found.get(kind, 0))
+        objects.add_metric([kind], counts[kind].objects if kind in counts else 0)
+        size.add_metric([kind], counts[kind].size_bytes if kind in counts else 0)
+        damaged.add_metric([kind], damaged_counts.get(kind, 0))
     yield from (objects, size, damaged)
     oldest = oldest_check(session)
     yield GaugeMetricFamily(
@@ -183,9 +184,9 @@ def _counts(session: Session, column: InstrumentedAttribute[str]) -> dict[str, i
     return {str(row[0]): int(row[1]) for row in rows}
 
 
-def _by(name: str, words: str, counts: dict[str, int], states: list[str]) -> Metric:
-    """Make a gauge by state; the states that are named show with a 0 where there is none."""
-    family = GaugeMetricFamily(name, words, labels=["state"])
+def _gauge_by_state(name: str, help_text: str, counts: dict[str, int], states: list[str]) -> Metric:
+    """Make a gauge by state; `states` without a count are 0."""
+    family = GaugeMetricFamily(name, help_text, labels=["state"])
     for state in dict.fromkeys([*states, *counts]):
         family.add_metric([state], counts.get(state, 0))
     return family

@@ -15,7 +15,7 @@ from fastapi import Request
 from service.problems import ProblemError
 
 DIGEST_HEADERS = ("content-digest", "repr-digest")
-# Those that RFC 9530 calls active; others are passed over, as it asks.
+# Those that RFC 9530 calls active; others are ignored, as it requires.
 _ALGORITHMS = {"sha-256": "sha256", "sha-512": "sha512"}
 # Transfer encodings of mail that leave bytes as they are.
 _PLAIN = ("", "7bit", "8bit", "binary")
@@ -47,16 +47,16 @@ def refuse_coding(headers: Mapping[str, str]) -> None:
 
 
 class StatedDigests:
-    """Bytes on their way, held against the digests that headers state.
+    """A check of arriving bytes against the digests that headers state.
 
     Without a coding the content is the representation, so both headers speak of the same bytes.
 
     Parameters
     ----------
-    what : str
+    subject : str
         What the headers speak of, for messages.
     headers : sequence of (str, str)
-        Names in lower case; other headers than `DIGEST_HEADERS` are passed over.
+        Names in lower case; other headers than `DIGEST_HEADERS` are ignored.
 
     Raises
     ------
@@ -64,30 +64,31 @@ class StatedDigests:
         400 if a header can't be read.
     """
 
-    def __init__(self, what: str, headers: Iterable[tuple[str, str]]) -> None:
-        self._what = what
-        given = [(name, value) for name, value in headers if name in DIGEST_HEADERS]
-        self._stated = [(name, *stated) for name, value in given for stated in _read_digests(name, value)]
+    def __init__(self, subject: str, headers: Iterable[tuple[str, str]]) -> None:
+        self._subject = subject
+        digest_headers = [(name, value) for name, value in headers if name in DIGEST_HEADERS]
+        self._stated = [(name, *stated) for name, value in digest_headers for stated in _read_digests(name, value)]
         self._hashes = {algorithm: hashlib.new(_ALGORITHMS[algorithm]) for _, algorithm, _ in self._stated}
 
     def update(self, data: bytes | bytearray) -> None:
-        """Take bytes that arrived."""
+        """Add bytes that arrived."""
         for running in self._hashes.values():
             running.update(data)
 
     def check(self) -> None:
-        """Hold what arrived against what was stated; raise ProblemError, 400, where they differ."""
+        """Compare what arrived with what was stated; raise ProblemError, 400, where they differ."""
         for name, algorithm, value in self._stated:
             if self._hashes[algorithm].digest() != value:
                 raise ProblemError(
                     HTTPStatus.BAD_REQUEST,
                     "digest_mismatch",
-                    f"{self._what} that arrived has another {algorithm} than its {name.title()} states; send it again",
+                    f"{self._subject} that arrived has another {algorithm} than its {name.title()} states; "
+                    "send it again",
                 )
 
 
 class CheckedBody:
-    """The body of a request, held against the digests that its headers state.
+    """The body of a request, checked against the digests that its headers state.
 
     Parameters
     ----------
@@ -110,12 +111,12 @@ class CheckedBody:
             yield chunk
 
     def check(self) -> None:
-        """Hold what arrived against what was stated; raise ProblemError, 400, where they differ."""
+        """Compare what arrived with what was stated; raise ProblemError, 400, where they differ."""
         self._digests.check()
 
 
 def _read_digests(name: str, field: str) -> list[tuple[str, bytes]]:
-    found = []
+    digests = []
     for member in field.split(","):
         if not member.strip():
             continue
@@ -129,5 +130,5 @@ def _read_digests(name: str, field: str) -> list[tuple[str, bytes]]:
                 HTTPStatus.BAD_REQUEST, "malformed_digest", f"{name.title()} is not as RFC 9530 writes it"
             ) from error
         if match[1] in _ALGORITHMS:
-            found.append((match[1], value))
-    return found
+            digests.append((match[1], value))
+    return digests

@@ -1,4 +1,4 @@
-"""As which format an upload is to be read, from what the sender says. The bytes themselves are a worker's business."""
+"""As which format an upload is to be read, from what the sender says. A worker reads the bytes."""
 
 import re
 from collections.abc import Mapping
@@ -21,7 +21,7 @@ MAX_FILENAME = 255
 
 
 def stated_format(given: Format | None, filename: str | None, media_type: str) -> Format | None:
-    """Return the format that is stated, that of the file's name, or that of its media type; None where all are mute."""
+    """Return the stated format, that of the file's name, or that of its media type; None where none is known."""
     if given is not None:
         return given
     suffix = PurePosixPath(filename or "").suffix.removeprefix(".").lower()

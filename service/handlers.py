@@ -1,4 +1,4 @@
-"""Exception handlers: whatever goes wrong is answered with a problem document."""
+"""Exception handlers: every error is answered with a problem document."""
 
 from collections.abc import Sequence
 from http import HTTPStatus
@@ -40,7 +40,7 @@ def install_handlers(app: FastAPI, routes: Sequence[BaseRoute]) -> None:
 
     @app.exception_handler(ClientDisconnect)
     async def on_disconnect(request: Request, error: ClientDisconnect) -> Response:
-        # The client is gone; the status only shows in the access log.
+        # The client has disconnected; the status only shows in the access log.
         return Response(status_code=HTTPStatus.BAD_REQUEST)
 
     @app.exception_handler(HTTPException)

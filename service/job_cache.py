@@ -1,9 +1,9 @@
-"""Looks at jobs, shared by all requests that ask at the same time.
+"""Queries for jobs, shared by all requests that arrive at the same time.
 
-Most requests are polls, and most polls find nothing new. So requests that come while a look is under way wait for the
-next one and share it: one hop to a thread and one short query for all of them, however many there are. A job is read
-whole only if a caller wants it whole and it has changed since it was read last. No caller is told of a moment before
-the request: a look that has begun takes no further caller in.
+Most requests are polls, and most polls find nothing new. So requests that arrive during a query wait for the next one
+and share it: one call in a thread and one short query for all of them. A job is read whole only if a caller wants it
+whole and it has changed since it was read last. No answer is older than its request: a query that has started takes no
+further caller.
 """
 
 import asyncio
@@ -19,16 +19,16 @@ from jobkit.errors import DatabaseUnavailableError, JobNotFoundError
 from jobkit.jobs.estimates import Estimates
 from jobkit.jobs.jobs import Glance, Jobs
 from jobkit.schema import Job
-from service.turns import Turns
+from service.pacing import Pacer
 
-_MOST_KEPT = 1000
+_MOST_CACHED = 1000
 
 _logger = logging.getLogger("service")
 
 
 @dataclass(frozen=True)
-class Sight:
-    """A job at a glance, its place in the queue, and the whole of it where that was asked for."""
+class JobView:
+    """State and revision of a job, its place in the queue, and the whole job where that was asked for."""
 
     glance: Glance
     queue_position: int | None
@@ -37,52 +37,52 @@ class Sight:
 
 @dataclass
 class _Batch:
-    """Requests that share a look: which jobs, and whether whole."""
+    """Requests that share a query: which jobs, and whether whole."""
 
     wanted: dict[str, bool] = field(default_factory=dict)
-    task: asyncio.Task[dict[str, Sight]] | None = None
+    task: asyncio.Task[dict[str, JobView]] | None = None
 
 
 class JobCache:
-    """Where all requests of a process look for jobs."""
+    """The jobs that all requests of a process read."""
 
     def __init__(self, jobs: Jobs, estimates: Estimates) -> None:
         self._jobs = jobs
         self._estimates = estimates
         self._one_at_a_time = asyncio.Lock()
-        self._next = _Batch()
-        self._refreshing: asyncio.Task[None] | None = None
-        self._kept: OrderedDict[str, tuple[Glance, Job]] = OrderedDict()
-        self._turns = Turns()
+        self._next_batch = _Batch()
+        self._refresh_task: asyncio.Task[None] | None = None
+        self._cached: OrderedDict[str, tuple[Glance, Job]] = OrderedDict()
+        self._pacer = Pacer()
 
-    async def glance(self, job_id: str) -> Sight:
-        """Look whether a job has changed; raise JobNotFoundError."""
-        return await self._share(job_id, is_whole=False)
+    async def glance(self, job_id: str) -> JobView:
+        """Read state and revision of a job; raise JobNotFoundError."""
+        return await self._shared_view(job_id, is_whole=False)
 
     async def job(self, job_id: str) -> Job:
-        """Look at all of a job; raise JobNotFoundError."""
-        job = (await self._share(job_id, is_whole=True)).job
-        if job is None:  # removed right after the glance, or a row that can't be read: this fails for it alone
+        """Read a whole job; raise JobNotFoundError."""
+        job = (await self._shared_view(job_id, is_whole=True)).job
+        if job is None:  # removed right after the query, or a row that can't be read: this fails for it alone
             return await anyio.to_thread.run_sync(self._jobs.get, job_id)
         return job
 
-    async def _share(self, job_id: str, is_whole: bool) -> Sight:
-        self._keep_fresh()
-        batch = self._next
+    async def _shared_view(self, job_id: str, is_whole: bool) -> JobView:
+        self._start_refresh()
+        batch = self._next_batch
         batch.wanted[job_id] = batch.wanted.get(job_id, False) or is_whole
         if batch.task is None:
-            batch.task = asyncio.create_task(self._look(batch))
-        # A client that hangs up must not take the others' look away.
-        sight = (await asyncio.shield(batch.task)).get(job_id)
-        await self._turns.take()  # a look may have served hundreds, whose answers are written now
-        if sight is None:
+            batch.task = asyncio.create_task(self._run_batch(batch))
+        # A client that disconnects must not cancel the query of the others.
+        view = (await asyncio.shield(batch.task)).get(job_id)
+        await self._pacer.wait_turn()  # hundreds of requests may have shared the query
+        if view is None:
             raise JobNotFoundError(f"there is no job {job_id}")
-        return sight
+        return view
 
-    def _keep_fresh(self) -> None:
-        """See to estimates beside the looks: a long queue takes longer to go through than a caller should wait."""
-        if self._estimates.is_due and (self._refreshing is None or self._refreshing.done()):
-            self._refreshing = asyncio.create_task(self._refresh())
+    def _start_refresh(self) -> None:
+        """Refresh estimates beside the queries: with a long queue that takes longer than a caller should wait."""
+        if self._estimates.is_due and (self._refresh_task is None or self._refresh_task.done()):
+            self._refresh_task = asyncio.create_task(self._refresh())
 
     async def _refresh(self) -> None:
         try:
@@ -90,29 +90,29 @@ class JobCache:
         except (DatabaseUnavailableError, SQLAlchemyError) as error:
             _logger.warning("estimates wait for the database: %r", error.__cause__ or error)
 
-    async def _look(self, batch: _Batch) -> dict[str, Sight]:
+    async def _run_batch(self, batch: _Batch) -> dict[str, JobView]:
         async with self._one_at_a_time:
-            self._next = _Batch()
+            self._next_batch = _Batch()
             return await anyio.to_thread.run_sync(self._read, batch.wanted)
 
-    def _read(self, wanted: Mapping[str, bool]) -> dict[str, Sight]:
+    def _read(self, wanted: Mapping[str, bool]) -> dict[str, JobView]:
         if self._estimates.is_old:
             self._estimates.refresh()
         glances = self._jobs.glances(wanted)
         whole = {job_id: glance for job_id, glance in glances.items() if wanted[job_id]}
         jobs = self._whole(whole)
         return {
-            job_id: Sight(glance, self._estimates.position(job_id, glance.state), jobs.get(job_id))
+            job_id: JobView(glance, self._estimates.position(job_id, glance.state), jobs.get(job_id))
             for job_id, glance in glances.items()
         }
 
     def _whole(self, glances: Mapping[str, Glance]) -> dict[str, Job]:
-        kept = {job_id: self._kept.get(job_id) for job_id in glances}
-        jobs = {job_id: entry[1] for job_id, entry in kept.items() if entry and entry[0] == glances[job_id]}
+        cached = {job_id: self._cached.get(job_id) for job_id in glances}
+        jobs = {job_id: entry[1] for job_id, entry in cached.items() if entry and entry[0] == glances[job_id]}
         for job_id, job in self._jobs.get_many(glances.keys() - jobs.keys()).items():
             jobs[job_id] = job
-            self._kept[job_id] = (Glance(job.revision, job.state, job.pinned), job)
-            self._kept.move_to_end(job_id)
-        while len(self._kept) > _MOST_KEPT:
-            self._kept.popitem(last=False)
+            self._cached[job_id] = (Glance(job.revision, job.state, job.pinned), job)
+            self._cached.move_to_end(job_id)
+        while len(self._cached) > _MOST_CACHED:
+            self._cached.popitem(last=False)
         return {job_id: self._estimates.complete(job) for job_id, job in jobs.items()}

@@ -1,4 +1,4 @@
-"""What Prometheus gets besides the requests: read when it asks, at most once a second however many ask.
+"""What Prometheus gets besides the requests: read when it scrapes, at most once a second.
 
 Figures of the database are the same from every API process; in queries take `max` over instances, not `sum`. Those
 that fall when retention removes rows are gauges; what only grows is a counter.
@@ -28,7 +28,7 @@ CACHE_S = 1.0
 
 
 def new_registry() -> CollectorRegistry:
-    """Return a registry with what is known before anything is opened: this process, and what was built."""
+    """Return a registry with the metrics that need no connection: this process and its build."""
     registry = CollectorRegistry(auto_describe=False)
     ProcessCollector(registry=registry)
     registry.register(_BuildCollector())
@@ -53,7 +53,7 @@ class StateCollector(Collector):
         self._read_at: float | None = None
 
     def collect(self) -> Iterable[Metric]:
-        """Return the figures; those that come while others are read wait for them."""
+        """Return the figures; a second scrape meanwhile waits and gets the same."""
         with self._lock:
             if self._read_at is None or self._clock() - self._read_at >= CACHE_S:
                 self._metrics = list(_read(self._services))
@@ -71,15 +71,15 @@ class _BuildCollector(Collector):
 
 
 def _read(services: Services) -> Iterator[Metric]:
-    """Read all figures. What stands on something that does not answer is left out, and its `up` is 0."""
-    yield from _of_the_database(services.database, services.settings)
-    yield from _of_the_queue(services.queue)
-    yield from _of_the_disk(services.settings.data_dir)
+    """Read all figures. Figures of a part that does not answer are left out, and its `up` is 0."""
+    yield from _database_metrics(services.database, services.settings)
+    yield from _queue_metrics(services.queue)
+    yield from _disk_metrics(services.settings.data_dir)
 
 
-def _of_the_database(database: Database, settings: Settings) -> Iterator[Metric]:
+def _database_metrics(database: Database, settings: Settings) -> Iterator[Metric]:
     try:
-        metrics = [*database_figures(database, settings.lease_s, settings.scrub_days), *_of_the_dispatcher(database)]
+        metrics = [*database_figures(database, settings.lease_s, settings.scrub_days), *_dispatcher_metrics(database)]
         is_up = True
     except DatabaseUnavailableError:
         metrics, is_up = [], False
@@ -87,7 +87,7 @@ def _of_the_database(database: Database, settings: Settings) -> Iterator[Metric]
     yield from metrics
 
 
-def _of_the_dispatcher(database: Database) -> Iterator[Metric]:
+def _dispatcher_metrics(database: Database) -> Iterator[Metric]:
     leader = current_leader(database, DISPATCHER)
     leads = leader is not None and leader.left_s > 0
     yield GaugeMetricFamily("quadpatch_dispatcher_up", "Whether a dispatcher leads.", value=leads)
@@ -99,7 +99,7 @@ def _of_the_dispatcher(database: Database) -> Iterator[Metric]:
     yield since
 
 
-def _of_the_queue(queue: TaskQueue) -> Iterator[Metric]:
+def _queue_metrics(queue: TaskQueue) -> Iterator[Metric]:
     entries = GaugeMetricFamily("quadpatch_queue_entries", "Entries in the queue of Redis or Valkey.")
     try:
         entries.add_metric([], queue.depth())
@@ -110,7 +110,7 @@ def _of_the_queue(queue: TaskQueue) -> Iterator[Metric]:
     yield entries
 
 
-def _of_the_disk(folder: Path) -> Iterator[Metric]:
+def _disk_metrics(folder: Path) -> Iterator[Metric]:
     free = GaugeMetricFamily("quadpatch_disk_free_bytes", "Room on the disk of the data folder of this process.")
     size = GaugeMetricFamily("quadpatch_disk_size_bytes", "Size of the disk of the data folder of this process.")
     try:

@@ -1,8 +1,6 @@
-"""Errors that only HTTP knows, and how every error becomes an RFC 9457 problem.
+"""Errors of HTTP requests, and the translation of every error into an RFC 9457 problem.
 
-This is the one place where the contract's errors get an HTTP status.
-
-Tested in `tests/service/test_handlers.py`.
+Only this module gives the contract's errors an HTTP status.
 """
 
 from collections.abc import Mapping, Sequence
@@ -42,7 +40,7 @@ _RETRY_LATER = (
     errors.StoreUnavailableError,
 )
 RETRY_AFTER_S = "2"
-# A body of a megabyte may hold a hundred thousand wrong fields; its sender mends some and asks again.
+# A body of a megabyte may hold a hundred thousand wrong fields; its sender corrects some and tries again.
 MOST_FIELD_ERRORS = 50
 
 

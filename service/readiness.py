@@ -1,9 +1,7 @@
-"""What the service stands on, and what of it has to work for it to take jobs.
+"""What the service depends on, and which parts must work for it to take jobs.
 
-To accept a job needs the database, which holds the promise, and the store, which holds the mesh. Without the queue or a
-dispatcher jobs wait, none is lost, and what should show is that an operator has to look: `degraded`, not a refusal.
-
-Tested in `tests/service/routes/test_health.py`.
+To accept a job needs the database, which holds its row, and the store, which holds the mesh. Without the queue or a
+dispatcher jobs wait and none is lost: the answer is `degraded`, so that an operator acts, and not a refusal.
 """
 
 import logging
@@ -40,23 +38,23 @@ class Readiness(BaseModel):
 def find_failures(services: Services) -> list[FieldError]:
     """Return what has to work and does not, empty where jobs can be taken."""
     checks: dict[str, Callable[[], None]] = {"database": services.database.ping, "store": services.store.check}
-    failed = []
+    failures = []
     for name, check in checks.items():
         try:
             check()
         except JobkitError as error:
             _logger.warning("%s is not ready: %r", name, error.__cause__ or error)
-            failed.append(FieldError(location="service", pointer=name, message=str(error), code=error.code))
-    return failed
+            failures.append(FieldError(location="service", pointer=name, message=str(error), code=error.code))
+    return failures
 
 
 def read_readiness(services: Services) -> Readiness:
     """Look at everything else; raise DatabaseUnavailableError."""
-    queue, persistence, queue_warnings = _look_at_queue(services)
-    dispatcher, dispatcher_warnings = _look_at_dispatcher(services)
-    is_whole = queue == "ok" and persistence != "weak" and dispatcher == "ok"
+    queue, persistence, queue_warnings = _check_queue(services)
+    dispatcher, dispatcher_warnings = _check_dispatcher(services)
+    is_ready = queue == "ok" and persistence != "weak" and dispatcher == "ok"
     return Readiness(
-        status="ready" if is_whole else "degraded",
+        status="ready" if is_ready else "degraded",
         queue=queue,
         queue_persistence=persistence,
         dispatcher=dispatcher,
@@ -64,7 +62,7 @@ def read_readiness(services: Services) -> Readiness:
     )
 
 
-def _look_at_queue(
+def _check_queue(
     services: Services,
 ) -> tuple[Literal["ok", "unavailable"], Literal["ok", "weak", "unknown"], list[str]]:
     try:
@@ -78,9 +76,9 @@ def _look_at_queue(
     return "ok", "weak" if weaknesses else "ok", [f"the queue may lose entries: {words}" for words in weaknesses]
 
 
-def _look_at_dispatcher(services: Services) -> tuple[Literal["ok", "absent"], list[str]]:
+def _check_dispatcher(services: Services) -> tuple[Literal["ok", "absent"], list[str]]:
     leader = current_leader(services.database, DISPATCHER)
     if leader is not None and leader.left_s > 0:
         return "ok", []
-    since = "no dispatcher leads" if leader is None else f"the dispatcher {leader.holder} fell silent"
-    return "absent", [f"{since}; lost jobs wait until one does"]
+    reason = "no dispatcher leads" if leader is None else f"the dispatcher {leader.holder} fell silent"
+    return "absent", [f"{reason}; lost jobs wait until one does"]

@@ -1,4 +1,4 @@
-"""The outermost frame of every request: its id, security headers, and an answer even where the code fails."""
+"""The outermost middleware: an id and security headers for every request, and an answer to every exception."""
 
 import logging
 import re
@@ -30,7 +30,7 @@ class RequestContextMiddleware:
         self._app = app
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Run the app within the frame."""
+        """Run the app, and answer an exception that it raises."""
         if scope["type"] != "http":
             await self._app(scope, receive, send)
             return

@@ -1,9 +1,9 @@
 """Event streams: server-sent events of jobs, replayed from the event log and followed to the end.
 
-One poller for each process looks at the database for all watched jobs at once and hands what is new to the streams, so
-a stream costs a connection and no thread. Each stream holds the number of the last event that it was handed, and gets
-those that follow in their order: whether they happened long ago or just now makes no difference, so there is no seam
-between replay and live at which one could be lost or come twice.
+One poller for each process queries the database for all watched jobs at once and gives new events to the streams, so a
+stream costs a connection and no thread. Each stream holds the number of the last event that it was given, and gets the
+following ones in their order. Old and new events take the same way, so none is lost or repeated between replay and
+live events.
 """
 
 import asyncio
@@ -24,15 +24,15 @@ from jobkit.jobs.events import NewEvents, read_new_events
 from jobkit.schema import Event
 from service.problems import RETRY_AFTER_S, ProblemError
 
-LOOK_S = 0.25
+POLL_S = 0.25
 # Proxies close connections that stay silent for a minute or half of one.
 PING_S = 15.0
-# How soon a client comes back after the stream broke.
+# After how long a client reconnects when the stream broke.
 _RECONNECT_MS = 1000
 _MOST_EVENTS = 1000
-# A client that does not read gets nothing new until it has taken what lies here for it.
+# A client that does not read gets nothing new until it has read what is pending.
 _MOST_PENDING_BYTES = 1 << 18
-# Nginx would collect events until its buffer is full.
+# Without it nginx would buffer events.
 _HEADERS: Mapping[str, str] = {"X-Accel-Buffering": "no", "Cache-Control": "no-store", "Vary": "Accept"}
 
 _logger = logging.getLogger("service")
@@ -47,12 +47,12 @@ class EventStream:
         self._ping_s = ping_s
         self._pending: list[bytes] = []
         self._pending_bytes = 0
-        self._changed = asyncio.Event()
+        self._has_news = asyncio.Event()
         self._is_over = False
 
     @property
     def has_room(self) -> bool:
-        """Whether the client keeps up."""
+        """Whether the client reads fast enough."""
         return self._pending_bytes < _MOST_PENDING_BYTES
 
     def hand(self, event: Event, frame: bytes) -> None:
@@ -62,24 +62,24 @@ class EventStream:
         self.after = event.sequence
         self._pending.append(frame)
         self._pending_bytes += len(frame)
-        self._changed.set()
+        self._has_news.set()
 
     def end(self) -> None:
-        """End the stream once the client has what was handed over."""
+        """End the stream once the client has all pending events."""
         self._is_over = True
-        self._changed.set()
+        self._has_news.set()
 
     async def chunks(self) -> AsyncIterator[bytes]:
-        """Yield what goes over the line: events as they come, and a comment where nothing does for long."""
+        """Yield events as they come, and a comment after a time without events."""
         yield format_sse_event(comment=f"events of {self.job_id}", retry=_RECONNECT_MS)
         while True:
             try:
                 async with asyncio.timeout(self._ping_s):
-                    await self._changed.wait()
+                    await self._has_news.wait()
             except TimeoutError:
                 yield KEEPALIVE_COMMENT
                 continue
-            self._changed.clear()
+            self._has_news.clear()
             chunk, is_over = b"".join(self._pending), self._is_over
             self._pending.clear()
             self._pending_bytes = 0
@@ -106,7 +106,7 @@ class EventStreams:
         self._most = most
         self._ping_s = ping_s
         self._streams: set[EventStream] = set()
-        self._wake = asyncio.Event()
+        self._woken = asyncio.Event()
         self._is_closed = False
 
     def __len__(self) -> int:
@@ -130,13 +130,13 @@ class EventStreams:
             )
         stream = EventStream(job_id, after, self._ping_s)
         self._streams.add(stream)
-        self._wake.set()
+        self._woken.set()
         if self._is_closed:
             stream.end()
         return _StreamResponse(self, stream)
 
-    def leave(self, stream: EventStream) -> None:
-        """Forget a stream whose client has gone, or has all."""
+    def remove(self, stream: EventStream) -> None:
+        """Remove a stream whose client has disconnected, or has all events."""
         self._streams.discard(stream)
 
     def close(self) -> None:
@@ -149,26 +149,26 @@ class EventStreams:
     async def running(self) -> AsyncIterator[None]:
         """Serve streams for the length of a with block."""
         async with anyio.create_task_group() as tasks:
-            tasks.start_soon(self._follow)
+            tasks.start_soon(self._poll)
             yield
             self.close()
             tasks.cancel_scope.cancel()
 
-    async def _follow(self) -> None:
-        """Look for news: at once for a fresh stream, then every quarter of a second."""
+    async def _poll(self) -> None:
+        """Query for new events: at once for a new stream, then every quarter of a second."""
         while True:
             try:
-                async with asyncio.timeout(LOOK_S if self._streams else None):
-                    await self._wake.wait()
+                async with asyncio.timeout(POLL_S if self._streams else None):
+                    await self._woken.wait()
             except TimeoutError:
                 pass
-            self._wake.clear()
+            self._woken.clear()
             try:
-                await self._look()
+                await self._read_news()
             except Exception:
                 _logger.exception("a look for new events failed")
 
-    async def _look(self) -> None:
+    async def _read_news(self) -> None:
         streams = [stream for stream in self._streams if stream.has_room]
         watched: dict[str, int] = {}
         for stream in streams:
@@ -178,7 +178,7 @@ class EventStreams:
         try:
             news = await anyio.to_thread.run_sync(self._read, watched)
         except (DatabaseUnavailableError, SQLAlchemyError) as error:
-            # The streams stay: their clients see silence, as they would if nothing happened, and lose nothing.
+            # The streams stay open: their clients get no events for a while, and lose none.
             _logger.warning("event streams wait for the database: %r", error.__cause__ or error)
             return
         frames = {job_id: [(event, _frame(event)) for event in found.events] for job_id, found in news.items()}
@@ -195,7 +195,7 @@ class EventStreams:
 
 
 class _StreamResponse(EventSourceResponse):
-    """A response that gives its place back, however it ends."""
+    """A response that removes its stream, however it ends."""
 
     def __init__(self, streams: EventStreams, stream: EventStream) -> None:
         super().__init__(stream.chunks(), headers=dict(_HEADERS))
@@ -203,11 +203,11 @@ class _StreamResponse(EventSourceResponse):
         self._stream = stream
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Stream until the end, or until the client is gone."""
+        """Stream until the end, or until the client disconnects."""
         try:
             await super().__call__(scope, receive, send)
         finally:
-            self._streams.leave(self._stream)
+            self._streams.remove(self._stream)
 
 
 def _frame(event: Event) -> bytes:

@@ -1,8 +1,7 @@
-"""Routes that take requests at their word.
+"""Routes that refuse whatever they would otherwise ignore.
 
-No unknown or repeated query parameter, no JSON that isn't called JSON, no body and no condition that is not looked at.
-
-Tested in `tests/attacks/test_h_http_as_written.py`.
+That is an unknown or repeated query parameter, a body that is not declared as JSON, and a body or a condition that the
+route does not read.
 """
 
 from collections.abc import Callable, Coroutine
@@ -14,7 +13,8 @@ from fastapi.dependencies.models import Dependant
 from fastapi.routing import APIRoute
 
 from jobkit.errors import TooLargeError
-from service.bodies import has_body
+from jobkit.strict_json import StrictJsonError, read_json
+from service.body_limit import has_body
 from service.content import precondition_failed
 from service.digests import CheckedBody, refuse_coding
 from service.problems import ProblemError, invalid_request, malformed_json

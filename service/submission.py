@@ -1,7 +1,4 @@
-"""From a spec to a queued job: everything that is checked before the promise of a 202.
-
-Tested in `tests/service/routes/test_jobs.py`.
-"""
+"""From a spec to a queued job: everything that is checked before a 202."""
 
 import logging
 from dataclasses import dataclass
@@ -82,7 +79,7 @@ def submit(services: Services, submission: Submission) -> tuple[Job, bool]:
         try:
             submit_job(services.database, services.queue, job.id, job.attempt)
         except QueueUnavailableError as error:
-            # The promise stands in the database, and the queue is refilled from there as soon as it answers.
+            # The row of the job is committed; the dispatcher refills the queue from it as soon as the queue answers.
             _logger.warning("job %s waits for the queue: %s", job.id, error)
     return job, is_new
 
@@ -124,13 +121,13 @@ def _check(services: Services, spec: JobSpec) -> ResolvedModel:
 
 
 def _check_limits(limits: Limits, settings: Settings) -> None:
-    granted: list[tuple[str, float | None, float]] = [
+    limits_of_service: list[tuple[str, float | None, float]] = [
         ("time_s", limits.time_s, settings.job_time_limit_s),
         ("memory_mb", limits.memory_mb, settings.job_memory_limit_mb),
     ]
-    for name, asked, most in granted:
-        if asked is not None and asked > most:
-            raise OverLimitError(f"limits.{name} is {asked}; this service grants at most {most}")
+    for name, requested, most in limits_of_service:
+        if requested is not None and requested > most:
+            raise OverLimitError(f"limits.{name} is {requested}; this service grants at most {most}")
 
 
 def _facts(mesh: Mesh) -> MeshFacts:

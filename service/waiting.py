@@ -1,6 +1,6 @@
 """Requests that wait: `Prefer: wait=N` (RFC 7240), in seconds, at most as long as the service allows.
 
-A look at the database every tenth of a second serves all of them, however many there are.
+One query every tenth of a second serves all of them.
 """
 
 import asyncio
@@ -15,9 +15,9 @@ from fastapi import Header, Response
 from sqlalchemy.exc import SQLAlchemyError
 
 from jobkit.errors import JobkitError
-from service.turns import Turns
+from service.pacing import Pacer
 
-LOOK_S = 0.1
+POLL_S = 0.1
 _logger = logging.getLogger("service")
 _WAIT = re.compile(r"(?:^|[,;\s])wait\s*=\s*\"?(\d{1,6})\"?(?=$|[,;\s])", re.IGNORECASE)
 
@@ -32,10 +32,10 @@ PreferHeader = Annotated[
 ]
 
 
-def preferred_wait_s(prefer: str | None, otherwise: float = 0.0) -> float:
-    """Return the seconds that a Prefer header asks to wait; `otherwise` where it does not ask."""
+def preferred_wait_s(prefer: str | None, default: float = 0.0) -> float:
+    """Return the seconds that a Prefer header asks to wait; `default` where it does not ask."""
     match = _WAIT.search(prefer or "")
-    return float(match[1]) if match else otherwise
+    return float(match[1]) if match else default
 
 
 def note_applied(response: Response, prefer: str | None) -> None:
@@ -46,7 +46,7 @@ def note_applied(response: Response, prefer: str | None) -> None:
 
 
 class Waiters:
-    """Requests that wait for the end of something, all of them by one look.
+    """Requests that wait for the end of jobs, meshes or proofs, by one query for all.
 
     Parameters
     ----------
@@ -60,9 +60,9 @@ class Waiters:
         self._unfinished = unfinished
         self._most = most
         self._n_waiting = 0
-        self._waiting: dict[str, set[asyncio.Future[None]]] = {}
-        self._looking: asyncio.Task[None] | None = None
-        self._turns = Turns()
+        self._futures: dict[str, set[asyncio.Future[None]]] = {}
+        self._poll_task: asyncio.Task[None] | None = None
+        self._pacer = Pacer()
 
     def __len__(self) -> int:
         """Count the requests that wait."""
@@ -72,45 +72,45 @@ class Waiters:
         """Wait at most `wait_s` for the end of `subject`; return False, at once, where too many wait already."""
         if self._n_waiting >= self._most:
             return False
-        woken = asyncio.get_running_loop().create_future()
+        future = asyncio.get_running_loop().create_future()
         self._n_waiting += 1
-        self._waiting.setdefault(subject, set()).add(woken)
-        if self._looking is None or self._looking.done():
-            self._looking = asyncio.create_task(self._look())
+        self._futures.setdefault(subject, set()).add(future)
+        if self._poll_task is None or self._poll_task.done():
+            self._poll_task = asyncio.create_task(self._poll())
         with contextlib.suppress(TimeoutError):
             try:
                 async with asyncio.timeout(wait_s):
-                    await woken
+                    await future
             finally:
-                self._leave(subject, woken)
-        await self._turns.take()  # the time of a thousand may be up at once
+                self._remove(subject, future)
+        await self._pacer.wait_turn()  # the waits of a thousand requests may end at once
         return True
 
     def close(self) -> None:
-        """Let all go on that wait, and let no others wait."""
+        """End all waits, and refuse new ones."""
         self._most = 0
-        self._wake(list(self._waiting))
+        self._finish(list(self._futures))
 
-    async def _look(self) -> None:
-        while self._waiting:
-            subjects = list(self._waiting)
+    async def _poll(self) -> None:
+        while self._futures:
+            subjects = list(self._futures)
             try:
                 unfinished = await anyio.to_thread.run_sync(self._unfinished, subjects)
             except (JobkitError, SQLAlchemyError) as error:
                 _logger.warning("requests that wait can't look: %r", error.__cause__ or error)
-                unfinished = ()  # each of them looks once more, and says what is wrong
-            self._wake([subject for subject in subjects if subject not in unfinished])
-            await asyncio.sleep(LOOK_S)
+                unfinished = ()  # each of them reads its subject and meets the error itself
+            self._finish([subject for subject in subjects if subject not in unfinished])
+            await asyncio.sleep(POLL_S)
 
-    def _wake(self, subjects: list[str]) -> None:
+    def _finish(self, subjects: list[str]) -> None:
         for subject in subjects:
-            for woken in self._waiting.get(subject, ()):
-                if not woken.done():
-                    woken.set_result(None)
+            for future in self._futures.get(subject, ()):
+                if not future.done():
+                    future.set_result(None)
 
-    def _leave(self, subject: str, woken: asyncio.Future[None]) -> None:
+    def _remove(self, subject: str, future: asyncio.Future[None]) -> None:
         self._n_waiting -= 1
-        left = self._waiting[subject]
-        left.discard(woken)
-        if not left:
-            del self._waiting[subject]
+        remaining = self._futures[subject]
+        remaining.discard(future)
+        if not remaining:
+            del self._futures[subject]

@@ -1,4 +1,4 @@
-"""Whether the service lives, whether it can work, and what it is."""
+"""Liveness, readiness and description of the service."""
 
 import json
 import math
@@ -10,8 +10,8 @@ from fastapi import APIRouter, Request
 from pydantic import BaseModel, Field
 from starlette.responses import HTMLResponse, Response
 
+from service.cached_answer import CachedAnswer
 from service.document import to_yaml
-from service.kept import Kept
 from service.problems import RETRY_AFTER_S, ProblemError
 from service.readiness import Readiness, find_failures, read_readiness
 from service.routes.common import problems
@@ -56,12 +56,12 @@ async def readyz(request: Request, services: ServicesDep) -> Readiness:
 
 
 def _read_readiness(services: Services) -> Readiness:
-    failed = find_failures(services)
-    if failed:
-        names = ", ".join(item.pointer for item in failed)
+    failures = find_failures(services)
+    if failures:
+        names = ", ".join(item.pointer for item in failures)
         detail = f"not ready: {names}"
         status = HTTPStatus.SERVICE_UNAVAILABLE
-        raise ProblemError(status, "not_ready", detail, {"Retry-After": RETRY_AFTER_S}, failed)
+        raise ProblemError(status, "not_ready", detail, {"Retry-After": RETRY_AFTER_S}, failures)
     return read_readiness(services)
 
 
@@ -80,8 +80,8 @@ async def openapi_json(request: Request) -> Response:
 async def _document(request: Request, media_type: str, write: Callable[[dict[str, Any]], str]) -> Response:
     # It never changes. Writing YAML takes a second, and any client may ask for it.
     app = request.app
-    kept = app.state.documents.setdefault(media_type, Kept(math.inf))
-    text = await kept.get(lambda: write(app.openapi()))
+    cached = app.state.documents.setdefault(media_type, CachedAnswer(math.inf))
+    text = await cached.get(lambda: write(app.openapi()))
     return Response(text, media_type=media_type)
 
 

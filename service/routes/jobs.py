@@ -94,8 +94,8 @@ async def get_job(
     """Show where a job stands. Its entity tag covers all but `eta_s`, which ages by itself."""
     has_waited = await _wait_for_end(services, job_id, prefer)
     if if_none_match is not None:
-        sight = await services.job_cache.glance(job_id)
-        tag = etag_of(sight.glance.revision, sight.queue_position, sight.glance.is_pinned)
+        view = await services.job_cache.glance(job_id)
+        tag = etag_of(view.glance.revision, view.queue_position, view.glance.is_pinned)
         if is_unchanged(request, tag):
             return Response(status_code=304, headers={"ETag": tag})
     response = job_response(await services.job_cache.job(job_id))
@@ -141,15 +141,15 @@ async def rerun_job(
     What the body names replaces what the spec says, each field as a whole; `{}` or no body changes nothing.
     """
     job = await run_in_threadpool(services.jobs.get, job_id)
-    spec = _changed(job.spec, changes or RepairSpec())
+    spec = _changed_spec(job.spec, changes or RepairSpec())
     return await answer_submission(services, Submission(spec, principal, key, rerun_of=job_id), prefer)
 
 
-def _changed(spec: JobSpec, changes: RepairSpec) -> JobSpec:
+def _changed_spec(spec: JobSpec, changes: RepairSpec) -> JobSpec:
     """Return the spec with the fields that the changes name, checked as a whole."""
-    named = {name: getattr(changes, name) for name in changes.model_fields_set}
+    replaced_fields = {name: getattr(changes, name) for name in changes.model_fields_set}
     try:
-        return JobSpec.model_validate({name: getattr(spec, name) for name in JobSpec.model_fields} | named)
+        return JobSpec.model_validate({name: getattr(spec, name) for name in JobSpec.model_fields} | replaced_fields)
     except ValidationError as error:
         details = error.errors(include_input=False, include_url=False)
         raise invalid_request([{**detail, "loc": ("body", *detail["loc"])} for detail in details]) from error

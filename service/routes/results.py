@@ -1,4 +1,4 @@
-"""What a job leaves: the repaired mesh, the report, the pictures."""
+"""Files of a finished job: the repaired mesh, the report, the pictures."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -107,7 +107,7 @@ def _file_response(
     try:
         return content_response(request, services, Content(key, file.sha256, file.size_bytes, name, media_type))
     except ObjectNotFoundError as error:
-        services.jobs.get(job_id)  # or was the job deleted at this moment?
+        services.jobs.get(job_id)  # raises JobNotFoundError where the job was deleted meanwhile
         raise ResultMissingError(f"the {role} of job {job_id} is gone from the store; run the job again") from error
 
 

@@ -1,4 +1,4 @@
-"""Delete jobs and meshes, and pin what retention shall leave alone."""
+"""Delete jobs and meshes, and pin those that retention must keep."""
 
 from http import HTTPStatus
 

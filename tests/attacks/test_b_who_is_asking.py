@@ -18,7 +18,7 @@ from starlette.testclient import TestClient
 
 from jobkit.settings import Settings
 from service.app import create_app
-from service.authority import Authority, parse_authority, parse_origin
+from service.host_header import Authority, parse_authority, parse_origin
 from tests.conftest import RunningService
 from tests.waiting import GUARD_S
 

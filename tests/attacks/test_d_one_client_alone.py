@@ -13,7 +13,7 @@ from starlette.testclient import TestClient
 from starlette.types import Message, Receive, Scope, Send
 
 from service import connections
-from service.bodies import BodiesMiddleware
+from service.body_limit import BodyLimitMiddleware
 from service.connections import MOST_HEAD_BYTES, ConnectionLimits, limited_protocol, raise_descriptor_limit
 from service.services import Services
 from tests.conftest import RunningService
@@ -152,7 +152,7 @@ def test_bodies_under_way_are_counted_and_give_their_place_back() -> None:
             if message["type"] == "http.response.start":
                 statuses.append(message["status"])
 
-        bounded = BodiesMiddleware(app, 2)
+        bounded = BodyLimitMiddleware(app, 2)
         scopes = [{"type": "http", "headers": [(b"content-length", b"1")], "state": {}} for _ in range(4)]
         slow = [asyncio.create_task(bounded(scope, body, send)) for scope in scopes[:2]]
         await asyncio.sleep(0)

@@ -1,7 +1,4 @@
-"""Bodies of requests under way: no more at a time than the service has memory and files for.
-
-Tested in `tests/attacks/test_d_one_client_alone.py`.
-"""
+"""A limit on the request bodies that arrive at the same time: each takes memory and a file."""
 
 from http import HTTPStatus
 
@@ -11,8 +8,8 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from service.problems import RETRY_AFTER_S, ProblemError, problem_response
 
 
-class BodiesMiddleware:
-    """Counts requests whose body has not arrived yet, and refuses those that are too many.
+class BodyLimitMiddleware:
+    """Counts requests whose body has not arrived yet, and refuses those over the limit.
 
     Parameters
     ----------
@@ -24,14 +21,14 @@ class BodiesMiddleware:
     def __init__(self, app: ASGIApp, most: int) -> None:
         self._app = app
         self._most = most
-        self._under_way = 0
+        self._n_receiving = 0
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Pass the request on, or answer it with 503."""
         if scope["type"] != "http" or not has_body(scope):
             await self._app(scope, receive, send)
             return
-        if self._under_way >= self._most:
+        if self._n_receiving >= self._most:
             detail = f"{self._most} bodies are under way, which is the limit; come back later"
             headers = {"Retry-After": RETRY_AFTER_S}
             error = ProblemError(HTTPStatus.SERVICE_UNAVAILABLE, "too_many_bodies", detail, headers)
@@ -40,24 +37,24 @@ class BodiesMiddleware:
         await self._count(scope, receive, send)
 
     async def _count(self, scope: Scope, receive: Receive, send: Send) -> None:
-        is_under_way = True
-        self._under_way += 1
+        is_receiving = True
+        self._n_receiving += 1
 
-        def leave() -> None:
-            nonlocal is_under_way
-            self._under_way -= is_under_way
-            is_under_way = False
+        def finish() -> None:
+            nonlocal is_receiving
+            self._n_receiving -= is_receiving
+            is_receiving = False
 
-        async def receive_and_note() -> Message:
+        async def receive_counted() -> Message:
             message = await receive()
             if message["type"] != "http.request" or not message.get("more_body", False):
-                leave()
+                finish()
             return message
 
         try:
-            await self._app(scope, receive_and_note, send)
+            await self._app(scope, receive_counted, send)
         finally:
-            leave()
+            finish()
 
 
 def has_body(scope: Scope) -> bool:

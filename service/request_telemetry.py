@@ -16,7 +16,7 @@ _UNTRACED = frozenset({"/healthz", "/readyz", "/metrics"})
 _BUCKETS = (0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1.0, 2.5, 5.0, 10.0, 30.0, 60.0)
 
 
-class ObserveMiddleware:
+class RequestTelemetryMiddleware:
     """Counts each request under the template of its route, never under its path: ids have no end.
 
     Parameters

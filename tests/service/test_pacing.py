@@ -2,21 +2,21 @@ import asyncio
 
 from starlette.types import Message, Receive, Scope, Send
 
-from service.turns import Turns, TurnsMiddleware
+from service.pacing import Pacer, PacingMiddleware
 from tests.service.rounds import most_in_a_round
 
 N = 100
 
 
-def test_those_that_come_at_once_go_on_one_in_each_round() -> None:
-    assert asyncio.run(most_in_a_round(Turns().take, N)) == 1
+def test_requests_that_come_at_once_go_on_one_in_each_round() -> None:
+    assert asyncio.run(most_in_a_round(Pacer().wait_turn, N)) == 1
 
 
-def test_who_leaves_the_line_holds_up_no_others_and_the_line_starts_again() -> None:
+def test_a_cancelled_request_holds_up_no_others_and_the_queue_starts_again() -> None:
     async def run() -> None:
-        turns = Turns()
+        pacer = Pacer()
         for _ in range(2):
-            tasks = [asyncio.create_task(turns.take()) for _ in range(3)]
+            tasks = [asyncio.create_task(pacer.wait_turn()) for _ in range(3)]
             await asyncio.sleep(0)
             tasks[0].cancel()
             tasks[1].cancel()
@@ -26,7 +26,7 @@ def test_who_leaves_the_line_holds_up_no_others_and_the_line_starts_again() -> N
     asyncio.run(run())
 
 
-def test_a_sign_of_life_is_given_before_those_that_came_in_a_crowd() -> None:
+def test_healthz_is_answered_before_requests_that_came_at_once() -> None:
     async def run() -> None:
         served: list[str] = []
 
@@ -39,16 +39,16 @@ def test_a_sign_of_life_is_given_before_those_that_came_in_a_crowd() -> None:
         async def send(message: object) -> None:
             return None
 
-        line = TurnsMiddleware(app, Turns())
+        middleware = PacingMiddleware(app, Pacer())
         paths = ["/v1/jobs"] * N + ["/healthz"]
-        await asyncio.gather(*(line({"type": "http", "path": path}, receive, send) for path in paths))
+        await asyncio.gather(*(middleware({"type": "http", "path": path}, receive, send) for path in paths))
         assert served.index("/healthz") == 0
         assert len(served) == N + 1
 
     asyncio.run(run())
 
 
-def test_those_whose_clients_leave_at_once_hear_of_it_one_after_the_other() -> None:
+def test_disconnects_at_once_are_delivered_one_in_each_round() -> None:
     async def run() -> int:
         begun, has_left = list[str](), asyncio.Event()
 
@@ -65,7 +65,7 @@ def test_those_whose_clients_leave_at_once_hear_of_it_one_after_the_other() -> N
         async def send(message: Message) -> None:
             return None
 
-        line = TurnsMiddleware(app, Turns())
-        return await most_in_a_round(lambda: line({"type": "http", "path": "/v1/meshes"}, receive, send), N)
+        middleware = PacingMiddleware(app, Pacer())
+        return await most_in_a_round(lambda: middleware({"type": "http", "path": "/v1/meshes"}, receive, send), N)
 
     assert asyncio.run(run()) == 1

@@ -1,7 +1,7 @@
-"""Who a request is meant for: the raw Host header, by the grammar of RFC 9112, and never a library's guess.
+"""The host that a request names: the raw Host header, parsed by the grammar of RFC 9112.
 
 Starlette's `request.url` falls back to the server's own address where it can't parse the header, and in some versions
-takes the path from it. So neither is asked here: the path is `scope["path"]`, and a header that does not parse is
+takes the path from it. So neither is used here: the path is `scope["path"]`, and a header that does not parse is
 refused.
 
 Tested in `tests/attacks/test_b_who_is_asking.py`.

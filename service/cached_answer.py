@@ -1,4 +1,4 @@
-"""An answer that is the same for all who ask, worked out once and kept for a moment."""
+"""An answer that is the same for all requests, computed once and cached for a time."""
 
 import asyncio
 import time
@@ -7,16 +7,16 @@ from typing import Any
 
 import anyio.to_thread
 
-KEPT_S = 1.0
+READINESS_CACHE_S = 1.0
 
 
-class Kept:
-    """One answer; those that come while it is worked out wait for it and get it.
+class CachedAnswer:
+    """One answer; requests that arrive while it is computed wait for it.
 
     Parameters
     ----------
     seconds : float
-        How long it is kept; an error is kept as long.
+        How long it is cached; an error is cached as long.
     clock : callable
         Monotonic seconds.
     """
@@ -33,7 +33,7 @@ class Kept:
         if self._task is None or is_old:
             self._done_at = None
             self._task = asyncio.create_task(self._work(work))
-        # A client that hangs up must not take the answer from the others.
+        # A client that disconnects must not cancel the answer of the others.
         return await asyncio.shield(self._task)
 
     async def _work(self, work: Callable[[], Any]) -> Any:

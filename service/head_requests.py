@@ -6,12 +6,12 @@ _IS_HEAD = "quadpatch.is_head"
 
 
 def is_head(scope: Scope) -> bool:
-    """Return whether what a route sees as GET is a HEAD, so that it need not open what it would send."""
+    """Return whether what a route sees as GET is a HEAD, so that the route need not open what it would send."""
     return bool(scope.get(_IS_HEAD, False))
 
 
 class HeadMiddleware:
-    """Lets the routes see a GET, and keeps the content of the answer back."""
+    """Lets the routes see a GET, and leaves out the content of the answer."""
 
     def __init__(self, app: ASGIApp) -> None:
         self._app = app
@@ -22,7 +22,7 @@ class HeadMiddleware:
             await self._app(scope, receive, send)
             return
         # A copy: the server looks into its own to know whether content may follow.
-        seen = {**scope, "method": "GET", _IS_HEAD: True}
+        get_scope = {**scope, "method": "GET", _IS_HEAD: True}
         has_ended = False
 
         async def send_head(message: Message) -> None:
@@ -30,12 +30,12 @@ class HeadMiddleware:
             if has_ended or message["type"] != "http.response.start":
                 return
             has_ended = True
-            scope["route"] = seen.get("route")
+            scope["route"] = get_scope.get("route")
             await send(message)
             await send({"type": "http.response.body", "body": b"", "more_body": False})
 
         async def receive_until_ended() -> Message:
-            # A stream ends when its client is gone, and a file is read no further.
+            # A stream ends when its client disconnects, and a file is read no further.
             return {"type": "http.disconnect"} if has_ended else await receive()
 
-        await self._app(seen, receive_until_ended, send_head)
+        await self._app(get_scope, receive_until_ended, send_head)
