@@ -1,4 +1,4 @@
-"""The life of one analysis of an uploaded mesh."""
+"""One analysis of an uploaded mesh, from its start to its result."""
 
 import json
 

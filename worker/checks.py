@@ -22,7 +22,7 @@ _log = logging.getLogger("quadpatch.worker.checks")
 
 @dataclass(frozen=True)
 class Check:
-    """A started check, and what may become of it; all that write raise StaleAttemptError where it was taken away.
+    """A started check, and the ways to settle it; those that write raise StaleAttemptError where it was taken away.
 
     Attributes
     ----------
@@ -56,7 +56,7 @@ def run_check(
     check: Check,
     work: Callable[[Observer], T],
     accept: Callable[[T], None],
-    words: Callable[[T], str],
+    describe: Callable[[T], str],
 ) -> None:
     """Do the work of a check and settle it.
 
@@ -68,24 +68,24 @@ def run_check(
         Runs the engine under an observer; raises what `worker.outcomes.outcome_of` knows.
     accept : callable
         Writes what the work gave; raises StaleAttemptError.
-    words : callable
-        Says what the work gave, for the log.
+    describe : callable
+        Describes what the work gave, for the log.
     """
-    outcome = outcome_of(lambda: _observed(context, check, work), check.subject)
+    outcome = outcome_of(lambda: _work_with_heartbeat(context, check, work), check.subject)
     try:
         if isinstance(outcome, Failure | StopReason):
             _settle(check, outcome)
-            said = outcome.code if isinstance(outcome, Failure) else outcome.value
+            summary = outcome.code if isinstance(outcome, Failure) else outcome.value
         else:
             accept(outcome)
-            said = words(outcome)
+            summary = describe(outcome)
     except StaleAttemptError as error:
         _log.warning("%s may write no more: %s", check.subject, error)
     else:
-        _log.info("%s: %s", check.subject, said)
+        _log.info("%s: %s", check.subject, summary)
 
 
-def _observed(context: Context, check: Check, work: Callable[[Observer], T]) -> T:
+def _work_with_heartbeat(context: Context, check: Check, work: Callable[[Observer], T]) -> T:
     settings = context.settings
     heartbeat_calls = HeartbeatCalls(
         renew=lambda memory_mb: check.renew(settings.lease_s),

@@ -1,6 +1,6 @@
 """What every task of a worker process shares: opened once at start, handed to the tasks by name.
 
-RQ calls tasks by their dotted path with plain arguments, so the context has to be found rather than passed; it is set
+RQ calls tasks by their dotted path with plain arguments, so the context is looked up and not passed; it is set
 by `python -m worker` alone.
 """
 
@@ -108,6 +108,6 @@ def worker_name(pid: int) -> str:
     """Name a worker by machine and process.
 
     The end is random: in a container every worker has the same process id, and RQ refuses the name of a worker that
-    was killed for as long as it takes it for alive.
+    was killed until its entry in Redis expires.
     """
     return f"{socket.gethostname()}-{pid}-{secrets.token_hex(3)}"

@@ -47,7 +47,7 @@ class Entry(Job):  # type: ignore[misc]
         return task
 
     def restore(self, raw_data: Any) -> None:
-        """Read what the queue holds, and forget all in it that would call something else.
+        """Read what the queue holds, and drop all parts that would call something else.
 
         Raises
         ------

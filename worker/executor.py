@@ -3,8 +3,8 @@
 The heavy work is done by engine children, so nothing is gained by RQ's own fork per job, and much is lost: a killed
 parent would leave it running.
 
-RQ's worker gives up when Valkey goes away in the middle of a task. The task itself needs no Valkey, and the process has
-loaded much: so the worker of RQ is replaced by a fresh one as soon as there is a Valkey again.
+RQ's worker gives up when Valkey becomes unavailable during a task. The task itself needs no Valkey, and to start a
+process anew takes time: so RQ's worker is replaced by a new one as soon as Valkey answers again.
 """
 
 import contextlib
@@ -40,7 +40,7 @@ def execute(queue: TaskQueue, queue_name: str, name: str, draining: threading.Ev
     draining : threading.Event
         Set by SIGTERM or SIGINT once tasks have been taken.
     logging_level : str
-        Of RQ's own words.
+        Of RQ's own log lines.
     """
     with contextlib.suppress(StopRequested):
         while not draining.is_set():
@@ -62,7 +62,7 @@ class Executor(SimpleWorker):  # type: ignore[misc]
     def __init__(self, queue: TaskQueue, queue_name: str, name: str, draining: threading.Event) -> None:
         super().__init__(
             [Queue(queue_name, connection=queue.connection, serializer=JSONSerializer, job_class=Entry)],
-            # RQ refuses a name that it takes for alive, as that of a worker that could not say farewell.
+            # RQ refuses a name that is still registered, as that of a killed worker is for a while.
             name=f"{name}-{secrets.token_hex(2)}",
             connection=queue.connection,
             serializer=JSONSerializer,
@@ -78,7 +78,7 @@ class Executor(SimpleWorker):  # type: ignore[misc]
         super().handle_warm_shutdown_request()
 
     def set_shutdown_requested_date(self) -> None:
-        """Write nothing: this runs in a signal handler, and a Valkey that is away would fail the running task."""
+        """Write nothing: this runs in a signal handler, and an unavailable Valkey would fail the running task."""
 
     def subscribe(self) -> None:
-        """Take no commands through Valkey: signals and the database say all that a worker needs to know."""
+        """Take no commands through Valkey: a worker is controlled by signals and the database."""

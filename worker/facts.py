@@ -1,4 +1,4 @@
-"""What an inspection found, in the words of the contract."""
+"""The result of an inspection, translated to the wire schema."""
 
 import math
 from typing import Any
@@ -9,10 +9,14 @@ from jobkit.schema import MeshFacts
 _NO_UNIT = "mesh units"
 
 
-def mesh_facts(found: dict[str, Any]) -> MeshFacts:
+def mesh_facts(inspection: dict[str, Any]) -> MeshFacts:
     """Translate the answer of `quadpatch.repair.inspect_file`; lengths are in mesh units."""
-    box = found["bounding_box"]
-    unit = found["length_unit"]
+    bounding_box = inspection["bounding_box"]
+    unit = inspection["length_unit"]
     return MeshFacts.model_validate(
-        {**found, "unit": None if unit == _NO_UNIT else unit, "diagonal": math.dist(box["min"], box["max"])}
+        {
+            **inspection,
+            "unit": None if unit == _NO_UNIT else unit,
+            "diagonal": math.dist(bounding_box["min"], bounding_box["max"]),
+        }
     )

@@ -1,4 +1,4 @@
-"""Everything that can end an attempt without a result, told in a code and a sentence.
+"""Everything that can end an attempt without a result, as a code and a sentence.
 
 Nothing above this module sees a traceback: clients get `{code, message, stage, retryable}`, the log gets the rest.
 
@@ -11,7 +11,7 @@ Codes made here, besides those of `quadpatch.errors`, which pass through:
 
     out_of_memory               more memory than the limit
     time_limit_exceeded         more wall-clock time than the limit
-    engine_crashed              the engine died of a signal, or without a word; another attempt may succeed
+    engine_crashed              the engine was ended by a signal, or without a report; another attempt may succeed
     engine_error                unexpected internal error
     no_space                    the disk of the worker is full; the attempt is not counted
     disk_error                  the disk of the worker can't be used; the attempt is not counted
@@ -32,7 +32,7 @@ from dataclasses import dataclass
 from shared_rules.text import printable
 
 _LONGEST_CODE = 64
-# A full disk or a store that is away comes back by itself or by an operator's hand; asking every moment helps neither.
+# A full disk or an unavailable store takes a while to recover, by itself or by an operator: no need to retry at once.
 OUTAGE_DELAY_S = 10.0
 _BROKEN_DISK = (errno.EIO, errno.EROFS, errno.EACCES, errno.EPERM, errno.ESTALE, errno.EMFILE, errno.ENFILE)
 
@@ -70,7 +70,7 @@ class Failure:
     is_outside: bool = False
 
     def __post_init__(self) -> None:
-        """Make the words of an engine, which may be those of a file, safe to print."""
+        """Make code and message, which may hold text of a file, safe to print."""
         object.__setattr__(self, "code", printable(self.code, _LONGEST_CODE))
         object.__setattr__(self, "message", printable(self.message))
 
@@ -102,9 +102,9 @@ def over_memory(limit_mb: int, stage: str | None) -> Failure:
 
 
 def crashed(signal_name: str | None, stage: str | None) -> Failure:
-    """Describe an engine that died by itself."""
-    how = f"was ended by {signal_name}" if signal_name else "ended without a word"
-    return Failure("engine_crashed", f"the engine {how}", stage, retryable=True)
+    """Describe an engine that ended without a report."""
+    manner = f"was ended by {signal_name}" if signal_name else "ended without a word"
+    return Failure("engine_crashed", f"the engine {manner}", stage, retryable=True)
 
 
 def store_unavailable() -> Failure:

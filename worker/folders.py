@@ -1,4 +1,4 @@
-"""Folders of requests: made fresh, removed whatever happens, and swept up after workers that were killed."""
+"""Folders of requests: made for each request, removed after it, and removed later where a worker was killed."""
 
 import fcntl
 import os
@@ -23,10 +23,10 @@ def request_folder(parent: Path) -> Iterator[Path]:
 
 @contextmanager
 def worker_folder(folder: Path) -> Iterator[None]:
-    """Keep a worker's folder for as long as it lives; sweep up those of workers that live no more.
+    """Keep a worker's folder for the length of a `with` block; remove folders of workers that have ended.
 
-    A lock on a file tells the living from the dead: the kernel drops it with the process, and a process id that
-    somebody else has by now misleads nobody.
+    A lock on a file shows whether the worker runs: the kernel drops it with the process. A process id would not, since
+    another process may have it by now.
     """
     folder.mkdir(parents=True, exist_ok=True)
     descriptor = os.open(folder / _LOCK_NAME, os.O_RDWR | os.O_CREAT, 0o600)
@@ -45,7 +45,7 @@ def _is_abandoned(folder: Path) -> bool:
     try:
         descriptor = os.open(folder / _LOCK_NAME, os.O_RDWR)
     except OSError:
-        return False  # just being made, or just being removed
+        return False  # it is being made or removed at this moment
     try:
         fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:

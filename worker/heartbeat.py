@@ -1,6 +1,7 @@
-"""The heartbeat of one attempt: a thread that keeps the lease, writes progress and brings the cancel flag back.
+"""The heartbeat of one attempt: a thread that renews the lease, writes progress and reads the cancel flag.
 
-It alone talks to the database while the engine works, so a slow disk never holds up the watch over the engine.
+Only this thread uses the database while the engine works, so a slow database never delays the supervision of the
+engine.
 """
 
 import logging
@@ -20,34 +21,34 @@ from worker.progress import Progress
 # How soon a cancel is noticed, and how often progress is written at most.
 _TICK_S = 0.5
 # Longer than a database takes to be restarted or to fail over.
-PATIENCE_S = 120.0
+OUTAGE_TIMEOUT_S = 120.0
 
 _log = logging.getLogger("quadpatch.worker.heartbeat")
 
 
 @dataclass(frozen=True)
 class HeartbeatCalls:
-    """How an attempt shows that it is alive.
+    """What a heartbeat calls.
 
     Attributes
     ----------
     renew : callable
-        Renews the lease, given the most memory that was seen, in MiB; raises StaleAttemptError.
+        Renews the lease, given the peak memory, in MiB; raises StaleAttemptError.
     is_canceled : callable
         Reads whether a client asked for the end.
     report : callable
         Writes stage and percent; raises StaleAttemptError.
     heartbeat_s : float
         Seconds between two renewals.
-    patience_s : float
-        Seconds for which a database that is away is waited for: while it is, no other worker can start the job either.
+    outage_timeout_s : float
+        Seconds for which an unavailable database is waited for: meanwhile no other worker can start the job either.
     """
 
     renew: Callable[[int], object]
     is_canceled: Callable[[], bool]
     report: Callable[[str, float], None]
     heartbeat_s: float
-    patience_s: float = PATIENCE_S
+    outage_timeout_s: float = OUTAGE_TIMEOUT_S
 
 
 class Heartbeat:
@@ -56,9 +57,9 @@ class Heartbeat:
     def __init__(self, heartbeat_calls: HeartbeatCalls) -> None:
         self._heartbeat_calls = heartbeat_calls
         self._progress = Progress()
-        self._written = ("", 0.0)
+        self._written_progress = ("", 0.0)
         self._peak_mb = 0
-        self._ended = threading.Event()
+        self._stop_event = threading.Event()
         self._renewed_at = time.monotonic()
         self._thread = threading.Thread(target=copy_context().run, args=(self._beat,), name="heartbeat", daemon=True)
         self.stop_reason: StopReason | None = None
@@ -78,29 +79,29 @@ class Heartbeat:
 
     def __exit__(self, *_: object) -> None:
         """Stop, and wait for a write that is under way."""
-        self._ended.set()
+        self._stop_event.set()
         self._thread.join()
 
     def _beat(self) -> None:
-        while not self._ended.wait(_TICK_S) and self.stop_reason is None:
+        while not self._stop_event.wait(_TICK_S) and self.stop_reason is None:
             try:
-                self._keep_alive()
+                self._beat_once()
             except StaleAttemptError as error:
                 _log.warning("the attempt was taken away: %s", error)
                 self.stop_reason = StopReason.LOST
             except (DatabaseUnavailableError, SQLAlchemyError) as error:
                 _log.warning("a heartbeat failed: %s", error)
-                if time.monotonic() - self._renewed_at > self._heartbeat_calls.patience_s:
+                if time.monotonic() - self._renewed_at > self._heartbeat_calls.outage_timeout_s:
                     self.stop_reason = StopReason.LOST
 
-    def _keep_alive(self) -> None:
+    def _beat_once(self) -> None:
         if time.monotonic() - self._renewed_at >= self._heartbeat_calls.heartbeat_s:
             self._heartbeat_calls.renew(self._peak_mb)
             self._renewed_at = time.monotonic()
         if self._heartbeat_calls.is_canceled():
             self.stop_reason = StopReason.CANCELED
             return
-        reached = (self._progress.stage, self._progress.percent)
-        if reached != self._written:
-            self._heartbeat_calls.report(*reached)
-            self._written = reached
+        progress = (self._progress.stage, self._progress.percent)
+        if progress != self._written_progress:
+            self._heartbeat_calls.report(*progress)
+            self._written_progress = progress

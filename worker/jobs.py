@@ -26,7 +26,9 @@ def run_job(job_id: str) -> None:
     """Start an attempt at a job and work on it."""
     context = current_context()
     try:
-        started = _patiently(context)(lambda: context.attempts.start(job_id, context.name, context.settings.lease_s))
+        started = _start_when_available(
+            context, lambda: context.attempts.start(job_id, context.name, context.settings.lease_s)
+        )
     except (StaleAttemptError, NotFoundError, DatabaseUnavailableError) as error:
         _log.info("nothing to do: %s", error)
         return
@@ -50,8 +52,8 @@ def inspect_mesh(mesh_id: str) -> None:
     """Analyse an uploaded mesh: format, size, boundary loops."""
     context = current_context()
     try:
-        analysis = _patiently(context)(
-            lambda: context.meshes.start_analysis(mesh_id, context.name, context.settings.lease_s)
+        analysis = _start_when_available(
+            context, lambda: context.meshes.start_analysis(mesh_id, context.name, context.settings.lease_s)
         )
     except (StaleAttemptError, NotFoundError, DatabaseUnavailableError) as error:
         _log.info("nothing to do: %s", error)
@@ -64,7 +66,9 @@ def prove_model(reference: str) -> None:
     """Prove a published version of a model, `name@version`."""
     context = current_context()
     try:
-        proof = _patiently(context)(lambda: context.proofs.start(reference, context.name, context.settings.lease_s))
+        proof = _start_when_available(
+            context, lambda: context.proofs.start(reference, context.name, context.settings.lease_s)
+        )
     except (StaleAttemptError, NotFoundError, DatabaseUnavailableError) as error:
         _log.info("nothing to do: %s", error)
         return
@@ -72,11 +76,11 @@ def prove_model(reference: str) -> None:
         prove(context, proof)
 
 
-def _patiently(context: Context) -> Retrying:
-    """Return what starts a task, and waits for a database that is away.
+def _start_when_available(context: Context, start: Callable[[], T]) -> T:
+    """Start, and wait while the database is unavailable.
 
-    Workers that drop their entries would empty the queue in no time; after a while the dispatcher takes the entry for
-    lost and puts it into the queue again, so nothing is gained by waiting longer.
+    Workers that drop their entries would soon empty the queue. After GRACE_S the dispatcher takes the entry for lost
+    and puts it into the queue again, so a longer wait gains nothing.
     """
     return Retrying(
         retry=retry_if_exception_type(DatabaseUnavailableError),

@@ -18,7 +18,7 @@ _WITHOUT_FILE = {"none": "smooth", "self": "self", "self_network": "self-network
 
 
 def model_argument(model: ResolvedModel, registry: Registry, store: ObjectStore, cache: Path) -> str:
-    """Return what the engine is to be told as its model.
+    """Return the model argument of the engine.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ def network_card(model: ResolvedModel, registry: Registry) -> dict[str, Any] | N
 
 
 def deprecation(model: ResolvedModel, registry: Registry) -> Deprecation | None:
-    """Return what is said against the use of the version, None where nothing is; raise ModelNotFoundError."""
+    """Return the deprecation of the version, None where there is none; raise ModelNotFoundError."""
     if model.name is None or model.version is None:
         return None
     return registry.resolve(f"{model.name}@{model.version}").deprecated

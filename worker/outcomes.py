@@ -31,7 +31,7 @@ _log = logging.getLogger("quadpatch.worker")
 
 
 def outcome_of(work: Callable[[], T], subject: str) -> T | Failure | StopReason:
-    """Do the work; nothing above this frame sees a traceback.
+    """Do the work; an error becomes a failure, and its traceback stays in the log.
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ def outcome_of(work: Callable[[], T], subject: str) -> T | Failure | StopReason:
     except OSError as error:
         _log.warning("%s failed", subject, exc_info=True)
         return from_os_error(error, None)
-    except Exception:  # noqa: BLE001 - the worker's outermost frame: the client gets a code, the log the traceback
+    except Exception:  # noqa: BLE001 - the outermost handler of a task: the client gets a code, the log the traceback
         _log.exception("%s failed", subject)
         return Failure("engine_error", "unexpected internal error of the worker")
 

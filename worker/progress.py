@@ -1,6 +1,6 @@
 """From stages and fractions to one percentage that never falls."""
 
-# Share of a typical repair's time, in percent; a stage that a method leaves out is jumped over.
+# Share of a typical repair's time, in percent; a stage that a method leaves out is skipped.
 _SHARES = {
     "read": 4,
     "holes": 2,
@@ -26,11 +26,11 @@ class Progress:
         self.percent = 0.0
 
     def reach(self, stage: str, fraction: float) -> None:
-        """Take note of a stage and its done fraction; a stage of an unknown name moves nothing."""
+        """Record a stage and its done fraction; a stage of an unknown name changes no percentage."""
         self.stage = stage
         names = list(_SHARES)
         if stage in _SHARES:
-            before = sum(_SHARES[name] for name in names[: names.index(stage)])
-            reached = before + _SHARES[stage] * min(max(fraction, 0.0), 1.0)
-            # 100 is for a published result alone.
-            self.percent = max(self.percent, min(round(reached, 1), 99.0))
+            earlier_share = sum(_SHARES[name] for name in names[: names.index(stage)])
+            percent = earlier_share + _SHARES[stage] * min(max(fraction, 0.0), 1.0)
+            # Only a published result has 100.
+            self.percent = max(self.percent, min(round(percent, 1), 99.0))

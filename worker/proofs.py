@@ -1,4 +1,4 @@
-"""The life of one proof of a published model."""
+"""One proof of a published model, from its start to its result."""
 
 from dataclasses import replace
 
@@ -52,6 +52,6 @@ def _work(context: Context, proof: Proof, observer: Observer) -> None:
         try:
             run_engine(context.fork_server, request, folder, observer)
         except EngineFailedError as error:
-            # The file goes by its sha256 here, which says less to people than its name.
+            # The file is named by its sha256 here; people know the model by its reference.
             message = error.failure.message.replace(f"{model.sha256}.{model.format}", proof.reference)
             raise EngineFailedError(replace(error.failure, message=message)) from error

@@ -1,7 +1,7 @@
-"""The life of one attempt at a job, from the start to exactly one ending.
+"""One attempt at a job, from its start to exactly one ending.
 
-The attempt is settled last, when the engine is dead and its folder is gone: who reads `canceled` or `failed` finds
-nothing left of it.
+The attempt is settled last, when the engine has ended and its folder is removed: once a client reads `canceled` or
+`failed`, nothing of the attempt is left.
 """
 
 import logging
@@ -28,9 +28,9 @@ from quadpatch.stages import failure_of
 from worker.context import Context
 from worker.engine.limits import EngineLimits
 from worker.engine.request import LOG_NAME
-from worker.engine.supervision import Observer, log_last_words, run_engine
+from worker.engine.supervision import Observer, log_engine_tail, run_engine
 from worker.failures import OUTAGE_DELAY_S, Failure, StopReason
-from worker.heartbeat import PATIENCE_S, Heartbeat, HeartbeatCalls
+from worker.heartbeat import OUTAGE_TIMEOUT_S, Heartbeat, HeartbeatCalls
 from worker.models import deprecation, model_argument, network_card
 from worker.outcomes import folder_with_mesh, outcome_of
 from worker.results import (
@@ -45,6 +45,8 @@ from worker.spec import repair_request
 
 # A repair that is nearly done may finish when its worker is asked to stop; the others are handed back.
 _DRAIN_GRACE_S = 2.0
+# Between two tries to settle an attempt while the database is unavailable.
+_PAUSE_S = 1.0
 _DRAINED = JobError(code="worker_drained", message="the worker was stopped in the middle of the job", retryable=True)
 
 _log = logging.getLogger("quadpatch.worker.repairs")
@@ -74,11 +76,11 @@ def repair(context: Context, started: StartedAttempt) -> JobState | None:
     if not isinstance(outcome, _Repaired):
         _drop(context, started)
     try:
-        state = _patiently(lambda: _settle(context, started, outcome))
+        state = _settle_when_available(lambda: _settle(context, started, outcome))
     except StaleAttemptError as error:
         _log.warning("the attempt may write no more: %s", error)
-        # The answer to the commit that published it may have got lost with the connection: then the files are in use.
-        if _patiently(lambda: _has_published(context, started)):
+        # The connection may have broken after the commit that published the result: then the files are in use.
+        if _settle_when_available(lambda: _has_published(context, started)):
             return context.jobs.get(started.attempt.job_id).state
         _drop(context, started)
         return None
@@ -98,8 +100,21 @@ def _has_published(context: Context, started: StartedAttempt) -> bool:
     return job.attempt == started.attempt.number and job.state.has_result
 
 
+def _settle_when_available(settle: Callable[[], T]) -> T:
+    """Settle, and wait while the database is unavailable, so that finished work need not be repeated."""
+    deadline = time.monotonic() + OUTAGE_TIMEOUT_S
+    while True:
+        try:
+            return settle()
+        except DatabaseUnavailableError as error:
+            if time.monotonic() > deadline:
+                raise
+            _log.warning("the attempt waits to be settled: %s", error)
+            time.sleep(_PAUSE_S)
+
+
 def _drop(context: Context, started: StartedAttempt) -> None:
-    """Remove the files of an attempt that published nothing; what a store that is away keeps is swept up later."""
+    """Remove the files of an attempt that published nothing; an unavailable store leaves them to the sweep."""
     try:
         drop_result(started.attempt, context.store)
     except (StoreUnavailableError, OSError) as error:
@@ -115,7 +130,7 @@ def _work(context: Context, started: StartedAttempt, heartbeat: Heartbeat) -> _R
     job, began = started.job, time.monotonic()
     source = context.meshes.source(job.mesh_id)
     model = model_argument(job.model, context.registry, context.store, context.cache_folder)
-    note = deprecation(job.model, context.registry)
+    deprecated = deprecation(job.model, context.registry)
     settings = context.settings
     limits = EngineLimits(settings.job_time_limit_s, settings.job_memory_limit_mb, n_threads=context.n_threads)
     request = replace(
@@ -123,20 +138,20 @@ def _work(context: Context, started: StartedAttempt, heartbeat: Heartbeat) -> _R
     )
     with folder_with_mesh(context, source) as folder:
         with context.telemetry.stages() as spans:
-            observer = Observer(_both(heartbeat, spans), _StopRule(context, heartbeat), heartbeat.note_memory)
+            observer = Observer(_report_to_both(heartbeat, spans), _StopRule(context, heartbeat), heartbeat.note_memory)
             failure = run_engine(context.fork_server, request, folder, observer)
         if failure is not None:
             note_lost_pictures(folder, request, failure)
         elif missing_pictures(folder, request):
-            log_last_words(folder / LOG_NAME)
-        if note is not None:
-            note_deprecation(folder, f"{job.model.name}@{job.model.version}", note.reason)
+            log_engine_tail(folder / LOG_NAME)
+        if deprecated is not None:
+            note_deprecation(folder, f"{job.model.name}@{job.model.version}", deprecated.reason)
         result = store_result(folder, request, started.attempt, context.store, time.monotonic() - began)
         return _Repaired(result, stage_seconds(folder, job.spec.method.method))
 
 
-def _both(heartbeat: Heartbeat, spans: StageSpans) -> Callable[[str, float], None]:
-    """Make progress known to the database and to the trace."""
+def _report_to_both(heartbeat: Heartbeat, spans: StageSpans) -> Callable[[str, float], None]:
+    """Report progress to the database and to the trace."""
 
     def reach(stage: str, fraction: float) -> None:
         heartbeat.reach(stage, fraction)
@@ -146,7 +161,7 @@ def _both(heartbeat: Heartbeat, spans: StageSpans) -> Callable[[str, float], Non
 
 
 class _StopRule:
-    """Tells the watch whether to end the engine."""
+    """Tells the supervision whether to end the engine."""
 
     def __init__(self, context: Context, heartbeat: Heartbeat) -> None:
         self._draining = context.draining

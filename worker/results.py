@@ -1,4 +1,4 @@
-"""From the files that an engine left to what the contract publishes."""
+"""The files of an engine, stored and described as the contract publishes them."""
 
 import json
 from dataclasses import dataclass
@@ -27,12 +27,12 @@ _MEDIA_TYPES = {
 
 @dataclass(frozen=True)
 class Picture:
-    """A file that a repair may do without; `stage` draws it, `words` say that it is missing."""
+    """A file that a repair may do without; `stage` draws it, `warning` says that it is missing."""
 
     role: FileRole
     name: str
     stage: str
-    words: str
+    warning: str
 
 
 _PREVIEW = Picture("preview", PREVIEW_NAME, "preview", "there is no picture")
@@ -80,8 +80,8 @@ def stage_seconds(folder: Path, method: str) -> StageSeconds:
 
 def missing_pictures(folder: Path, request: EngineRequest) -> list[Picture]:
     """Return the pictures that were asked for and are not there; one that is there is whole."""
-    asked = [(request.with_preview, _PREVIEW), (request.with_close_ups, _CLOSE_UPS)]
-    return [picture for is_asked, picture in asked if is_asked and not (folder / picture.name).exists()]
+    requested = [(request.with_preview, _PREVIEW), (request.with_close_ups, _CLOSE_UPS)]
+    return [picture for is_requested, picture in requested if is_requested and not (folder / picture.name).exists()]
 
 
 def note_deprecation(folder: Path, reference: str, reason: str) -> None:
@@ -94,10 +94,10 @@ def note_lost_pictures(folder: Path, request: EngineRequest, failure: Failure) -
 
     The report has the stage of a picture already where the engine itself has said why.
     """
-    drawn = {stage["name"] for stage in _read_report(folder).get("stages", [])}
+    drawn_stages = {stage["name"] for stage in _read_report(folder).get("stages", [])}
     for picture in missing_pictures(folder, request):
-        if picture.stage not in drawn:
-            _add_warning(folder, f"{picture.words}: {failure.message}")
+        if picture.stage not in drawn_stages:
+            _add_warning(folder, f"{picture.warning}: {failure.message}")
 
 
 def _store_picture(picture: Picture, folder: Path, attempt: Attempt, store: ObjectStore) -> list[ResultFile]:
@@ -107,7 +107,7 @@ def _store_picture(picture: Picture, folder: Path, attempt: Attempt, store: Obje
     if path.exists():
         failure = failure_of(lambda: stored.append(_store_file(path, picture.role, attempt, store)))
         if failure is not None:
-            _add_warning(folder, f"{picture.words}: the store failed")
+            _add_warning(folder, f"{picture.warning}: the store failed")
     return stored
 
 
@@ -138,7 +138,7 @@ def _store_file(path: Path, role: FileRole, attempt: Attempt, store: ObjectStore
 
 def _warnings(report: dict[str, Any], counts: HoleCounts) -> list[str]:
     """Collect the report's warnings; a refused hole is one, whether or not the report says so in words."""
-    warnings = [str(warning) for warning in report["warnings"]]
+    warnings = [str(text) for text in report["warnings"]]
     if counts.refused and not warnings:
         noun = "hole was" if counts.refused == 1 else "holes were"
         warnings.append(f"{counts.refused} {noun} refused and left open; the report says why")

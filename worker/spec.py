@@ -28,10 +28,10 @@ def output_format(spec: JobSpec, source: MeshSource) -> OutputFormat:
     """Return the format that the job hands back: the one asked for, else that of the upload."""
     if spec.output.format is not None:
         return spec.output.format
-    known = source.format or _suffix(source.filename)
-    if known in _WRITTEN_AS:
-        return _WRITTEN_AS[known]
-    return next((form for form in get_args(OutputFormat) if form == known), _DEFAULT_OUTPUT)
+    format_name = source.format or _suffix(source.filename)
+    if format_name in _WRITTEN_AS:
+        return _WRITTEN_AS[format_name]
+    return next((form for form in get_args(OutputFormat) if form == format_name), _DEFAULT_OUTPUT)
 
 
 def repair_request(spec: JobSpec, source: MeshSource, model: str, limits: EngineLimits) -> EngineRequest:
@@ -47,14 +47,14 @@ def repair_request(spec: JobSpec, source: MeshSource, model: str, limits: Engine
     limits : EngineLimits
         Of the worker; the spec may only lower them.
     """
-    allowed = lowered(limits, spec)
+    tighter = tighter_limits(limits, spec)
     return EngineRequest(
         task="repair",
         source=source_name(source),
         output=f"repaired.{output_format(spec, source)}",
         model=model,
-        options=method_options(spec, allowed.time_s),
-        limits=allowed,
+        options=method_options(spec, tighter.time_s),
+        limits=tighter,
         with_preview=spec.output.preview,
         with_close_ups=spec.output.closeups,
     )
@@ -84,7 +84,7 @@ def method_options(spec: JobSpec, time_s: float) -> dict[str, Any]:
     return options
 
 
-def lowered(limits: EngineLimits, spec: JobSpec) -> EngineLimits:
+def tighter_limits(limits: EngineLimits, spec: JobSpec) -> EngineLimits:
     """Return the tighter of the worker's limits and the job's."""
     return EngineLimits(
         time_s=min(limits.time_s, spec.limits.time_s or limits.time_s),

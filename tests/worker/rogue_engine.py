@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from quadpatch.errors import ReadError
-from worker.engine.entry import run_framed
+from worker.engine.entry import run_confined
 from worker.engine.reports import Reporter
 from worker.engine.request import EngineRequest
 
@@ -36,7 +36,7 @@ def run_request(folder: Path, descriptor: int) -> None:
     if EngineRequest.load(folder).options["deed"] == "start_a_grandchild":
         grandchild = subprocess.Popen(["sleep", "600"])
         (folder / "grandchild").write_text(str(grandchild.pid))
-    run_framed(folder, descriptor, do_the_deed)
+    run_confined(folder, descriptor, do_the_deed)
 
 
 class Deeds:

@@ -9,7 +9,7 @@ from worker.failures import StopReason
 from worker.heartbeat import Heartbeat, HeartbeatCalls
 
 
-class Patient:
+class FakeAttempt:
     """Stands in for the database; counts what is asked of it, and may fall ill."""
 
     def __init__(self, renewal: Exception | None = None, is_canceled: bool = False) -> None:
@@ -28,51 +28,51 @@ class Patient:
         if self.renewal is not None:
             raise self.renewal
 
-    def heartbeat_calls(self, patience_s: float = 30.0) -> HeartbeatCalls:
+    def heartbeat_calls(self, outage_timeout_s: float = 30.0) -> HeartbeatCalls:
         return HeartbeatCalls(
-            self.renew, lambda: self.cancel, lambda *report: self.reports.append(report), 0.0, patience_s
+            self.renew, lambda: self.cancel, lambda *report: self.reports.append(report), 0.0, outage_timeout_s
         )
 
 
 def test_the_lease_is_renewed_and_progress_written_once() -> None:
-    patient = Patient()
-    with Heartbeat(patient.heartbeat_calls()) as heartbeat:
+    attempt = FakeAttempt()
+    with Heartbeat(attempt.heartbeat_calls()) as heartbeat:
         heartbeat.reach("fill", 1.0)
-        assert patient.has_beaten.wait(GUARD_S)
+        assert attempt.has_beaten.wait(GUARD_S)
         assert heartbeat.stop_reason is None
-    assert patient.reports == [("fill", 16.0)]
+    assert attempt.reports == [("fill", 16.0)]
 
 
 def test_the_most_memory_that_was_seen_goes_out_with_the_heartbeat() -> None:
-    patient = Patient()
-    with Heartbeat(patient.heartbeat_calls()) as heartbeat:
+    attempt = FakeAttempt()
+    with Heartbeat(attempt.heartbeat_calls()) as heartbeat:
         for memory_mb in (100.0, 250.5, 80.0):
             heartbeat.note_memory(memory_mb)
-        assert patient.has_beaten.wait(GUARD_S)
-    assert patient.memory_mb == 250
+        assert attempt.has_beaten.wait(GUARD_S)
+    assert attempt.memory_mb == 250
 
 
 def test_a_cancel_flag_is_brought_back() -> None:
-    with Heartbeat(Patient(is_canceled=True).heartbeat_calls()) as heartbeat:
+    with Heartbeat(FakeAttempt(is_canceled=True).heartbeat_calls()) as heartbeat:
         assert wait_until(lambda: heartbeat.stop_reason) is StopReason.CANCELED
 
 
 def test_an_attempt_that_was_taken_away_is_lost() -> None:
-    with Heartbeat(Patient(renewal=StaleAttemptError("taken")).heartbeat_calls()) as heartbeat:
+    with Heartbeat(FakeAttempt(renewal=StaleAttemptError("taken")).heartbeat_calls()) as heartbeat:
         assert wait_until(lambda: heartbeat.stop_reason) is StopReason.LOST
 
 
-@pytest.mark.parametrize(("patience_s", "reason"), [(0.0, StopReason.LOST), (3600.0, None)])
+@pytest.mark.parametrize(("outage_timeout_s", "reason"), [(0.0, StopReason.LOST), (3600.0, None)])
 @pytest.mark.parametrize(
     "error", [DatabaseUnavailableError("away"), OperationalError("UPDATE", {}, Exception("disk I/O error"))]
 )
-def test_a_database_that_is_away_is_waited_for_as_long_as_patience_lasts(
-    error: Exception, patience_s: float, reason: StopReason | None
+def test_an_unavailable_database_is_waited_for_up_to_the_timeout(
+    error: Exception, outage_timeout_s: float, reason: StopReason | None
 ) -> None:
-    patient = Patient(renewal=error)
-    with Heartbeat(patient.heartbeat_calls(patience_s)) as heartbeat:
+    attempt = FakeAttempt(renewal=error)
+    with Heartbeat(attempt.heartbeat_calls(outage_timeout_s)) as heartbeat:
         if reason is None:
-            assert patient.has_beaten.wait(GUARD_S)
+            assert attempt.has_beaten.wait(GUARD_S)
             assert heartbeat.stop_reason is None
         else:
             assert wait_until(lambda: heartbeat.stop_reason) is reason

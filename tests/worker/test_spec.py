@@ -115,9 +115,9 @@ def test_a_filename_never_leads_out_of_the_folder() -> None:
 
 
 def test_a_job_can_lower_the_limits_and_never_raise_them() -> None:
-    lowered = repair_request(spec(limits={"time_s": 10.0, "memory_mb": 512}), source(), "smooth", LIMITS)
+    tighter_limits = repair_request(spec(limits={"time_s": 10.0, "memory_mb": 512}), source(), "smooth", LIMITS)
     raised = repair_request(spec(limits={"time_s": 5000.0, "memory_mb": 65536}), source(), "smooth", LIMITS)
-    assert (lowered.limits.time_s, lowered.limits.memory_mb) == (10.0, 512)
+    assert (tighter_limits.limits.time_s, tighter_limits.limits.memory_mb) == (10.0, 512)
     assert raised.limits == LIMITS
 
 

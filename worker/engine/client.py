@@ -1,7 +1,4 @@
-"""The worker's end of the fork server: start an engine child, listen to it, end it.
-
-Tested in `tests/worker/engine/test_supervision.py`.
-"""
+"""The worker's side of the fork server: start an engine child, and learn how it ended."""
 
 import json
 import os
@@ -19,9 +16,9 @@ from worker.engine.limits import thread_environment
 # Loading the method takes about a second on an idle machine, more where all cores are busy.
 _START_TIMEOUT_S = 120.0
 
-# A process that reads strangers' files gets what Python and its libraries obey, and nothing that may hold a password.
-_KEPT_NAMES = ("PATH", "LANG", "LANGUAGE", "TZ", "VIRTUAL_ENV")
-_KEPT_PREFIXES = (
+# A process that reads untrusted files gets only the variables that Python and its libraries read: no passwords.
+_PASSED_NAMES = ("PATH", "LANG", "LANGUAGE", "TZ", "VIRTUAL_ENV")
+_PASSED_PREFIXES = (
     "LC_",
     "LD_",
     "PYTHON",
@@ -50,7 +47,7 @@ class EngineChild:
 
 
 class ForkServer:
-    """A lazily started fork server process; started anew when it is found dead.
+    """A lazily started fork server process; started again when it has ended.
 
     Start children from the main thread: the fork server is tied to the thread that starts it.
 
@@ -75,7 +72,7 @@ class ForkServer:
         Raises
         ------
         ForkServerLostError
-            If it can't: the installation is broken, and its words about that went to stderr.
+            If it can't: the installation is broken, and its output on stderr says why.
         """
         if self._connection is None:
             self._start()
@@ -91,10 +88,10 @@ class ForkServer:
         reports, write_end = os.pipe()
         try:
             try:
-                return EngineChild(self._ask(folder, write_end), reports)
+                return EngineChild(self._fork(folder, write_end), reports)
             except ForkServerLostError:
                 self.close()
-                return EngineChild(self._ask(folder, write_end), reports)
+                return EngineChild(self._fork(folder, write_end), reports)
         except ForkServerLostError:
             os.close(reports)
             raise
@@ -117,7 +114,7 @@ class ForkServer:
         return int(answer["status"]) if answer.get("pid") == child.pid else None
 
     def close(self) -> None:
-        """End the fork server, and with it whatever child is left."""
+        """End the fork server, and with it any child that still runs."""
         if self._connection is not None:
             self._connection.close()
         if self._process is not None:
@@ -133,7 +130,7 @@ class ForkServer:
         """Close."""
         self.close()
 
-    def _ask(self, folder: Path, write_end: int) -> int:
+    def _fork(self, folder: Path, write_end: int) -> int:
         connection = self._connection or self._start()
         try:
             socket.send_fds(connection, [json.dumps({"folder": str(folder)}).encode()], [write_end])
@@ -142,29 +139,29 @@ class ForkServer:
             raise ForkServerLostError("the fork server does not answer") from error
 
     def _start(self) -> socket.socket:
-        here, there = socket.socketpair(socket.AF_UNIX, socket.SOCK_STREAM)
-        with there:
+        own_end, child_end = socket.socketpair(socket.AF_UNIX, socket.SOCK_STREAM)
+        with child_end:
             self._process = subprocess.Popen(
                 [
                     sys.executable,
                     "-m",
                     "worker.engine.fork_server",
-                    str(there.fileno()),
+                    str(child_end.fileno()),
                     str(os.getpid()),
                     self._engine,
                 ],
-                pass_fds=(there.fileno(),),
+                pass_fds=(child_end.fileno(),),
                 stdin=subprocess.DEVNULL,
-                env={**_what_libraries_obey(os.environ), **thread_environment(self._n_threads)},
+                env={**_engine_environment(os.environ), **thread_environment(self._n_threads)},
                 start_new_session=True,
             )
-        self._connection = here
+        self._connection = own_end
         try:
             self._read_answer(_START_TIMEOUT_S)
         except (ForkServerLostError, OSError) as error:
             self.close()
             raise ForkServerLostError("no engine can be started here") from error
-        return here
+        return own_end
 
     def _read_answer(self, timeout_s: float) -> dict[str, Any]:
         connection = self._connection
@@ -184,7 +181,7 @@ class ForkServer:
         return answer
 
 
-def _what_libraries_obey(environment: Mapping[str, str]) -> dict[str, str]:
+def _engine_environment(environment: Mapping[str, str]) -> dict[str, str]:
     return {
-        name: value for name, value in environment.items() if name in _KEPT_NAMES or name.startswith(_KEPT_PREFIXES)
+        name: value for name, value in environment.items() if name in _PASSED_NAMES or name.startswith(_PASSED_PREFIXES)
     }

@@ -1,6 +1,6 @@
-"""Shuts an engine child in: it reads a stranger's mesh with native code, and may be taken over by it.
+"""Confines an engine child: it parses untrusted meshes with native code, and a mesh may exploit a fault in it.
 
-From then on it reaches the folder of its request, the mesh, the model and the libraries, and nothing else: no other
+A confined child reaches the folder of its request, the mesh, the model and the libraries, and nothing else: no other
 file, no socket, no other process and nothing of theirs in `/proc`. Landlock and seccomp do it, where the kernel has
 them; `weaknesses` says what is missing.
 
@@ -41,7 +41,7 @@ _WRITABLE_DEVICES = ("/dev/null", "/dev/full")
 
 
 def confine(folder: Path, request: EngineRequest) -> None:
-    """Shut this very process in, before it opens the mesh.
+    """Confine this process, before it opens the mesh.
 
     Parameters
     ----------
@@ -57,9 +57,9 @@ def confine(folder: Path, request: EngineRequest) -> None:
 
 
 def weaknesses() -> list[str]:
-    """Say in words what this kernel can't do to shut engines in."""
-    found = [] if landlock_version() else ["no Landlock: engines can read the files of the worker's user"]
-    return found if has_seccomp() else [*found, "no seccomp filters: engines can open sockets and start processes"]
+    """Return a sentence for each means of confinement that this kernel lacks."""
+    missing = [] if landlock_version() else ["no Landlock: engines can read the files of the worker's user"]
+    return missing if has_seccomp() else [*missing, "no seccomp filters: engines can open sockets and start processes"]
 
 
 def _library_folders() -> list[Path]:

@@ -1,4 +1,4 @@
-"""The outermost frame of an engine child: sets the limits, and turns whatever is raised into a report."""
+"""The outermost function of an engine child: sets the limits, and turns every exception into a report."""
 
 import contextlib
 import os
@@ -13,8 +13,8 @@ from worker.engine.request import MESH_FOLDER, EngineRequest
 from worker.failures import Failure, from_os_error, over_memory
 
 
-def run_framed(folder: Path, descriptor: int, task: Callable[[EngineRequest, Reporter], None]) -> None:
-    """Load the request in `folder`, do the task under its limits and shut in, and report how it went.
+def run_confined(folder: Path, descriptor: int, task: Callable[[EngineRequest, Reporter], None]) -> None:
+    """Load the request in `folder`, do the task under its limits and confined, and report how it ended.
 
     Parameters
     ----------
@@ -34,13 +34,13 @@ def run_framed(folder: Path, descriptor: int, task: Callable[[EngineRequest, Rep
     except MemoryError:
         reporter.failed(over_memory(request.limits.memory_mb, reporter.stage))
     except PermissionError:
-        # Not the disk's refusal but that of `worker.engine.confinement`: another attempt would meet it as well.
+        # Refused by `worker.engine.confinement`, not by the disk: another attempt would be refused as well.
         _print_traceback()
         reporter.failed(Failure("engine_error", "the engine reached for what is closed to it", reporter.stage))
     except OSError as error:
         _print_traceback()
         reporter.failed(from_os_error(error, reporter.stage))
-    except Exception:  # noqa: BLE001 - nothing above may see a traceback; the log gets it
+    except Exception:  # noqa: BLE001 - the outermost handler of an engine: the log gets the traceback
         _print_traceback()
         reporter.failed(Failure("engine_error", "unexpected internal error of the engine", reporter.stage))
     else:
@@ -48,7 +48,7 @@ def run_framed(folder: Path, descriptor: int, task: Callable[[EngineRequest, Rep
 
 
 def _print_traceback() -> None:
-    # The log lies on the same disk as all else: where that is full, the report matters more.
+    # The log is on the same disk as the rest: where that is full, the report must be sent even so.
     with contextlib.suppress(OSError):
         traceback.print_exc()
 

@@ -6,9 +6,7 @@ cross a fork.
 
 Requests come over a socket, one at a time: a JSON line with the folder of the request, and the write end of the
 pipe for the child's reports. The answers are `{"ready"}` once the method is loaded, `{"pid"}` when a child runs, and
-`{"pid", "status"}` when it is gone.
-
-Tested in `tests/worker/engine/test_supervision.py`.
+`{"pid", "status"}` when it has ended.
 """
 
 import contextlib
@@ -30,7 +28,7 @@ Engine = Callable[[Path, int], None]
 
 
 def main(arguments: list[str]) -> int:
-    """Serve until the worker hangs up.
+    """Serve until the worker closes the socket.
 
     Parameters
     ----------
@@ -42,18 +40,18 @@ def main(arguments: list[str]) -> int:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, signal.SIG_IGN)
     engine: Engine = importlib.import_module(arguments[2]).run_request
-    tie = parent_death_signal(os.getpid(), signal.SIGKILL)
-    # What is loaded by now lives for ever: the collector would only unshare its pages.
+    set_death_signal = parent_death_signal(os.getpid(), signal.SIGKILL)
+    # What is loaded by now is never freed: the collector would only unshare its pages.
     gc.collect()
     gc.freeze()
     with socket.socket(fileno=int(arguments[0])) as connection:
         _answer(connection, {"ready": 1})
-        while _serve_one(connection, engine, tie):
+        while _serve_one(connection, engine, set_death_signal):
             pass
     return 0
 
 
-def _serve_one(connection: socket.socket, engine: Engine, tie: Callable[[], None]) -> bool:
+def _serve_one(connection: socket.socket, engine: Engine, set_death_signal: Callable[[], None]) -> bool:
     message, descriptors, _, _ = socket.recv_fds(connection, MESSAGE_BYTES, 1)
     if not message:
         return False
@@ -62,7 +60,7 @@ def _serve_one(connection: socket.socket, engine: Engine, tie: Callable[[], None
     pid = os.fork()
     if pid == 0:
         connection.close()
-        _become_engine(lambda: engine(folder, reports), folder, tie)
+        _become_engine(lambda: engine(folder, reports), folder, set_death_signal)
     os.close(reports)
     _answer(connection, {"pid": pid})
     _answer(connection, {"pid": pid, "status": _wait(pid)})
@@ -70,9 +68,9 @@ def _serve_one(connection: socket.socket, engine: Engine, tie: Callable[[], None
 
 
 def _wait(pid: int) -> int:
-    """Wait for a child and end whatever it started; its id can't be taken by another process before it is reaped."""
+    """Wait for a child and end all processes that it started; no other process can get its id before it is reaped."""
     os.waitid(os.P_PID, pid, os.WEXITED | os.WNOWAIT)
-    # It may have died before it had a group of its own.
+    # It may have ended before it had a group of its own.
     with contextlib.suppress(ProcessLookupError, PermissionError):
         os.killpg(pid, signal.SIGKILL)
     return os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1])
@@ -82,23 +80,23 @@ def _answer(connection: socket.socket, answer: dict[str, int]) -> None:
     connection.sendall(json.dumps(answer).encode() + b"\n")
 
 
-def _become_engine(run: Callable[[], None], folder: Path, tie: Callable[[], None]) -> None:
+def _become_engine(run: Callable[[], None], folder: Path, set_death_signal: Callable[[], None]) -> None:
     """Turn the forked process into an engine child; never returns."""
     status = 1
     try:
         os.setsid()
-        tie()
+        set_death_signal()
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, signal.SIG_DFL)
         _redirect(folder)
         run()
         status = 0
     finally:
-        # On a full disk these words are lost, but the process must end here even so.
+        # On a full disk this output is lost, but the process must end here even so.
         for stream in (sys.stdout, sys.stderr):
             with contextlib.suppress(OSError):
                 stream.flush()
-        # Not sys.exit: the parent's exit handlers are not this process's to run.
+        # Not sys.exit: the exit handlers of the parent must not run in this process.
         os._exit(status)
 
 
@@ -112,12 +110,12 @@ def _redirect(folder: Path) -> None:
     except OSError:
         # A full disk: the engine will find that out itself, and report it.
         log = os.open(os.devnull, os.O_WRONLY)
-    nothing = os.open(os.devnull, os.O_RDONLY)
-    os.dup2(nothing, 0)
+    null_device = os.open(os.devnull, os.O_RDONLY)
+    os.dup2(null_device, 0)
     os.dup2(log, 1)
     os.dup2(log, 2)
     os.close(log)
-    os.close(nothing)
+    os.close(null_device)
 
 
 if __name__ == "__main__":

@@ -38,14 +38,14 @@ class _Rule(ctypes.Structure):
 
 
 def landlock_version() -> int:
-    """Return the version that the kernel speaks; 0 where it has none."""
+    """Return the version of the kernel's Landlock; 0 where it has none."""
     if sys.platform != "linux":
         return 0
     return max(0, int(_libc().syscall(_CREATE_RULESET, None, ctypes.c_size_t(0), _VERSION_FLAG)))
 
 
 def restrict_files(readable: Iterable[Path], writable: Iterable[Path]) -> None:
-    """Leave nothing but these files and folders; those that are not there are passed over.
+    """Leave nothing but these files and folders; those that do not exist are skipped.
 
     Parameters
     ----------
@@ -61,13 +61,13 @@ def restrict_files(readable: Iterable[Path], writable: Iterable[Path]) -> None:
     version = landlock_version()
     if version == 0:
         return
-    handled = (1 << _N_RIGHTS.get(version, _N_RIGHTS_NOW)) - 1
-    ruleset = _call(_CREATE_RULESET, *_described(version, handled), 0)
+    handled_rights = (1 << _N_RIGHTS.get(version, _N_RIGHTS_NOW)) - 1
+    ruleset = _call(_CREATE_RULESET, *_ruleset_attributes(version, handled_rights), 0)
     try:
         for path in readable:
-            _allow(ruleset, path, _READING & handled)
+            _allow(ruleset, path, _READING & handled_rights)
         for path in writable:
-            _allow(ruleset, path, handled & ~_EXECUTE)
+            _allow(ruleset, path, handled_rights & ~_EXECUTE)
         forbid_new_privileges()
         _call(_RESTRICT_SELF, ruleset, 0)
     finally:
@@ -80,9 +80,9 @@ def forbid_new_privileges() -> None:
         raise OSError(ctypes.get_errno(), "new privileges can't be forbidden")
 
 
-def _described(version: int, handled: int) -> tuple[ctypes.Array[ctypes.c_char], ctypes.c_size_t]:
-    """Describe a ruleset as long as the kernel knows it: an older one refuses words that it can't read."""
-    ruleset = _Ruleset(handled, 0, _SCOPES if version >= _SCOPED_SINCE else 0)
+def _ruleset_attributes(version: int, handled_rights: int) -> tuple[ctypes.Array[ctypes.c_char], ctypes.c_size_t]:
+    """Describe a ruleset as long as the kernel knows it: an older one refuses fields that it does not know."""
+    ruleset = _Ruleset(handled_rights, 0, _SCOPES if version >= _SCOPED_SINCE else 0)
     size = ctypes.sizeof(_Ruleset) if version >= _SCOPED_SINCE else ctypes.sizeof(ctypes.c_uint64)
     return ctypes.create_string_buffer(bytes(ruleset)[:size], size), ctypes.c_size_t(size)
 
@@ -93,8 +93,8 @@ def _allow(ruleset: int, path: Path, rights: int) -> None:
     except OSError:
         return
     try:
-        allowed = rights if path.is_dir() else rights & _ON_FILES
-        _call(_ADD_RULE, ruleset, _PATH_BENEATH, ctypes.byref(_Rule(allowed, descriptor)), 0)
+        file_rights = rights if path.is_dir() else rights & _ON_FILES
+        _call(_ADD_RULE, ruleset, _PATH_BENEATH, ctypes.byref(_Rule(file_rights, descriptor)), 0)
     finally:
         os.close(descriptor)
 

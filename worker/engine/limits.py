@@ -41,7 +41,7 @@ class EngineLimits:
         _lower(resource.RLIMIT_DATA, (self.memory_mb + _DATA_SLACK_MB) * _MIB)
         _lower(resource.RLIMIT_NPROC, _MAX_PROCESSES)
         _lower(resource.RLIMIT_FSIZE, self.file_mb * _MIB)
-        # A backstop for a child whose parent hangs: wall-clock time is the parent's business.
+        # For a child whose parent hangs: the parent limits wall-clock time.
         _lower(resource.RLIMIT_CPU, math.ceil(self.time_s * self.n_threads) + _CPU_SLACK_S)
         os.nice(_NICENESS)
 

@@ -1,6 +1,6 @@
-"""The engine child: repairs or inspects a mesh, or proves a model, and tells how it went.
+"""The engine child: repairs or inspects a mesh, or proves a model, and reports the outcome.
 
-Meshes and models come from strangers and are parsed here and nowhere else, under limits, in a process that may be
+Untrusted meshes and models are parsed here and nowhere else, under limits, in a process that may be
 killed at any moment. It talks to the worker through one pipe, see `worker.engine.reports`. Results lie in the
 request's folder.
 """
@@ -15,14 +15,14 @@ from quadpatch.inpainters.proof import prove_model
 from quadpatch.options import RepairOptions
 from quadpatch.preview.drawing import add_close_up_archive, add_picture
 from quadpatch.repair import inspect_file, repair_and_keep
-from worker.engine.entry import run_framed
+from worker.engine.entry import run_confined
 from worker.engine.reports import Reporter
 from worker.engine.request import CLOSE_UPS_NAME, FACTS_NAME, PREVIEW_NAME, REPORT_NAME, EngineRequest
 
 
 def run_request(folder: Path, descriptor: int) -> None:
-    """Do what the request in `folder` asks for, and report how it went through the pipe `descriptor`."""
-    run_framed(folder, descriptor, lambda request, reporter: _TASKS[request.task](folder, request, reporter))
+    """Do what the request in `folder` asks for, and report the outcome through the pipe `descriptor`."""
+    run_confined(folder, descriptor, lambda request, reporter: _TASKS[request.task](folder, request, reporter))
 
 
 def _repair(folder: Path, request: EngineRequest, reporter: Reporter) -> None:

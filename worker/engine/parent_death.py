@@ -1,7 +1,7 @@
 """Processes that never outlive the process that started them.
 
 A parent that is killed with SIGKILL can't clean up; the kernel can. On Linux a child asks for a signal on its
-parent's death. Elsewhere only the orderly way out, a signal passed on by the parent, stops the children.
+parent's death. Elsewhere children stop only when the parent passes a signal on.
 """
 
 import ctypes
@@ -25,16 +25,16 @@ def parent_death_signal(parent: int, death_signal: signal.Signals = signal.SIGTE
     parent : int
         Process id of the parent-to-be.
     death_signal : signal.Signals
-        What the child gets when its parent is gone.
+        Sent to the child when its parent has ended.
     """
     libc = ctypes.CDLL(None, use_errno=True) if sys.platform == "linux" else None
 
-    def tie() -> None:
+    def set_death_signal() -> None:
         if libc is None:
             return
         libc.prctl(_PR_SET_PDEATHSIG, int(death_signal), 0, 0, 0)
-        # The parent may have died before the call above: no signal will come any more.
+        # The parent may have ended before the call above: then no signal comes.
         if os.getppid() != parent:
             os._exit(1)
 
-    return tie
+    return set_death_signal

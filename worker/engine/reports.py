@@ -33,7 +33,7 @@ class Reporter:
         self._send({"stage": stage, "fraction": round(float(fraction), 4)})
 
     def delivered(self) -> None:
-        """Report that the result lies in the folder: whatever ends the engine from here on, it is kept."""
+        """Report that the result is complete in the folder: it is kept even if the engine fails from here on."""
         self._send({"delivered": True})
 
     def done(self) -> None:

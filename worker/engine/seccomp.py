@@ -36,7 +36,7 @@ _SOCKETS: dict[str, tuple[int | None, int | None]] = {
     # Opens sockets without the calls above.
     "io_uring_setup": (425, 425),
 }
-_OTHERS: dict[str, tuple[int | None, int | None]] = {
+_OTHER_CALLS: dict[str, tuple[int | None, int | None]] = {
     "fork": (57, None),
     "vfork": (58, None),
     "execve": (59, 221),
@@ -113,12 +113,12 @@ def restrict_calls() -> None:
     """
     if has_seccomp():
         machine = _MACHINES[platform.machine()]
-        refused = [*_SOCKETS.values(), *_OTHERS.values()]
+        refused = [*_SOCKETS.values(), *_OTHER_CALLS.values()]
         _install(_filter(machine, _numbers(refused, machine), REFUSE | errno.EPERM, os.getpid()))
 
 
-def die_of_sockets() -> None:
-    """End this process as soon as it opens a socket: for tests that nothing does."""
+def kill_on_socket() -> None:
+    """End this process as soon as it opens a socket, for tests."""
     machine = _MACHINES[platform.machine()]
     _install(_socket_trap(machine, _numbers(list(_SOCKETS.values()), machine)))
 
@@ -147,7 +147,7 @@ _Line = tuple[int, int, int, int]
 
 
 def _head(machine: _Machine) -> list[_Line]:
-    """Kill a process that speaks to the kernel as on another machine; load the number of the call."""
+    """Kill a process that calls the kernel as on another architecture; load the number of the call."""
     return [
         _load(_MACHINE),
         (0x15, 1, 0, machine.audit),

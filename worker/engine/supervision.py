@@ -1,4 +1,4 @@
-"""Watch over one engine child: pass on its progress, keep its limits, end it when asked, tell how it ended."""
+"""Supervision of one engine child: its progress, its limits, its end on request, and the reason of its end."""
 
 import contextlib
 import json
@@ -22,10 +22,10 @@ from worker.failures import EngineFailedError, EngineStoppedError, Failure, Stop
 
 _TICK_S = 0.1
 _CHUNK_BYTES = 65536
-# A report is some hundred bytes; a child that sends endless lines is out of its mind.
+# A report is some hundred bytes; a longer line is a fault of the child.
 _LINE_LIMIT_BYTES = 1 << 20
 _LONGEST_STAGE = 64
-_MOST_LAST_LINES = 40
+_MOST_LOG_LINES = 40
 _LOG_TAIL_BYTES = 8000
 _FULL_MEMORY = 0.9
 # The child closes its pipe as it ends; the kernel then frees its memory, which takes a while for gigabytes.
@@ -36,7 +36,7 @@ _log = logging.getLogger("quadpatch.worker.engine")
 
 @dataclass(frozen=True)
 class Observer:
-    """What a watched engine means to its worker.
+    """What the supervision calls.
 
     Attributes
     ----------
@@ -99,7 +99,7 @@ def run_engine(
         failure = _diagnose(status, watch, request.limits, folder / LOG_NAME)
     if failure is None:
         return None
-    log_last_words(folder / LOG_NAME)
+    log_engine_tail(folder / LOG_NAME)
     if not watch.is_delivered:
         raise EngineFailedError(failure)
     _log.warning("the engine ended in an optional step: %s: %s", failure.code, failure.message)
@@ -129,7 +129,7 @@ class _Watch:
         self.peak_mb = 0.0
 
     def listen(self) -> None:
-        """Read reports until the child hangs up or has to be ended."""
+        """Read reports until the child closes its pipe or has to be ended."""
         with selectors.DefaultSelector() as selector:
             selector.register(self._child.reports, selectors.EVENT_READ)
             while self.failure is None:
@@ -141,19 +141,19 @@ class _Watch:
                     raise EngineStoppedError(reason)
 
     def end(self) -> int | None:
-        """Make sure that the child and all it started are gone; return how it ended, None if unknown."""
+        """Make sure that the child and all that it started have ended; return its exit status, None if unknown."""
         os.close(self._child.reports)
         if not self.is_done:
             self._kill()
         status = self._fork_server.wait_child(self._child, _EXIT_TIMEOUT_S)
         if status is None:
-            # Without an answer the fork server itself is gone or stuck; its end is the end of its children.
+            # Without an answer the fork server has ended or hangs; its children end with it.
             self._kill()
             self._fork_server.close()
         return status
 
     def _kill(self) -> None:
-        # In its first moments the child is not yet the head of a group; later the group is what has to go.
+        # At first the child does not lead a process group yet; later the whole group has to end.
         for kill in (os.killpg, os.kill):
             with contextlib.suppress(ProcessLookupError, PermissionError):
                 kill(self._child.pid, signal.SIGKILL)
@@ -165,10 +165,10 @@ class _Watch:
             self.failure = crashed(None, self.stage)
         while b"\n" in self._buffer and not self.is_done:
             line, _, self._buffer = self._buffer.partition(b"\n")
-            self._take(json.loads(line))
+            self._handle_report(json.loads(line))
         return bool(chunk) and not self.is_done
 
-    def _take(self, report: dict[str, Any]) -> None:
+    def _handle_report(self, report: dict[str, Any]) -> None:
         if "stage" in report:
             self.stage = printable(str(report["stage"]), _LONGEST_STAGE)
             self._observer.on_progress(self.stage, float(report["fraction"]))
@@ -194,16 +194,16 @@ def _resident_mb(pid: int) -> float:
     try:
         return float(psutil.Process(pid).memory_info().rss) / 2**20
     except psutil.Error:
-        return 0.0  # gone already; the pipe will tell
+        return 0.0  # it has ended; its pipe is closed then
 
 
 def _diagnose(status: int | None, watch: _Watch, limits: EngineLimits, log: Path) -> Failure:
-    """Tell why a child ended without a word."""
+    """Return why a child ended without a report."""
     stage = watch.stage
     # Native code that is refused memory throws, and an uncaught throw ends in SIGABRT.
     if b"bad_alloc" in _tail(log):
         return over_memory(limits.memory_mb, stage)
-    # The kernel ends who fills the machine or the container; one far below its limit was ended for others' sake.
+    # The kernel kills a process when memory runs out; one far below its limit was not the reason.
     if status == -signal.SIGKILL and watch.peak_mb > _FULL_MEMORY * limits.memory_mb:
         return over_memory(limits.memory_mb, stage)
     if status == -signal.SIGXCPU:
@@ -212,11 +212,11 @@ def _diagnose(status: int | None, watch: _Watch, limits: EngineLimits, log: Path
     return crashed(name, stage)
 
 
-def log_last_words(log: Path) -> None:
-    """Take over the end of an engine's log into that of the worker."""
-    words = _tail(log).decode(errors="replace").strip()
-    for line in words.splitlines()[-_MOST_LAST_LINES:]:
-        _log.warning("the engine's last words: %s", line)
+def log_engine_tail(log: Path) -> None:
+    """Copy the end of an engine's log into the log of the worker."""
+    text = _tail(log).decode(errors="replace").strip()
+    for line in text.splitlines()[-_MOST_LOG_LINES:]:
+        _log.warning("the engine's log: %s", line)
 
 
 def _tail(log: Path) -> bytes:
