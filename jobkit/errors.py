@@ -40,7 +40,12 @@
     ├── StoreUnavailableError       store_unavailable     the object store can't be written
     └── StaleAttemptError           stale_attempt         the job has moved on; this attempt may write no more
 
-Tested in `tests/test_documents.py`.
+Beside the tree stand errors that are faults of this code. No handler answers them, so their tracebacks reach the log.
+
+::
+
+    DatabaseError                   the database refused a statement, though it works
+    └── RowConflictError            a constraint refused a row; callers that expect this try again
 """
 
 from shared_rules.text import printable
@@ -266,6 +271,14 @@ class DatabaseUnavailableError(JobkitError):
     """The database does not answer, or stays locked for too long."""
 
     code = "database_unavailable"
+
+
+class DatabaseError(Exception):
+    """The database refused a statement, though it works; its cause is the error of SQLAlchemy."""
+
+
+class RowConflictError(DatabaseError):
+    """A constraint refused a row: another transaction wrote it first, or a row that it names is missing."""
 
 
 class StoreUnavailableError(JobkitError):

@@ -8,14 +8,13 @@ from dataclasses import dataclass
 from datetime import timedelta
 
 from sqlalchemy import exists, select, update
-from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
 from jobkit.database.clock import shared_now, utc_now
 from jobkit.database.expiry import expiry
 from jobkit.database.session import Database
 from jobkit.database.tables import JobRow, MeshRow
-from jobkit.errors import MeshNotFoundError, StaleAttemptError
+from jobkit.errors import MeshNotFoundError, RowConflictError, StaleAttemptError
 from jobkit.schema import Format, Mesh, MeshFacts, MeshLinks, MeshProblem, MeshState
 from jobkit.storage.base import StoredObject
 
@@ -72,7 +71,7 @@ class Meshes:
         """
         try:
             return self._add(stored, filename, mesh_format)
-        except IntegrityError:
+        except RowConflictError:
             # The same bytes arrived twice at the same moment; the other upload has written the row.
             return self._add(stored, filename, mesh_format)
 

@@ -11,7 +11,6 @@ from collections.abc import Callable, Sequence
 from datetime import datetime, timedelta
 
 from sqlalchemy import CursorResult, Select, delete, exists, func, select, update
-from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
 from jobkit.database.clock import utc_now
@@ -22,6 +21,7 @@ from jobkit.errors import (
     JobNotFoundError,
     MeshInUseError,
     MeshNotFoundError,
+    RowConflictError,
     StoreUnavailableError,
 )
 from jobkit.schema import JobState
@@ -86,7 +86,7 @@ def delete_mesh(database: Database, mesh_id: str) -> None:
                 raise MeshInUseError(f"{n_jobs} {noun} mesh {mesh_id}; delete them first")
             if not _hits(session.execute(delete(MeshRow).where(MeshRow.id == mesh_id))):
                 raise MeshNotFoundError(f"there is no mesh {mesh_id}")
-    except IntegrityError as error:
+    except RowConflictError as error:
         raise MeshInUseError(f"1 job came to name mesh {mesh_id} at this moment") from error
 
 
@@ -156,7 +156,7 @@ def expire_meshes(database: Database, days: float, now: datetime, is_over: Calla
             with database.write() as session:
                 # An upload or a job may have come in between; what counts is how it stands now.
                 removed += _hits(session.execute(delete(MeshRow).where(MeshRow.id == mesh_id, old)))
-        except IntegrityError:
+        except RowConflictError:
             continue  # a job came to name it while it was being deleted
     return removed
 

@@ -13,9 +13,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import anyio.to_thread
-from sqlalchemy.exc import SQLAlchemyError
 
-from jobkit.errors import DatabaseUnavailableError, JobNotFoundError
+from jobkit.errors import DatabaseError, DatabaseUnavailableError, JobNotFoundError
 from jobkit.jobs.estimates import Estimates
 from jobkit.jobs.jobs import Glance, Jobs
 from jobkit.schema import Job
@@ -87,7 +86,7 @@ class JobCache:
     async def _refresh(self) -> None:
         try:
             await anyio.to_thread.run_sync(self._estimates.refresh)
-        except (DatabaseUnavailableError, SQLAlchemyError) as error:
+        except (DatabaseUnavailableError, DatabaseError) as error:
             _logger.warning("estimates wait for the database: %r", error.__cause__ or error)
 
     async def _run_batch(self, batch: _Batch) -> dict[str, JobView]:

@@ -15,11 +15,10 @@ from http import HTTPStatus
 import anyio
 import anyio.to_thread
 from fastapi.sse import KEEPALIVE_COMMENT, EventSourceResponse, format_sse_event
-from sqlalchemy.exc import SQLAlchemyError
 from starlette.types import Receive, Scope, Send
 
 from jobkit.database.session import Database
-from jobkit.errors import DatabaseUnavailableError
+from jobkit.errors import DatabaseError, DatabaseUnavailableError
 from jobkit.jobs.events import NewEvents, read_new_events
 from jobkit.schema import Event
 from service.problems import RETRY_AFTER_S, ProblemError
@@ -177,7 +176,7 @@ class EventStreams:
             return
         try:
             news = await anyio.to_thread.run_sync(self._read, watched)
-        except (DatabaseUnavailableError, SQLAlchemyError) as error:
+        except (DatabaseUnavailableError, DatabaseError) as error:
             # The streams stay open: their clients get no events for a while, and lose none.
             _logger.warning("event streams wait for the database: %r", error.__cause__ or error)
             return

@@ -12,9 +12,8 @@ from typing import Annotated
 
 import anyio.to_thread
 from fastapi import Header, Response
-from sqlalchemy.exc import SQLAlchemyError
 
-from jobkit.errors import JobkitError
+from jobkit.errors import DatabaseError, JobkitError
 from service.pacing import Pacer
 
 POLL_S = 0.1
@@ -96,7 +95,7 @@ class Waiters:
             subjects = list(self._futures)
             try:
                 unfinished = await anyio.to_thread.run_sync(self._unfinished, subjects)
-            except (JobkitError, SQLAlchemyError) as error:
+            except (JobkitError, DatabaseError) as error:
                 _logger.warning("requests that wait can't look: %r", error.__cause__ or error)
                 unfinished = ()  # each of them reads its subject and meets the error itself
             self._finish([subject for subject in subjects if subject not in unfinished])

@@ -12,9 +12,7 @@ from contextvars import copy_context
 from dataclasses import dataclass
 from typing import Self
 
-from sqlalchemy.exc import SQLAlchemyError
-
-from jobkit.errors import DatabaseUnavailableError, StaleAttemptError
+from jobkit.errors import DatabaseError, DatabaseUnavailableError, StaleAttemptError
 from worker.failures import StopReason
 from worker.progress import Progress
 
@@ -89,8 +87,8 @@ class Heartbeat:
             except StaleAttemptError as error:
                 _log.warning("the attempt was taken away: %s", error)
                 self.stop_reason = StopReason.LOST
-            except (DatabaseUnavailableError, SQLAlchemyError) as error:
-                _log.warning("a heartbeat failed: %s", error)
+            except (DatabaseUnavailableError, DatabaseError) as error:
+                _log.warning("a heartbeat failed: %r", error.__cause__ or error)
                 if time.monotonic() - self._renewed_at > self._heartbeat_calls.outage_timeout_s:
                     self.stop_reason = StopReason.LOST
 

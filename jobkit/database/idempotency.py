@@ -12,13 +12,12 @@ from datetime import datetime, timedelta
 from typing import TypeVar
 
 from sqlalchemy import CursorResult, delete
-from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
 from jobkit.database.clock import utc_now
 from jobkit.database.session import Database
 from jobkit.database.tables import IdempotencyRow
-from jobkit.errors import IdempotencyError
+from jobkit.errors import IdempotencyError, RowConflictError
 
 KEPT = timedelta(days=7)
 
@@ -121,7 +120,7 @@ def once(
     """
     try:
         return _once(database, idempotency, make, show)
-    except IntegrityError:
+    except RowConflictError:
         # Two requests with one key at the same moment: the other one has won, so what it made is the answer.
         return _once(database, idempotency, make, show)
 

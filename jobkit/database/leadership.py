@@ -9,11 +9,11 @@ from dataclasses import dataclass
 from datetime import datetime, timedelta
 
 from sqlalchemy import delete, select
-from sqlalchemy.exc import IntegrityError
 
 from jobkit.database.clock import shared_now
 from jobkit.database.session import Database
 from jobkit.database.tables import LeaderRow
+from jobkit.errors import RowConflictError
 
 # What dispatchers lead.
 DISPATCHER = "dispatcher"
@@ -89,7 +89,7 @@ class Leadership:
         try:
             with self._database.write() as session:
                 session.add(LeaderRow(name=self._name, holder=self._holder, until=until, since=now))
-        except IntegrityError:
+        except RowConflictError:
             return False
         return True
 

@@ -22,13 +22,13 @@ from alembic.config import Config
 from alembic.migration import MigrationContext
 from sqlalchemy import Connection, Engine, create_engine, event, text
 from sqlalchemy.engine import make_url
-from sqlalchemy.exc import DBAPIError, InterfaceError, OperationalError
+from sqlalchemy.exc import DBAPIError, IntegrityError, InterfaceError, OperationalError, SQLAlchemyError
 from sqlalchemy.exc import TimeoutError as PoolTimeoutError
 from sqlalchemy.orm import Session
 
 from jobkit.database.write_queue import BUSY_TIMEOUT_MS, WriteQueue
-from jobkit.errors import DatabaseUnavailableError, SettingsError
-from shared_rules.text import encodable
+from jobkit.errors import DatabaseError, DatabaseUnavailableError, RowConflictError, SettingsError
+from jobkit.text import encodable
 
 # Any number will do, as long as all processes of this project take the same one.
 _MIGRATION_LOCK = 0x51554144
@@ -55,6 +55,9 @@ _POSTGRES_PARAMETERS = {
 class Database:
     """One database, shared by all threads of a process.
 
+    Its sessions raise DatabaseUnavailableError in an outage, and DatabaseError or RowConflictError where a statement is
+    refused, in place of the errors of SQLAlchemy.
+
     Parameters
     ----------
     url : str
@@ -79,7 +82,7 @@ class Database:
 
     @contextmanager
     def read(self) -> Iterator[Session]:
-        """Open a session that sees one moment and writes nothing."""
+        """Open a session that sees one snapshot and writes nothing."""
         with _translated(), Session(self._reader, expire_on_commit=False) as session:
             yield session
 
@@ -164,13 +167,19 @@ def migration_config() -> Config:
 def _translated() -> Iterator[None]:
     try:
         yield
-    except PoolTimeoutError as error:
-        raise DatabaseUnavailableError("all connections to the database are busy") from error
-    except DBAPIError as error:
-        if not _is_outage(error):
-            raise
+    except SQLAlchemyError as error:
+        raise _translation(error) from error
+
+
+def _translation(error: SQLAlchemyError) -> Exception:
+    if isinstance(error, PoolTimeoutError):
+        return DatabaseUnavailableError("all connections to the database are busy")
+    if isinstance(error, DBAPIError) and _is_outage(error):
         # The driver's text may name hosts and users, so it stays in the log.
-        raise DatabaseUnavailableError("the database does not answer") from error
+        return DatabaseUnavailableError("the database does not answer")
+    if isinstance(error, IntegrityError):
+        return RowConflictError("a constraint of the database refuses a row")
+    return DatabaseError("the database refuses a statement")
 
 
 def _is_outage(error: DBAPIError) -> bool:

@@ -4,7 +4,6 @@ from collections.abc import Collection
 from dataclasses import dataclass
 
 from sqlalchemy import bindparam, select
-from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
 from jobkit.database.clock import shared_now, utc_now
@@ -13,7 +12,7 @@ from jobkit.database.job_rows import existing_job, to_job
 from jobkit.database.readable_rows import readable
 from jobkit.database.session import Database
 from jobkit.database.tables import JobRow, MeshRow, ModelRow
-from jobkit.errors import JobFinishedError, JobNotFoundError, MeshNotFoundError, ModelNotFoundError
+from jobkit.errors import JobFinishedError, JobNotFoundError, MeshNotFoundError, ModelNotFoundError, RowConflictError
 from jobkit.ids import new_job_id
 from jobkit.jobs.events import append_event, read_events
 from jobkit.jobs.transitions import Transition, make_transition
@@ -81,7 +80,7 @@ class Jobs:
         """
         try:
             return self._create(new, idempotency)
-        except IntegrityError:
+        except RowConflictError:
             # Two requests with one key at the same moment: the other one has won, so its job is the answer.
             return self._create(new, idempotency)
 

@@ -7,13 +7,12 @@ Tested in `tests/jobkit/test_races_of_models.py`.
 """
 
 from sqlalchemy import select
-from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
 from jobkit.database.clock import utc_now
 from jobkit.database.session import Database
 from jobkit.database.tables import AliasRow, DeletedModelRow, JobRow, ModelRow
-from jobkit.errors import ModelNotFoundError
+from jobkit.errors import ModelNotFoundError, RowConflictError
 from jobkit.models.errors import AliasInUseError, ModelInUseError
 from jobkit.models.registry import DEFAULT_KINDS
 from jobkit.models.rows import to_version, version_row
@@ -61,7 +60,7 @@ def delete_version(database: Database, name: str, version: int) -> None:
     """
     try:
         _delete_version(database, name, version)
-    except IntegrityError:
+    except RowConflictError:
         # Another version of the name was deleted at the same moment, or an alias came: this time that is seen.
         _delete_version(database, name, version)
 

@@ -11,14 +11,13 @@ from pathlib import Path
 from typing import Literal, cast
 
 from sqlalchemy import func, select
-from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
 from jobkit.database.clock import utc_now
 from jobkit.database.readable_rows import readable
 from jobkit.database.session import Database
 from jobkit.database.tables import AliasRow, DeletedModelRow, ModelRow
-from jobkit.errors import ModelKindError, NameTakenError
+from jobkit.errors import ModelKindError, NameTakenError, RowConflictError
 from jobkit.models.errors import ModelDeprecatedError
 from jobkit.models.header import artifact_format, dictionary_card, to_wire_card
 from jobkit.models.network_header import check_network, read_network_card
@@ -112,7 +111,7 @@ class Registry:
         for _ in range(_MOST_RIVALS):
             try:
                 return self._insert(row, version)
-            except IntegrityError:
+            except RowConflictError:
                 continue  # another version was published at the same moment: now the next number is another one
         return self._insert(row, version)
 

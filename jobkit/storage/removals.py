@@ -17,13 +17,12 @@ from collections.abc import Iterable
 from datetime import timedelta
 
 from sqlalchemy import delete, select
-from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
 from jobkit.database.clock import shared_now
 from jobkit.database.session import Database
 from jobkit.database.tables import MeshRow, ModelRow, RemovalRow
-from jobkit.errors import ObjectNotFoundError, StoreUnavailableError
+from jobkit.errors import ObjectNotFoundError, RowConflictError, StoreUnavailableError
 from jobkit.storage.base import ObjectStore
 from jobkit.storage.damage import forget_damaged, is_known_damaged
 
@@ -53,7 +52,7 @@ def claim(database: Database, keys: Iterable[str]) -> list[str]:
             named |= set(session.scalars(select(RemovalRow.key).where(RemovalRow.key.in_(asked))))
             free = sorted(asked - named)
             session.add_all(RemovalRow(key=key, until=now + timedelta(seconds=CLAIM_S)) for key in free)
-    except IntegrityError:
+    except RowConflictError:
         return []  # another sweep claimed one of them at the same moment; the next turn will do
     return free
 

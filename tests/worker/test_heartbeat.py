@@ -1,9 +1,8 @@
 import threading
 
 import pytest
-from sqlalchemy.exc import OperationalError
 
-from jobkit.errors import DatabaseUnavailableError, StaleAttemptError
+from jobkit.errors import DatabaseError, DatabaseUnavailableError, StaleAttemptError
 from tests.waiting import GUARD_S, wait_until
 from worker.failures import StopReason
 from worker.heartbeat import Heartbeat, HeartbeatCalls
@@ -63,9 +62,7 @@ def test_an_attempt_that_was_taken_away_is_lost() -> None:
 
 
 @pytest.mark.parametrize(("outage_timeout_s", "reason"), [(0.0, StopReason.LOST), (3600.0, None)])
-@pytest.mark.parametrize(
-    "error", [DatabaseUnavailableError("away"), OperationalError("UPDATE", {}, Exception("disk I/O error"))]
-)
+@pytest.mark.parametrize("error", [DatabaseUnavailableError("away"), DatabaseError("the database refuses a statement")])
 def test_an_unavailable_database_is_waited_for_up_to_the_timeout(
     error: Exception, outage_timeout_s: float, reason: StopReason | None
 ) -> None:

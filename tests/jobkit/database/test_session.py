@@ -12,12 +12,12 @@ import pytest
 from alembic.autogenerate import compare_metadata
 from alembic.migration import MigrationContext
 from sqlalchemy import func, inspect, select, text
-from sqlalchemy.exc import DataError, DBAPIError, IntegrityError
+from sqlalchemy.exc import DataError
 
 from jobkit.database.session import Database
 from jobkit.database.table_base import Base
 from jobkit.database.tables import JobRow, MeshRow, ModelRow
-from jobkit.errors import DatabaseUnavailableError, SettingsError
+from jobkit.errors import DatabaseError, DatabaseUnavailableError, RowConflictError, SettingsError
 from tests.servers import PostgresServer, fresh_database, running_postgres
 from tests.waiting import GUARD_S, let_others_run
 
@@ -138,7 +138,7 @@ def test_sqlite_writes_ahead_and_holds_foreign_keys(database: Database) -> None:
 
 def test_a_job_without_its_mesh_is_refused(database: Database) -> None:
     values = {"state": "queued", "max_attempts": 1, "spec": {}, "model": {}, "created_at": NOW, "updated_at": NOW}
-    with pytest.raises(IntegrityError), database.write() as session:
+    with pytest.raises(RowConflictError), database.write() as session:
         session.add(JobRow(id="job_x", mesh_id="0" * 64, queued_at=NOW, **values))
 
 
@@ -275,8 +275,14 @@ def test_a_standby_that_takes_no_writes_is_an_outage(postgres: PostgresServer) -
 
 
 @pytest.mark.parametrize("any_database", ["postgresql"], indirect=True)
-def test_what_no_outage_explains_is_a_fault(database: Database) -> None:
-    with pytest.raises(DBAPIError), database.read() as session:
+def test_a_refused_statement_is_a_fault_and_no_outage(database: Database) -> None:
+    with pytest.raises(DatabaseError), database.read() as session:
         session.execute(text("SELECT no_such_column"))
-    with pytest.raises(DataError), database.write() as session:
+    with pytest.raises(DatabaseError) as caught, database.write() as session:
         session.add(mesh_row("m" * 65))
+    assert isinstance(caught.value.__cause__, DataError)
+
+
+def test_a_missing_row_is_a_fault(database: Database) -> None:
+    with pytest.raises(DatabaseError), database.read() as session:
+        session.get_one(MeshRow, "m")
