@@ -13,6 +13,8 @@ from collections.abc import Callable
 from contextlib import closing
 from datetime import timedelta
 
+from standardwebhooks.webhooks import EmptyWebhookSecretError
+
 from dispatcher.outbox import Claim, claim_due, is_anything_due, note_answer
 from dispatcher.sending import Answer, Sender
 from jobkit.database.clock import utc_now
@@ -28,6 +30,8 @@ _GRACE_S = 2.0
 # Beyond the longest request, for the look-up before it and the record after it.
 _CLAIM_MARGIN_S = 30.0
 _BATCH = 1000
+# What a stored URL, secret or payload that no request can be made of raises; `Sender.send` answers all else itself.
+_UNSENDABLE = (ValueError, LookupError, RuntimeError, EmptyWebhookSecretError)
 
 _log = logging.getLogger("quadpatch.dispatcher.webhooks")
 IsOver = Callable[[], bool]
@@ -96,7 +100,8 @@ class _Round:
     async def _send(self, claim: Claim) -> None:
         try:
             answer = await self._sender.send(claim.outgoing)
-        except Exception as error:  # noqa: BLE001 - a try that is not noted as one is made again for ever
+        except _UNSENDABLE as error:
+            # Recorded as a try, so that the delivery is given up at last: the row would fail in the same way each time.
             _log.exception("delivery %s can't be sent", claim.delivery_id)
             answer = Answer(None, f"it can't be sent ({type(error).__name__})", None, 0)
         await asyncio.to_thread(note_answer, self._database, claim, answer, random.random())

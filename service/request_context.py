@@ -52,7 +52,7 @@ class RequestContextMiddleware:
         with log_about(request_id=request.state.request_id):
             try:
                 await self._app(scope, receive, send_with_headers)
-            except Exception:
+            except Exception:  # the outermost handler of a request
                 _logger.exception("%s %s failed", request.method, scope["path"])
                 if has_started:
                     raise  # the connection breaks, so that the client sees that the body is not whole

@@ -164,7 +164,7 @@ class EventStreams:
             self._woken.clear()
             try:
                 await self._read_news()
-            except Exception:
+            except Exception:  # the outermost handler of a task without which all streams would stop
                 _logger.exception("a look for new events failed")
 
     async def _read_news(self) -> None:
