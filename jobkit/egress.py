@@ -1,8 +1,8 @@
-"""Which addresses messages may be sent to: those that the whole world can reach, and those that are allowed by setting.
+"""Which addresses messages may be sent to: globally routable ones, and those that a setting allows.
 
 A client that may subscribe chooses where this service sends requests. So it sends none to its own network, where a
 metadata service or a database listens, unless the operator allows it. A name is resolved once; all of its addresses are
-judged, and the connection goes to one of these, so a name that changes its meaning in between gains nothing.
+checked, and the connection goes to one of these, so a name whose addresses change in between gains nothing.
 """
 
 import ipaddress
@@ -20,7 +20,7 @@ Networks = tuple[IPv4Network | IPv6Network, ...]
 _PORTS = {"http": 80, "https": 443}
 # All that is handed out of IPv6 for use between networks lies in here; what lies elsewhere is local or has no receiver.
 _GLOBAL_UNICAST = IPv6Network("2000::/3")
-# They carry an IPv4 address that a gateway may unpack: that one counts, too.
+# They carry an IPv4 address that a gateway may unpack: that one is checked, too.
 _NAT64 = IPv6Network("64:ff9b::/96")
 _TUNNELS = (IPv6Network("2002::/16"), IPv6Network("2001::/32"))
 
@@ -47,7 +47,10 @@ def parse_networks(text: str) -> Networks:
 
 
 def check_url(url: str, allowed: Networks) -> None:
-    """Resolve the name in a URL and refuse it where nothing may be sent to it; raises all that stands below."""
+    """Resolve the name in a URL and refuse it where nothing may be sent to it.
+
+    Raises as `destination_of`, `resolve` and `check_addresses`.
+    """
     destination = destination_of(url)
     check_addresses(destination, resolve(destination), allowed)
 
@@ -77,11 +80,11 @@ def resolve(destination: Destination) -> list[Address]:
         If the name has no address.
     """
     try:
-        found = socket.getaddrinfo(destination.host, destination.port, type=socket.SOCK_STREAM)
+        entries = socket.getaddrinfo(destination.host, destination.port, type=socket.SOCK_STREAM)
     except (OSError, UnicodeError) as error:
         raise HostUnknownError(f"{destination.host} has no address") from error
     # Twice the same address where a host's file names it twice; the scope of a link-local one says nothing here.
-    texts = dict.fromkeys(str(entry[4][0]).partition("%")[0] for entry in found)
+    texts = dict.fromkeys(str(entry[4][0]).partition("%")[0] for entry in entries)
     return [ipaddress.ip_address(text) for text in texts]
 
 
@@ -95,17 +98,17 @@ def check_addresses(destination: Destination, addresses: Sequence[Address], allo
     TlsRequiredError
         If the URL is plain http, and an address lies outside of the allowed networks.
     """
-    for address in map(judged_address, addresses):
+    for address in map(unwrapped_address, addresses):
         if is_within(address, allowed):
             continue
         if not is_global(address):
-            # The address itself stays unsaid: it would tell a stranger how names resolve in here.
+            # Without the address: it would tell a client how names resolve in this network.
             raise AddressRefusedError(f"{destination.host} is not an address that the whole internet can reach")
         if destination.scheme != "https":
             raise TlsRequiredError(f"{destination.host} has to be reached by https")
 
 
-def judged_address(address: Address) -> Address:
+def unwrapped_address(address: Address) -> Address:
     """Return the IPv4 address where an IPv6 one only wraps it, else the address itself."""
     if isinstance(address, IPv4Address):
         return address

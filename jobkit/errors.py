@@ -57,7 +57,7 @@ class JobkitError(Exception):
     Parameters
     ----------
     message : str
-        For people, in one line; words of others may stand in it as they are.
+        For people, in one line; it may quote untrusted text, which is escaped.
     """
 
     code = "jobkit_error"
@@ -130,7 +130,7 @@ class DeliveryNotFoundError(NotFoundError):
 
 
 class ConflictError(JobkitError):
-    """The request is sound, but not in the present state of things."""
+    """The request is valid, but not possible in the present state."""
 
     code = "conflict"
 

@@ -1,4 +1,4 @@
-"""Identifiers: a mesh is named by the sha256 of its bytes, anything else by the time of its birth and chance."""
+"""Identifiers: a mesh is named by the sha256 of its bytes, anything else by its time of creation and random bits."""
 
 import secrets
 import time
@@ -9,7 +9,7 @@ MESSAGE_ID_PATTERN = r"^msg_[0-9a-hjkmnp-tv-z]{26}$"
 SHA256_PATTERN = r"^[0-9a-f]{64}$"
 MODEL_NAME = r"[a-z0-9][a-z0-9._-]{0,63}"
 
-# Crockford's alphabet: no i, l, o, u, so that an id survives being read aloud.
+# Crockford's alphabet: no i, l, o, u, so that an id can be read aloud.
 _ALPHABET = "0123456789abcdefghjkmnpqrstvwxyz"
 
 

@@ -1,7 +1,7 @@
 """One way of logging for all processes: a line of text for a terminal, or one JSON object a line for machines.
 
 What a line is about (the request, the job, the attempt) is kept in the context, so that code below need not
-know it. Threads start with an empty context: one that works for a job is given a copy of its maker's.
+know it. Threads start with an empty context: one that works for a job is given a copy of the context that starts it.
 """
 
 import json
@@ -24,7 +24,7 @@ _LONGEST_TRACEBACK = 20_000
 _TEXT = "%(asctime)s %(levelname)s %(name)s: %(message)s"
 _NOTHING: Mapping[str, object] = MappingProxyType({})
 _SUBJECT: ContextVar[Mapping[str, object]] = ContextVar("subject of log lines", default=_NOTHING)
-# They log through their own handlers unless told otherwise.
+# They have handlers of their own by default.
 _FOREIGN = ("uvicorn", "uvicorn.access", "uvicorn.error", "rq.worker", "rq.job")
 
 
@@ -101,7 +101,7 @@ class TextFormatter(logging.Formatter):
         return super().formatMessage(record) + (f" [{about}]" if about else "")
 
     def formatException(self, ei: object) -> str:  # noqa: N802 - the name is logging's
-        """Write a traceback, indented: words of a file in it can't pass for lines of the log."""
+        """Write a traceback, indented: text of a file in it can't look like a line of the log."""
         lines = super().formatException(ei).split("\n")  # type: ignore[arg-type]
         return "\n".join(f"    {printable(line, _LONGEST_MESSAGE)}" for line in lines)
 

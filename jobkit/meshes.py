@@ -1,4 +1,4 @@
-"""Uploaded meshes and the life of their analysis.
+"""Uploaded meshes and their analysis.
 
 An analysis is fenced like a job: starting it raises `attempt`, and only the latest attempt may write.
 """
@@ -60,9 +60,9 @@ class Meshes:
         self._retention_days = retention_days
 
     def add(self, stored: StoredObject, filename: str | None, mesh_format: Format | None) -> tuple[Mesh, bool]:
-        """Note an upload; the same bytes are the same mesh, which goes by its latest name.
+        """Record an upload; the same bytes are the same mesh, which has its latest name.
 
-        A mesh that was rejected is analysed again when it comes back under another format, or was gone.
+        A mesh that was rejected is analysed again when it comes back under another format, or its bytes were missing.
 
         Returns
         -------
@@ -90,10 +90,10 @@ class Meshes:
         with self._database.write() as session:
             now = shared_now(session)
             row = _existing(session, mesh_id)
-            is_taken = row.lease_until is not None and row.lease_until > now
-            if row.state != MeshState.ANALYSING or is_taken:
+            is_leased = row.lease_until is not None and row.lease_until > now
+            if row.state != MeshState.ANALYSING or is_leased:
                 raise StaleAttemptError(f"mesh {mesh_id} is {row.state} and not to be analysed now")
-            changed = session.execute(
+            result = session.execute(
                 update(MeshRow)
                 .where(
                     MeshRow.id == mesh_id, MeshRow.attempt == row.attempt, MeshRow.state == MeshState.ANALYSING.value
@@ -106,11 +106,11 @@ class Meshes:
                 )
                 .execution_options(synchronize_session=False)
             )
-            if changed.rowcount != 1:  # type: ignore[attr-defined]
+            if result.rowcount != 1:  # type: ignore[attr-defined]
                 raise StaleAttemptError(f"mesh {mesh_id} was taken by another worker")
             return Analysis(_to_source(row), row.attempt + 1, row.attempt + 1 - row.forgiven >= MAX_ANALYSES)
 
-    def analysing(self, mesh_ids: Collection[str]) -> set[str]:
+    def unfinished(self, mesh_ids: Collection[str]) -> set[str]:
         """Return those of the meshes whose analysis is still to come."""
         query = select(MeshRow.id).where(MeshRow.id.in_(mesh_ids), MeshRow.state == MeshState.ANALYSING.value)
         with self._database.read() as session:
@@ -135,7 +135,7 @@ class Meshes:
         self._write(analysis, {"lease_until": None, "enqueued_at": None})
 
     def forgive(self, analysis: Analysis, delay_s: float = 0.0) -> None:
-        """Hand an analysis back, and don't count it: what ended it lies outside of the mesh.
+        """Hand an analysis back, and don't count it: the reason lies outside of the mesh.
 
         No worker takes the mesh for `delay_s` seconds. Raises StaleAttemptError.
         """
@@ -175,7 +175,7 @@ class Meshes:
         with self._database.write() as session:
             if lease_s:
                 values = {**values, "lease_until": shared_now(session) + timedelta(seconds=lease_s)}
-            changed = session.execute(
+            result = session.execute(
                 update(MeshRow)
                 .where(
                     MeshRow.id == analysis.source.mesh_id,
@@ -184,7 +184,7 @@ class Meshes:
                 )
                 .values(**values, updated_at=utc_now())
             )
-            if changed.rowcount != 1:  # type: ignore[attr-defined]
+            if result.rowcount != 1:  # type: ignore[attr-defined]
                 raise StaleAttemptError(
                     f"analysis {analysis.attempt} of mesh {analysis.source.mesh_id} is no longer the latest"
                 )

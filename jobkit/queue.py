@@ -1,8 +1,8 @@
-"""Queue adapter: RQ as an executor only. The database is the truth; a lost queue is refilled from it.
+"""Queue adapter: RQ as an executor only. The database is authoritative; a lost queue is refilled from it.
 
 There is one queue for all kinds of tasks: RQ loses a job when a worker that listens to two queues is killed right
-after the pop. All stand in it by age, since a file says nothing of how long its analysis takes; only jobs whose
-attempt was lost go to the front, they have waited already.
+after the pop. All are ordered by age, since the length of an analysis is not known from the file; only jobs whose
+attempt was lost go to the front, since they have waited already.
 """
 
 import hashlib
@@ -21,11 +21,11 @@ from jobkit.errors import QueueUnavailableError
 RUN_JOB = "worker.jobs.run_job"
 INSPECT_MESH = "worker.jobs.inspect_mesh"
 PROVE_MODEL = "worker.jobs.prove_model"
-# The engine has limits of its own; this one only frees a worker whose watch over the engine failed.
+# The engine has limits of its own; this one only frees a worker whose supervision of the engine failed.
 _MARGIN_S = 60
 _SOCKET_TIMEOUT_S = 5.0
 _CONNECT_TIMEOUT_S = 2.0
-# A connection that broke is made anew once. A server that is away is not waited for: the database has the job.
+# A connection that broke is made anew once. An unavailable server is not waited for: the database has the job.
 _RETRIES = 1
 _RETRY_PAUSE_S = 0.1
 
@@ -64,7 +64,7 @@ class TaskQueue:
         """Ask for the proof of a model version, `name@version`; raise QueueUnavailableError."""
         self._enqueue(PROVE_MODEL, reference, model_entry(reference, attempt), at_front=False)
 
-    def waiting(self) -> set[str]:
+    def entries(self) -> set[str]:
         """Return the entries that wait in the queue; raise QueueUnavailableError."""
         with _translated():
             return set(self._queue.get_job_ids())
@@ -82,18 +82,20 @@ class TaskQueue:
     def weaknesses(self) -> list[str] | None:
         """Tell in words how the server may lose entries; None where it does not say. Raise QueueUnavailableError.
 
-        A lost queue loses no job, but until the dispatcher has noticed, jobs wait for nothing.
+        A lost queue loses no job, but until the dispatcher has noticed, jobs wait although workers are free.
         """
         with _translated():
             try:
                 persistence, memory = self.connection.info("persistence"), self.connection.info("memory")
             except ResponseError:
-                return None  # not every user may ask, least of all on a server that is rented
+                return None  # INFO may be forbidden, as on many managed servers
         keeps_log, policy = persistence.get("aof_enabled"), memory.get("maxmemory_policy")
         if keeps_log is None or policy is None:
             return None
-        found = [] if keeps_log else ["its append-only file is off"]
-        return found if policy == "noeviction" else [*found, f"maxmemory-policy is {policy}, not noeviction"]
+        weak_points = [] if keeps_log else ["its append-only file is off"]
+        return (
+            weak_points if policy == "noeviction" else [*weak_points, f"maxmemory-policy is {policy}, not noeviction"]
+        )
 
     def close(self) -> None:
         """Close all connections."""

@@ -1,4 +1,4 @@
-"""A file that stands for as long as a worker can take tasks, for launchers and health checks to look at."""
+"""A file that exists as long as a worker can take tasks, for launchers and health checks."""
 
 import os
 from collections.abc import Iterator, Mapping

@@ -1,7 +1,7 @@
 """Make the queue follow the database again.
 
-The queue may lose entries: a Valkey without its log, a worker killed right after the pop. So whatever waits in the
-database and is not in the queue is put there again; twins are harmless, since only one can start an attempt.
+The queue may lose entries: a Valkey without its log, a worker killed right after the pop. So what waits in the
+database and is not in the queue is put there again; a second entry is harmless, since only one can start an attempt.
 """
 
 from dataclasses import dataclass
@@ -18,7 +18,7 @@ from jobkit.models.proofs import give_up_proofs, parts_of, reference_of
 from jobkit.queue import TaskQueue, job_entry, mesh_entry, model_entry
 from jobkit.schema import JobState, MeshProblem, MeshState, ModelState
 
-# Of jobs that something may still have to be done about.
+# Of jobs that have not ended.
 _OPEN_STATES = tuple(state.value for state in JobState if not state.is_terminal)
 # Between the pop and the start of the attempt an entry is in neither place.
 GRACE_S = 10.0
@@ -26,7 +26,7 @@ GRACE_S = 10.0
 
 @dataclass(frozen=True)
 class Reconciled:
-    """What one look found."""
+    """What one run did."""
 
     ended: int
     enqueued_jobs: int
@@ -37,10 +37,10 @@ class Reconciled:
 def reconcile(
     database: Database, queue: TaskQueue, limits: TimeLimits, now: datetime | None = None, *, takes_leases: bool = True
 ) -> Reconciled:
-    """End what is overdue and refill the queue; without `takes_leases`, leases that ran out are left alone for once.
+    """End what is overdue and refill the queue; without `takes_leases`, leases that ran out are not taken back.
 
-    Where no job, no analysis and no proof is open, one query says so, and nothing else is asked: an idle dispatcher
-    looks every second, for years.
+    Where no job, no analysis and no proof is open, one query says so, and no other runs: an idle dispatcher
+    does this every second.
 
     Raises
     ------
@@ -54,10 +54,10 @@ def reconcile(
     _give_up_analyses(database, moment)
     with database.write() as session:
         give_up_proofs(session, moment)
-    waiting = queue.waiting()
-    jobs = _enqueue_jobs(database, queue, waiting, moment)
-    meshes = _enqueue_meshes(database, queue, waiting, moment)
-    models = _enqueue_models(database, queue, waiting, moment)
+    entries = queue.entries()
+    jobs = _enqueue_jobs(database, queue, entries, moment)
+    meshes = _enqueue_meshes(database, queue, entries, moment)
+    models = _enqueue_models(database, queue, entries, moment)
     return Reconciled(ended, jobs, meshes, models)
 
 
@@ -112,51 +112,51 @@ def _is_anything_open(database: Database) -> bool:
         return bool(session.scalar(select(or_(job, mesh, model))))
 
 
-def _enqueue_jobs(database: Database, queue: TaskQueue, waiting: set[str], now: datetime) -> int:
+def _enqueue_jobs(database: Database, queue: TaskQueue, entries: set[str], now: datetime) -> int:
     with database.read() as session:
         is_due = or_(JobRow.not_before.is_(None), JobRow.not_before <= now)
         query = select(JobRow.id, JobRow.attempt, JobRow.enqueued_at)
         rows = session.execute(query.where(JobRow.state == JobState.QUEUED.value, is_due).order_by(JobRow.id)).all()
-    lost = [
+    missing_jobs = [
         (job_id, attempt)
         for job_id, attempt, enqueued_at in rows
-        if job_entry(job_id, attempt + 1) not in waiting and _is_overdue(enqueued_at, now)
+        if job_entry(job_id, attempt + 1) not in entries and _is_overdue(enqueued_at, now)
     ]
-    for job_id, attempt in lost:
+    for job_id, attempt in missing_jobs:
         submit_job(database, queue, job_id, attempt)
-    return len(lost)
+    return len(missing_jobs)
 
 
-def _enqueue_meshes(database: Database, queue: TaskQueue, waiting: set[str], now: datetime) -> int:
+def _enqueue_meshes(database: Database, queue: TaskQueue, entries: set[str], now: datetime) -> int:
     with database.read() as session:
         query = select(MeshRow.id, MeshRow.attempt, MeshRow.enqueued_at, MeshRow.lease_until)
         rows = session.execute(query.where(MeshRow.state == MeshState.ANALYSING.value)).all()
-    lost = [
+    missing_ids = [
         mesh_id
         for mesh_id, attempt, enqueued_at, lease_until in rows
-        if mesh_entry(mesh_id, attempt + 1) not in waiting
+        if mesh_entry(mesh_id, attempt + 1) not in entries
         and _is_overdue(enqueued_at, now)
         and (lease_until is None or lease_until < now)
     ]
-    for mesh_id in lost:
+    for mesh_id in missing_ids:
         submit_analysis(database, queue, mesh_id)
-    return len(lost)
+    return len(missing_ids)
 
 
-def _enqueue_models(database: Database, queue: TaskQueue, waiting: set[str], now: datetime) -> int:
+def _enqueue_models(database: Database, queue: TaskQueue, entries: set[str], now: datetime) -> int:
     with database.read() as session:
         query = select(ModelRow).where(ModelRow.state == ModelState.PROVING.value)
         rows = list(session.scalars(query))
-    lost = [
+    missing_references = [
         reference_of(row.name, row.version)
         for row in rows
-        if model_entry(reference_of(row.name, row.version), row.attempt + 1) not in waiting
+        if model_entry(reference_of(row.name, row.version), row.attempt + 1) not in entries
         and _is_overdue(row.enqueued_at, now)
         and (row.lease_until is None or row.lease_until < now)
     ]
-    for reference in lost:
+    for reference in missing_references:
         submit_proof(database, queue, reference)
-    return len(lost)
+    return len(missing_references)
 
 
 def _give_up_analyses(database: Database, now: datetime) -> None:

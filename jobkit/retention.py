@@ -2,8 +2,8 @@
 
 Rows go first, objects after them. A crash in between leaves objects that no row names, which the sweep removes
 (`dispatcher/unreferenced_objects.py`), and never a row whose file is gone. Files of a job lie under its own id, which
-never comes back, so they can go at once. The key of a mesh follows from its bytes, and the same bytes may be on their
-way in again at that very moment: those objects are left to the sweep altogether.
+is never used again, so they are removed at once. The key of a mesh follows from its bytes, and the same bytes may be
+uploaded again at that moment: those objects are left to the sweep.
 """
 
 import logging
@@ -27,7 +27,7 @@ from jobkit.errors import (
 from jobkit.schema import JobState
 from jobkit.storage.base import ObjectStore
 
-# Of one transaction: long enough to be quick, short enough to hold up no other.
+# Of one transaction: enough to be fast, few enough to delay no other transaction.
 BATCH = 50
 ENDED = tuple(state.value for state in JobState if state.is_terminal)
 
@@ -37,19 +37,19 @@ _log = logging.getLogger("quadpatch.retention")
 def pin_job(database: Database, job_id: str, is_pinned: bool) -> None:
     """Keep a job whatever its age, or no longer; raise JobNotFoundError."""
     with database.write() as session:
-        if not _hits(session.execute(update(JobRow).where(JobRow.id == job_id).values(pinned=is_pinned))):
+        if not _has_matched(session.execute(update(JobRow).where(JobRow.id == job_id).values(pinned=is_pinned))):
             raise JobNotFoundError(f"there is no job {job_id}")
 
 
 def pin_mesh(database: Database, mesh_id: str, is_pinned: bool) -> None:
     """Keep a mesh whatever its age, or no longer; raise MeshNotFoundError."""
     with database.write() as session:
-        if not _hits(session.execute(update(MeshRow).where(MeshRow.id == mesh_id).values(pinned=is_pinned))):
+        if not _has_matched(session.execute(update(MeshRow).where(MeshRow.id == mesh_id).values(pinned=is_pinned))):
             raise MeshNotFoundError(f"there is no mesh {mesh_id}")
 
 
 def delete_job(database: Database, store: ObjectStore, job_id: str) -> None:
-    """Remove a finished job for good, pinned or not: its row, and all that it left.
+    """Remove a finished job for good, pinned or not: its rows and its files.
 
     Raises
     ------
@@ -84,7 +84,7 @@ def delete_mesh(database: Database, mesh_id: str) -> None:
             if n_jobs:
                 noun = "job names" if n_jobs == 1 else "jobs name"
                 raise MeshInUseError(f"{n_jobs} {noun} mesh {mesh_id}; delete them first")
-            if not _hits(session.execute(delete(MeshRow).where(MeshRow.id == mesh_id))):
+            if not _has_matched(session.execute(delete(MeshRow).where(MeshRow.id == mesh_id))):
                 raise MeshNotFoundError(f"there is no mesh {mesh_id}")
     except RowConflictError as error:
         raise MeshInUseError(f"1 job came to name mesh {mesh_id} at this moment") from error
@@ -108,21 +108,21 @@ def expire_jobs(
     Returns
     -------
     int
-        How many went.
+        How many were removed.
     """
     if days == 0:
         return 0
-    old = JobRow.state.in_(ENDED) & JobRow.pinned.is_(False) & (JobRow.finished_at < now - timedelta(days=days))
-    query = select(JobRow).where(old).order_by(JobRow.finished_at).limit(BATCH).with_for_update(skip_locked=True)
-    removed = 0
+    is_expired = JobRow.state.in_(ENDED) & JobRow.pinned.is_(False) & (JobRow.finished_at < now - timedelta(days=days))
+    query = select(JobRow).where(is_expired).order_by(JobRow.finished_at).limit(BATCH).with_for_update(skip_locked=True)
+    n_removed = 0
     while not is_over():
-        gone = _expire_batch(database, query)
-        for job_id in gone:
+        removed_ids = _expire_batch(database, query)
+        for job_id in removed_ids:
             _drop_files(store, job_id)
-        removed += len(gone)
-        if len(gone) < BATCH:
+        n_removed += len(removed_ids)
+        if len(removed_ids) < BATCH:
             break
-    return removed
+    return n_removed
 
 
 def expire_meshes(database: Database, days: float, now: datetime, is_over: Callable[[], bool] = lambda: False) -> int:
@@ -140,25 +140,25 @@ def expire_meshes(database: Database, days: float, now: datetime, is_over: Calla
     Returns
     -------
     int
-        How many went. Their bytes are left to the sweep.
+        How many were removed. Their bytes are left to the sweep.
     """
     if days == 0:
         return 0
     is_free = ~exists().where(JobRow.mesh_id == MeshRow.id)
-    old = MeshRow.pinned.is_(False) & (MeshRow.used_at < now - timedelta(days=days)) & is_free
+    is_expired = MeshRow.pinned.is_(False) & (MeshRow.used_at < now - timedelta(days=days)) & is_free
     with database.read() as session:
-        ids = list(session.scalars(select(MeshRow.id).where(old).order_by(MeshRow.used_at)))
-    removed = 0
+        ids = list(session.scalars(select(MeshRow.id).where(is_expired).order_by(MeshRow.used_at)))
+    n_removed = 0
     for mesh_id in ids:
         if is_over():
             break
         try:
             with database.write() as session:
-                # An upload or a job may have come in between; what counts is how it stands now.
-                removed += _hits(session.execute(delete(MeshRow).where(MeshRow.id == mesh_id, old)))
+                # An upload or a job may have come in between: the condition is checked again.
+                n_removed += _has_matched(session.execute(delete(MeshRow).where(MeshRow.id == mesh_id, is_expired)))
         except RowConflictError:
             continue  # a job came to name it while it was being deleted
-    return removed
+    return n_removed
 
 
 def _expire_batch(database: Database, query: Select[JobRow]) -> list[str]:
@@ -171,7 +171,7 @@ def _expire_batch(database: Database, query: Select[JobRow]) -> list[str]:
 def _delete_jobs(session: Session, rows: Sequence[JobRow]) -> None:
     """Delete jobs with all that names them, and note on their meshes until when these were in use."""
     ids = [row.id for row in rows]
-    # In one order everywhere, so that two who do this can't wait for each other.
+    # In one order everywhere, so that two transactions can't deadlock.
     for row in sorted(rows, key=lambda row: row.mesh_id):
         ended_at = row.finished_at or utc_now()
         session.execute(
@@ -189,5 +189,5 @@ def _drop_files(store: ObjectStore, job_id: str) -> None:
         _log.warning("files of job %s are left to the sweep: %s", job_id, error)
 
 
-def _hits(result: object) -> bool:
+def _has_matched(result: object) -> bool:
     return isinstance(result, CursorResult) and result.rowcount > 0

@@ -185,11 +185,11 @@ def load_settings() -> Settings:
 
 def refuse_unknown_names(names: Iterable[str]) -> None:
     """Raise SettingsError for the first name with the prefix that is no setting."""
-    known = [PREFIX + name.upper() for name in Settings.model_fields]
+    names_of_settings = [PREFIX + name.upper() for name in Settings.model_fields]
     for name in sorted(names):
-        if not name.startswith(PREFIX) or name.startswith(CLIENT_PREFIX) or name in known:
+        if not name.startswith(PREFIX) or name.startswith(CLIENT_PREFIX) or name in names_of_settings:
             continue
-        closest = difflib.get_close_matches(name, known, n=1, cutoff=0.0)
+        closest = difflib.get_close_matches(name, names_of_settings, n=1, cutoff=0.0)
         raise SettingsError(f"{name} is no setting; the closest one is {closest[0]}")
 
 
@@ -198,6 +198,6 @@ def settings_table() -> str:
     lines = ["| variable | default | meaning |", "| --- | --- | --- |"]
     for name, field in Settings.model_fields.items():
         default = field.default.get_secret_value() if isinstance(field.default, SecretStr) else field.default
-        shown = "" if default in (None, "") else f"`{default}`"
-        lines.append(f"| `{PREFIX}{name.upper()}` | {shown} | {field.description} |")
+        default_text = "" if default in (None, "") else f"`{default}`"
+        lines.append(f"| `{PREFIX}{name.upper()}` | {default_text} | {field.description} |")
     return "\n".join(lines) + "\n"

@@ -27,6 +27,35 @@ Attributes = Mapping[str, str | int | float | bool]
 _log = logging.getLogger("quadpatch.telemetry")
 
 
+class Span:
+    """A span of a trace; no-op where no traces are sent."""
+
+    def __init__(self, span: "OtelSpan | None" = None) -> None:
+        self._span = span
+
+    def note(self, name: str, value: str | int | float | bool) -> None:
+        """Set an attribute."""
+        if self._span is not None:
+            self._span.set_attribute(name, value)
+
+    def rename(self, name: str) -> None:
+        """Give it a name that was not known at its start."""
+        if self._span is not None:
+            self._span.update_name(name)
+
+    def fail(self, reason: str) -> None:
+        """Mark it as failed."""
+        if self._span is not None:
+            from opentelemetry.trace import Status, StatusCode  # noqa: PLC0415 - an extra
+
+            self._span.set_status(Status(StatusCode.ERROR, reason))
+
+    def end(self) -> None:
+        """End it now."""
+        if self._span is not None:
+            self._span.end()
+
+
 class Telemetry:
     """Makes the spans of one process.
 
@@ -124,8 +153,8 @@ def open_telemetry(role: str, environment: Mapping[str, str] = os.environ) -> Te
     except ImportError:
         _log.warning("traces are asked for, but the extra `telemetry` is not installed: none are sent")
         return Telemetry()
-    named = {} if environment.get(NAME_VARIABLE) else {"service.name": f"quadpatch-{role}"}
-    provider = TracerProvider(resource=Resource.create(named))
+    attributes = {} if environment.get(NAME_VARIABLE) else {"service.name": f"quadpatch-{role}"}
+    provider = TracerProvider(resource=Resource.create(attributes))
     provider.add_span_processor(BatchSpanProcessor(OTLPSpanExporter()))
     return Telemetry(provider)
 

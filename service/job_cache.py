@@ -16,7 +16,7 @@ import anyio.to_thread
 
 from jobkit.errors import DatabaseError, DatabaseUnavailableError, JobNotFoundError
 from jobkit.jobs.estimates import Estimates
-from jobkit.jobs.jobs import Glance, Jobs
+from jobkit.jobs.jobs import Jobs, JobStatus
 from jobkit.schema import Job
 from service.pacing import Pacer
 
@@ -29,7 +29,7 @@ _logger = logging.getLogger("service")
 class JobView:
     """State and revision of a job, its place in the queue, and the whole job where that was asked for."""
 
-    glance: Glance
+    status: JobStatus
     queue_position: int | None
     job: Job | None
 
@@ -51,10 +51,10 @@ class JobCache:
         self._one_at_a_time = asyncio.Lock()
         self._next_batch = _Batch()
         self._refresh_task: asyncio.Task[None] | None = None
-        self._cached: OrderedDict[str, tuple[Glance, Job]] = OrderedDict()
+        self._cached: OrderedDict[str, tuple[JobStatus, Job]] = OrderedDict()
         self._pacer = Pacer()
 
-    async def glance(self, job_id: str) -> JobView:
+    async def status(self, job_id: str) -> JobView:
         """Read state and revision of a job; raise JobNotFoundError."""
         return await self._shared_view(job_id, is_whole=False)
 
@@ -97,20 +97,20 @@ class JobCache:
     def _read(self, wanted: Mapping[str, bool]) -> dict[str, JobView]:
         if self._estimates.is_old:
             self._estimates.refresh()
-        glances = self._jobs.glances(wanted)
-        whole = {job_id: glance for job_id, glance in glances.items() if wanted[job_id]}
+        statuses = self._jobs.statuses(wanted)
+        whole = {job_id: status for job_id, status in statuses.items() if wanted[job_id]}
         jobs = self._whole(whole)
         return {
-            job_id: JobView(glance, self._estimates.position(job_id, glance.state), jobs.get(job_id))
-            for job_id, glance in glances.items()
+            job_id: JobView(status, self._estimates.position(job_id, status.state), jobs.get(job_id))
+            for job_id, status in statuses.items()
         }
 
-    def _whole(self, glances: Mapping[str, Glance]) -> dict[str, Job]:
-        cached = {job_id: self._cached.get(job_id) for job_id in glances}
-        jobs = {job_id: entry[1] for job_id, entry in cached.items() if entry and entry[0] == glances[job_id]}
-        for job_id, job in self._jobs.get_many(glances.keys() - jobs.keys()).items():
+    def _whole(self, statuses: Mapping[str, JobStatus]) -> dict[str, Job]:
+        cached = {job_id: self._cached.get(job_id) for job_id in statuses}
+        jobs = {job_id: entry[1] for job_id, entry in cached.items() if entry and entry[0] == statuses[job_id]}
+        for job_id, job in self._jobs.get_many(statuses.keys() - jobs.keys()).items():
             jobs[job_id] = job
-            self._cached[job_id] = (Glance(job.revision, job.state, job.pinned), job)
+            self._cached[job_id] = (JobStatus(job.revision, job.state, job.pinned), job)
             self._cached.move_to_end(job_id)
         while len(self._cached) > _MOST_CACHED:
             self._cached.popitem(last=False)

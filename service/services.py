@@ -92,8 +92,8 @@ def open_services(settings: Settings) -> Services:
         EventStreams(database, settings.max_streams),
         JobCache(jobs, estimates),
         Waiters(jobs.unfinished, settings.max_waiters),
-        Waiters(meshes.analysing, settings.max_waiters),
-        Waiters(proofs.proving, settings.max_waiters),
+        Waiters(meshes.unfinished, settings.max_waiters),
+        Waiters(proofs.unfinished, settings.max_waiters),
     )
 
 

@@ -1,9 +1,7 @@
-"""JSON as others send it, read strictly: what could not be written again is refused on the way in.
+"""Strict reading of untrusted JSON: what could not be written again is refused when it is read.
 
 Python's reader takes NaN, numbers that overflow to infinity, lone surrogates, repeated names and nesting as deep as its
-stack: each of them fails later, in a place that has no one to answer.
-
-Tested in `tests/attacks/test_a_text_is_data.py`.
+stack: each of them would fail later, where no client can be told.
 """
 
 import json

@@ -1,7 +1,7 @@
-"""Words of others in text of ours: file names, model cards, paths and headers end up in messages, logs and rows.
+"""Untrusted text: file names, model cards, paths and headers end up in messages, logs and rows.
 
 Line breaks forge lines of logs, control characters steer terminals, and lone surrogates are in no encoding: a row that
-holds one can't be answered with, ever again.
+holds one can't be sent in an answer.
 """
 
 from typing import Any

@@ -19,7 +19,7 @@ from jobkit.errors import (
     StoreUnavailableError,
 )
 from jobkit.jobs.attempts import AT_WORK, StartedAttempt
-from jobkit.jobs.endings import Attempt, stale
+from jobkit.jobs.endings import Attempt, stale_error
 from jobkit.jobs.stage_seconds import StageSeconds
 from jobkit.requeue import submit_job
 from jobkit.schema import Job, JobError, JobResult, JobState
@@ -194,7 +194,7 @@ def _is_canceled(job: Job, attempt: Attempt) -> bool:
     The dispatcher does not wait long for a worker that is slow to acknowledge a cancel.
     """
     if job.attempt != attempt.number or job.state.value not in AT_WORK:
-        raise stale(attempt)
+        raise stale_error(attempt)
     return job.state is JobState.CANCELING
 
 

@@ -1,4 +1,4 @@
-"""Counts that only grow, kept in the database: they outlive restarts and the rows that they were counted from."""
+"""Counts that only grow, kept in the database: they survive restarts, and the removal of the rows they count."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -35,7 +35,7 @@ def add_up(session: Session, kind: type[Base], rows: Sequence[Mapping[str, Any]]
         A table whose other columns are all numbers.
     rows : sequence of mapping
         Values of all columns. Callers of one table name them in one order: two transactions that take the same rows
-        the other way round wait for each other in vain.
+        in opposite order deadlock.
     """
     table: Table = inspect(kind).local_table  # type: ignore[assignment]
     insert = sqlite.insert if session.get_bind().dialect.name == "sqlite" else postgresql.insert

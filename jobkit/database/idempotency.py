@@ -1,9 +1,7 @@
 """Keys that clients send so that a repeated request makes nothing twice.
 
 One key of one client names one request, whatever it is about. The key of a job goes with the job; others are forgotten
-after `KEPT`.
-
-Tested in `tests/attacks/test_h_idempotency.py`.
+after `KEEP_FOR`.
 """
 
 from collections.abc import Callable
@@ -19,7 +17,7 @@ from jobkit.database.session import Database
 from jobkit.database.tables import IdempotencyRow
 from jobkit.errors import IdempotencyError, RowConflictError
 
-KEPT = timedelta(days=7)
+KEEP_FOR = timedelta(days=7)
 
 T = TypeVar("T")
 
@@ -43,7 +41,7 @@ class Idempotency:
 
 
 def earlier_row(session: Session, idempotency: Idempotency) -> IdempotencyRow | None:
-    """Return what is known of the key, None where it is new; raise IdempotencyError where it named another request."""
+    """Return the row of the key, None where it is new; raise IdempotencyError where it named another request."""
     row = session.get(IdempotencyRow, (idempotency.principal, idempotency.key))
     if row is not None and row.request_sha256 != idempotency.request_sha256:
         raise IdempotencyError(f"the idempotency key {idempotency.key!r} came before with another request")
@@ -53,7 +51,7 @@ def earlier_row(session: Session, idempotency: Idempotency) -> IdempotencyRow | 
 def remember(
     session: Session, idempotency: Idempotency | None, *, job_id: str | None = None, made: str | None = None
 ) -> None:
-    """Write down what came of the key, in the transaction that makes it.
+    """Record what the request with the key made, in the transaction that makes it.
 
     Parameters
     ----------
@@ -91,7 +89,7 @@ def refuse_conflict(database: Database, idempotency: Idempotency | None) -> None
     is_repeated(database, idempotency)
 
 
-def once(
+def make_once(
     database: Database,
     idempotency: Idempotency | None,
     make: Callable[[Session], tuple[T, str]],
@@ -119,10 +117,10 @@ def once(
         If the key came before with another request.
     """
     try:
-        return _once(database, idempotency, make, show)
+        return _make_once(database, idempotency, make, show)
     except RowConflictError:
-        # Two requests with one key at the same moment: the other one has won, so what it made is the answer.
-        return _once(database, idempotency, make, show)
+        # Two requests with one key at the same moment: the other one was first, so what it made is the answer.
+        return _make_once(database, idempotency, make, show)
 
 
 def note_request(database: Database, idempotency: Idempotency | None, made: str) -> bool:
@@ -133,7 +131,7 @@ def note_request(database: Database, idempotency: Idempotency | None, made: str)
     IdempotencyError
         If the key came before with another request.
     """
-    return idempotency is None or once(database, idempotency, lambda _: (made, made), lambda _, seen: seen)[1]
+    return idempotency is None or make_once(database, idempotency, lambda _: (made, made), lambda _, made: made)[1]
 
 
 def forget_made(session: Session, made: str) -> None:
@@ -142,23 +140,23 @@ def forget_made(session: Session, made: str) -> None:
 
 
 def forget_keys(database: Database, now: datetime) -> int:
-    """Forget keys older than `KEPT` that no job takes with it; return how many."""
-    old = (IdempotencyRow.job_id.is_(None)) & (IdempotencyRow.created_at < now - KEPT)
+    """Forget keys older than `KEEP_FOR` that no job takes with it; return how many."""
+    old = (IdempotencyRow.job_id.is_(None)) & (IdempotencyRow.created_at < now - KEEP_FOR)
     with database.write() as session:
         result = session.execute(delete(IdempotencyRow).where(old))
         return result.rowcount if isinstance(result, CursorResult) else 0
 
 
-def _once(
+def _make_once(
     database: Database,
     idempotency: Idempotency | None,
     make: Callable[[Session], tuple[T, str]],
     show: Callable[[Session, str], T],
 ) -> tuple[T, bool]:
     with database.write() as session:
-        earlier = None if idempotency is None else earlier_row(session, idempotency)
-        if earlier is not None:
-            return show(session, earlier.made or ""), False
+        key_row = None if idempotency is None else earlier_row(session, idempotency)
+        if key_row is not None:
+            return show(session, key_row.made or ""), False
         thing, made = make(session)
         remember(session, idempotency, made=made)
         session.flush()

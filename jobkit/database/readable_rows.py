@@ -1,7 +1,7 @@
-"""Rows as clients see them, where one that can't be read must not take the others with it.
+"""Rows as clients see them, where one that can't be read does not hide the others.
 
-A row may stem from a newer version, or from a fault that was mended since. What is asked for by its id fails by itself;
-a list, a stream, or a query that many share goes on without it.
+A row may come from a newer version, or from a fault that is corrected by now. A request for its id fails; a list, a
+stream, or a shared query leaves it out.
 """
 
 import logging

@@ -30,10 +30,10 @@ from jobkit.database.write_queue import BUSY_TIMEOUT_MS, WriteQueue
 from jobkit.errors import DatabaseError, DatabaseUnavailableError, RowConflictError, SettingsError
 from jobkit.text import encodable
 
-# Any number will do, as long as all processes of this project take the same one.
+# Any number, the same for all processes of this project.
 _MIGRATION_LOCK = 0x51554144
 _SUPPORTED = ("sqlite", "postgresql")
-# PostgreSQL sorts two outages under internal errors: a standby that takes no writes, a transaction that idled away.
+# PostgreSQL sorts two outages under internal errors: a standby that takes no writes, a transaction idle for too long.
 _OUTAGES = ("25006", "25P03")
 # How JSON writes half of a surrogate pair, and characters beyond the first 65,536, which are pairs of them.
 _SURROGATE = re.compile(r"\\u[dD][89a-fA-F]")
@@ -41,13 +41,13 @@ _SURROGATE = re.compile(r"\\u[dD][89a-fA-F]")
 _POOL = {"pool_pre_ping": True, "pool_size": 10, "max_overflow": 10, "pool_timeout": 10.0}
 _POSTGRES_PARAMETERS = {
     "connect_timeout": "5",
-    # A host that is gone without a word is noticed after some 20 s, not after two hours.
+    # A host that disappears without closing its connections is noticed after some 20 s, not after two hours.
     "keepalives_idle": "10",
     "keepalives_interval": "3",
     "keepalives_count": "3",
     "tcp_user_timeout": "20000",
     "application_name": "quadpatch",
-    # In milliseconds. No statement here takes a second; a process that hangs must not hold its locks for ever.
+    # In milliseconds. No statement here takes a second; a process that hangs must not hold its locks.
     "options": "-c statement_timeout=30000 -c lock_timeout=20000 -c idle_in_transaction_session_timeout=30000",
 }
 
@@ -116,7 +116,7 @@ class Database:
 
     def _migrate_postgresql(self, revision: str) -> None:
         with self._engine.begin() as connection:
-            # Large tables take their time, and so does another process that is at it already.
+            # Large tables take long, and so does a migration in another process.
             connection.execute(text("SET LOCAL statement_timeout = 0"))
             connection.execute(text("SET LOCAL lock_timeout = 0"))
             connection.execute(text("SELECT pg_advisory_xact_lock(:lock)"), {"lock": _MIGRATION_LOCK})
@@ -126,7 +126,7 @@ class Database:
         path = Path(str(self._engine.url.database))
         with path.with_name(path.name + ".lock").open("w") as lock:
             fcntl.flock(lock, fcntl.LOCK_EX)
-            # The file remembers its journal mode; to change it one must be alone, hence here and not on every connect.
+            # The file remembers its journal mode; to change it needs exclusive access, so not on every connect.
             with self._writer.connect() as connection:
                 cursor = connection.connection.cursor()
                 cursor.execute("PRAGMA journal_mode = WAL")
@@ -220,7 +220,7 @@ def _set_up_sqlite(connection: Any, _record: object) -> None:
     cursor = connection.cursor()
     cursor.execute(f"PRAGMA busy_timeout = {BUSY_TIMEOUT_MS}")
     cursor.execute("PRAGMA foreign_keys = ON")
-    # A 202 is a promise, also when the power fails: every commit reaches the disk.
+    # A job that was accepted must survive a power failure: every commit reaches the disk.
     cursor.execute("PRAGMA synchronous = FULL")
     cursor.close()
 

@@ -46,12 +46,12 @@ class MeshRow(Base):
 
 
 class JobRow(Base):
-    """A repair. This row is the truth; the queue is a hint.
+    """A repair. This row is authoritative; the queue is a hint.
 
     `attempt` fences and never falls; `forgiven` says how many attempts ended for reasons that lie outside of the job (a
     drained worker, a store that refused writes) and don't count towards `max_attempts`. A queued job that waits for
     such a reason to pass is not started before `not_before`. `queued_at` is when it last began to wait. `mesh_name` is
-    the name of the file that came for this job: the mesh itself may go by another one later.
+    the name of the file that was uploaded for this job: the mesh itself may have another one later.
     """
 
     __tablename__ = "jobs"
@@ -164,7 +164,7 @@ class AliasRow(Base):
 
 
 class IdempotencyRow(Base):
-    """A key that a client sent, and what came of it: a job, or something that `made` names."""
+    """A key that a client sent, and what the request made: a job, or something that `made` names."""
 
     __tablename__ = "idempotency_keys"
     principal: Mapped[str] = mapped_column(String(64), primary_key=True)
@@ -184,7 +184,7 @@ class RemovalRow(Base):
 
 
 class DamagedRow(Base):
-    """An object whose bytes are not those that were stored, or can't be read; `checked_at` is the latest look at it."""
+    """An object whose bytes are not those that were stored, or can't be read; `checked_at` is its latest check."""
 
     __tablename__ = "damaged_objects"
     key: Mapped[str] = mapped_column(String(1024), primary_key=True)

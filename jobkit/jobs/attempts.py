@@ -1,6 +1,6 @@
-"""Attempts at a job, as a worker knows them. Every write is fenced by the attempt's number.
+"""Attempts at a job, as a worker uses them. Every write is fenced by the attempt's number.
 
-An attempt that lost its lease may still be at work: its twin has a higher number, and whatever the old one writes is
+An attempt that lost its lease may still be at work: the next attempt has a higher number, and a write of the old one is
 refused with StaleAttemptError.
 """
 
@@ -18,14 +18,14 @@ from jobkit.errors import StaleAttemptError
 from jobkit.jobs.endings import (
     Attempt,
     Ending,
-    another_try,
     cancel_attempt,
-    counts_out,
     end_attempt,
     failure,
-    forgiven_try,
-    stale,
+    is_last_attempt,
+    retry_ending,
+    stale_error,
     success,
+    uncounted_ending,
 )
 from jobkit.jobs.events import append_event
 from jobkit.jobs.stage_seconds import StageSeconds, add_stages
@@ -62,7 +62,7 @@ class Attempts:
         ----------
         job_id : str
         worker : str
-            Name of the taker, for people.
+            Name of the worker, for people.
         lease_s : float
             Seconds until the attempt is taken for lost unless it is renewed.
 
@@ -85,14 +85,14 @@ class Attempts:
                 "stage": None,
                 "percent": 0.0,
             }
-            move = Transition(JobState.QUEUED, JobState.RUNNING, "started", values)
+            transition = Transition(JobState.QUEUED, JobState.RUNNING, "started", values)
             is_due = or_(JobRow.not_before.is_(None), JobRow.not_before <= now)
-            if not make_transition(session, job_id, move, now, JobRow.attempt == number - 1, is_due):
+            if not make_transition(session, job_id, transition, now, JobRow.attempt == number - 1, is_due):
                 raise StaleAttemptError(f"job {job_id} is {row.state} and can't be started now")
             session.add(AttemptRow(job_id=job_id, number=number, worker=worker, started_at=now))
-            started = existing_job(session, job_id)
+            row = existing_job(session, job_id)
             return StartedAttempt(
-                Attempt(job_id, number), to_job(started), counts_out(started), started.request_id, started.traceparent
+                Attempt(job_id, number), to_job(row), is_last_attempt(row), row.request_id, row.traceparent
             )
 
     def heartbeat(self, attempt: Attempt, lease_s: float, memory_mb: int = 0) -> bool:
@@ -106,7 +106,7 @@ class Attempts:
         with self._database.write() as session:
             values = {"lease_until": shared_now(session) + timedelta(seconds=lease_s)}
             if not update_job(session, attempt.job_id, values, *_fences(attempt)):
-                raise stale(attempt)
+                raise stale_error(attempt)
             if memory_mb:
                 session.execute(
                     update(AttemptRow)
@@ -123,7 +123,7 @@ class Attempts:
         with self._database.write() as session:
             values = {"stage": stage, "percent": percent, "revision": JobRow.revision + 1, "updated_at": now}
             if not update_job(session, attempt.job_id, values, *_fences(attempt)):
-                raise stale(attempt)
+                raise stale_error(attempt)
             append_event(session, attempt.job_id, "progress", now, {"stage": stage, "percent": percent})
 
     def publish(self, attempt: Attempt, result: JobResult, stages: StageSeconds | None = None) -> JobState:
@@ -171,8 +171,8 @@ class Attempts:
             If the attempt is not the latest any more.
         """
         with self._database.write() as session:
-            is_last = counts_out(existing_job(session, attempt.job_id))
-            return end_attempt(session, attempt, failure(error) if is_last else another_try(error), utc_now())
+            is_last = is_last_attempt(existing_job(session, attempt.job_id))
+            return end_attempt(session, attempt, failure(error) if is_last else retry_ending(error), utc_now())
 
     def hand_back(self, attempt: Attempt, error: JobError, delay_s: float = 0.0) -> JobState:
         """Give the job back, and don't count the attempt: the reason lies outside of the job.
@@ -196,7 +196,7 @@ class Attempts:
             If the attempt is not the latest any more.
         """
         with self._database.write() as session:
-            return end_attempt(session, attempt, forgiven_try(error, shared_now(session), delay_s), utc_now())
+            return end_attempt(session, attempt, uncounted_ending(error, shared_now(session), delay_s), utc_now())
 
     def acknowledge_cancel(self, attempt: Attempt) -> None:
         """Say that the attempt has stopped as asked; raise StaleAttemptError."""

@@ -50,20 +50,20 @@ def failure(error: JobError) -> Ending:
     return Ending(JobState.FAILED, "failed", JobState.FAILED.value, {"error": wire}, {"error": wire}, error)
 
 
-def another_try(error: JobError) -> Ending:
+def retry_ending(error: JobError) -> Ending:
     """Let another attempt start at once."""
     return _return_to_queue(error, {"not_before": None}, {})
 
 
-def forgiven_try(error: JobError, now: datetime, delay_s: float) -> Ending:
-    """Let another attempt start after some seconds, and don't count this one: what ended it lies outside of the job."""
+def uncounted_ending(error: JobError, now: datetime, delay_s: float) -> Ending:
+    """Let another attempt start after some seconds, and don't count this one: its reason lies outside of the job."""
     not_before = now + timedelta(seconds=delay_s) if delay_s else None
     values = {"forgiven": JobRow.forgiven + 1, "not_before": not_before}
     return _return_to_queue(error, values, {"forgiven": True, "delay_s": delay_s})
 
 
-def counts_out(row: JobRow) -> bool:
-    """Tell whether the attempt at work is the last that the job has."""
+def is_last_attempt(row: JobRow) -> bool:
+    """Tell whether the present attempt is the last one of the job."""
     return row.attempt - row.forgiven >= row.max_attempts
 
 
@@ -75,8 +75,8 @@ def end_attempt(session: Session, attempt: Attempt, ending: Ending, now: datetim
     StaleAttemptError
         If the attempt is not the latest any more, or the job has ended.
     """
-    move = Transition(JobState.RUNNING, ending.target, ending.event, ending.values, ending.data)
-    if make_transition(session, attempt.job_id, move, now, JobRow.attempt == attempt.number):
+    transition = Transition(JobState.RUNNING, ending.target, ending.event, ending.values, ending.data)
+    if make_transition(session, attempt.job_id, transition, now, JobRow.attempt == attempt.number):
         _close(session, attempt, ending.outcome, now, ending.error)
         return ending.target
     cancel_attempt(session, attempt, now)
@@ -85,13 +85,13 @@ def end_attempt(session: Session, attempt: Attempt, ending: Ending, now: datetim
 
 def cancel_attempt(session: Session, attempt: Attempt, now: datetime) -> None:
     """End an attempt whose job is to be canceled; raise StaleAttemptError."""
-    move = Transition(JobState.CANCELING, JobState.CANCELED, "canceled")
-    if not make_transition(session, attempt.job_id, move, now, JobRow.attempt == attempt.number):
-        raise stale(attempt)
+    transition = Transition(JobState.CANCELING, JobState.CANCELED, "canceled")
+    if not make_transition(session, attempt.job_id, transition, now, JobRow.attempt == attempt.number):
+        raise stale_error(attempt)
     _close(session, attempt, JobState.CANCELED.value, now, None)
 
 
-def stale(attempt: Attempt) -> StaleAttemptError:
+def stale_error(attempt: Attempt) -> StaleAttemptError:
     """Make the error of an attempt that may write no more."""
     return StaleAttemptError(f"attempt {attempt.number} of job {attempt.job_id} may write no more")
 

@@ -51,7 +51,7 @@ def _to_event(row: EventRow) -> Event:
 
 @dataclass(frozen=True)
 class NewEvents:
-    """What has happened to a job since the last look.
+    """What has happened to a job since the last query.
 
     Attributes
     ----------
@@ -66,7 +66,7 @@ class NewEvents:
 
 
 def read_new_events(session: Session, watched: Mapping[str, int], limit: int) -> dict[str, NewEvents]:
-    """Look at many jobs at once: one query for all, and one more for each job that has changed.
+    """Read events of many jobs: one query for all, and one more for each job that has changed.
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ def read_new_events(session: Session, watched: Mapping[str, int], limit: int) ->
     watched : mapping
         For each job the number of the last event that is known.
     limit : int
-        Most events of a job; the rest comes with the next look.
+        Most events of a job; the rest comes with the next query.
 
     Returns
     -------
@@ -83,9 +83,9 @@ def read_new_events(session: Session, watched: Mapping[str, int], limit: int) ->
     """
     rows = session.execute(select(JobRow.id, JobRow.revision, JobRow.state).where(JobRow.id.in_(watched))).all()
 
-    def look(row: Row[str, int, str]) -> tuple[str, NewEvents]:
+    def read(row: Row[str, int, str]) -> tuple[str, NewEvents]:
         job_id, revision, state = row
         events = read_events(session, job_id, watched[job_id], limit) if revision > watched[job_id] else []
         return job_id, NewEvents(events, JobState(state).is_terminal and len(events) < limit)
 
-    return dict(readable(rows, look))
+    return dict(readable(rows, read))

@@ -35,16 +35,16 @@ class NewJob:
 
 
 @dataclass(frozen=True)
-class Glance:
-    """As much of a job as tells whether there is something new."""
+class JobStatus:
+    """What shows whether a job has changed."""
 
     revision: int
     state: JobState
     is_pinned: bool
 
 
-# Built once: to put it together takes longer than to run it.
-_GLANCES = select(JobRow.id, JobRow.revision, JobRow.state, JobRow.pinned).where(
+# Built once: to build it takes longer than to run it.
+_STATUS_QUERY = select(JobRow.id, JobRow.revision, JobRow.state, JobRow.pinned).where(
     JobRow.id.in_(bindparam("ids", expanding=True))
 )
 
@@ -81,11 +81,11 @@ class Jobs:
         try:
             return self._create(new, idempotency)
         except RowConflictError:
-            # Two requests with one key at the same moment: the other one has won, so its job is the answer.
+            # Two requests with one key at the same moment: the other one was first, so its job is the answer.
             return self._create(new, idempotency)
 
     def earlier(self, idempotency: Idempotency) -> Job | None:
-        """Return the job that came of the key, None where it is new; raise IdempotencyError."""
+        """Return the job that the request with the key made, None where the key is new; raise IdempotencyError."""
         with self._database.read() as session:
             return self._earlier_job(session, idempotency)
 
@@ -94,22 +94,22 @@ class Jobs:
         with self._database.read() as session:
             return self._show(existing_job(session, job_id))
 
-    def glance(self, job_id: str) -> Glance:
-        """Return what tells whether a job has changed, at a fraction of what `get` costs; raise JobNotFoundError."""
-        found = self.glances([job_id])
-        if job_id not in found:
+    def status(self, job_id: str) -> JobStatus:
+        """Return what shows whether a job has changed, at a fraction of the cost of `get`; raise JobNotFoundError."""
+        statuses = self.statuses([job_id])
+        if job_id not in statuses:
             raise JobNotFoundError(f"there is no job {job_id}")
-        return found[job_id]
+        return statuses[job_id]
 
-    def glances(self, job_ids: Collection[str]) -> dict[str, Glance]:
+    def statuses(self, job_ids: Collection[str]) -> dict[str, JobStatus]:
         """Return the same for many jobs; those that are not there, or can't be read, are left out."""
         with self._database.read() as session:
-            rows = session.execute(_GLANCES, {"ids": list(job_ids)}).all()
-        return dict(readable(rows, lambda row: (row.id, Glance(row.revision, JobState(row.state), row.pinned))))
+            rows = session.execute(_STATUS_QUERY, {"ids": list(job_ids)}).all()
+        return dict(readable(rows, lambda row: (row.id, JobStatus(row.revision, JobState(row.state), row.pinned))))
 
     def unfinished(self, job_ids: Collection[str]) -> set[str]:
         """Return those of the jobs that have not ended."""
-        return {job_id for job_id, glance in self.glances(job_ids).items() if not glance.state.is_terminal}
+        return {job_id for job_id, status in self.statuses(job_ids).items() if not status.state.is_terminal}
 
     def get_many(self, job_ids: Collection[str]) -> dict[str, Job]:
         """Return jobs by their ids; those that are not there, or can't be read, are left out."""
@@ -151,7 +151,7 @@ class Jobs:
         """
         with self._database.write() as session:
             now = shared_now(session)
-            # Or it might start between the two moves, and fit neither.
+            # Locked: it might start between the two transitions, and fit neither.
             existing_job(session, job_id, locked=True)
             transitions = (
                 Transition(JobState.QUEUED, JobState.CANCELED, "canceled"),
@@ -178,7 +178,7 @@ class Jobs:
             mesh = session.get(MeshRow, new.spec.mesh_id)
             if mesh is None:
                 raise MeshNotFoundError(f"there is no mesh {new.spec.mesh_id}")
-            _hold_model(session, new.model)
+            _lock_model(session, new.model)
             row = _new_row(new, mesh.filename)
             session.add(row)
             session.flush()
@@ -196,7 +196,7 @@ class Jobs:
         return self._show(existing_job(session, earlier.job_id))
 
 
-def _hold_model(session: Session, model: ResolvedModel) -> None:
+def _lock_model(session: Session, model: ResolvedModel) -> None:
     """Keep the version from being deleted until the job is written; raise ModelNotFoundError where it was."""
     if model.name is None or model.version is None:
         return
@@ -206,7 +206,7 @@ def _hold_model(session: Session, model: ResolvedModel) -> None:
 
 
 def _new_row(new: NewJob, latest_name: str | None) -> JobRow:
-    """Make the row of a job; its mesh's name is written down: later the same bytes may come under another."""
+    """Make the row of a job; its mesh's name is copied: later the same bytes may come under another one."""
     now = utc_now()
     return JobRow(
         id=new_job_id(),

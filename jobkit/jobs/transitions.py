@@ -16,7 +16,7 @@ from jobkit.webhooks.outbox import write_messages
 
 @dataclass(frozen=True)
 class Transition:
-    """A step in a job's life.
+    """A step of a job from one state to another.
 
     Attributes
     ----------
@@ -42,22 +42,24 @@ class Transition:
 
 
 def make_transition(
-    session: Session, job_id: str, move: Transition, at: datetime, *fences: ColumnElement[bool]
+    session: Session, job_id: str, transition: Transition, at: datetime, *fences: ColumnElement[bool]
 ) -> bool:
-    """Move a job if it is in the move's source state and within the fences; return whether it was."""
-    values: dict[str, Any] = {"state": move.target.value, "revision": JobRow.revision + 1, "updated_at": at}
-    if move.source in (JobState.RUNNING, JobState.CANCELING) and move.target != JobState.CANCELING:
+    """Move a job if it is in the source state of the transition and within the fences; return whether it was."""
+    values: dict[str, Any] = {"state": transition.target.value, "revision": JobRow.revision + 1, "updated_at": at}
+    if transition.source in (JobState.RUNNING, JobState.CANCELING) and transition.target != JobState.CANCELING:
         values |= {"lease_until": None, "worker": None}
-    if move.target is JobState.QUEUED:
+    if transition.target is JobState.QUEUED:
         values |= {"queued_at": at}
-    if move.target is JobState.CANCELING:
+    if transition.target is JobState.CANCELING:
         values |= {"cancel_requested_at": at}
-    if move.target.is_terminal:
+    if transition.target.is_terminal:
         values |= {"finished_at": at, "stage": None}
-    if not update_job(session, job_id, {**values, **move.values}, JobRow.state == move.source.value, *fences):
+    if not update_job(
+        session, job_id, {**values, **transition.values}, JobRow.state == transition.source.value, *fences
+    ):
         return False
-    append_event(session, job_id, move.event, at, {"state": move.target.value, **move.data})
-    write_messages(session, job_id, move.event, at)
+    append_event(session, job_id, transition.event, at, {"state": transition.target.value, **transition.data})
+    write_messages(session, job_id, transition.event, at)
     return True
 
 

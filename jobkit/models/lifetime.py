@@ -1,9 +1,7 @@
-"""The end of models: versions are deprecated, versions and aliases are deleted.
+"""Deprecation of versions, and deletion of versions and aliases.
 
-The bytes of a deleted version are left to the sweep: they may belong to another one, or be on their way in again. Its
-number never comes back, since finished jobs name it.
-
-Tested in `tests/jobkit/test_races_of_models.py`.
+The bytes of a deleted version are left to the sweep: they may belong to another one, or be uploaded again. Its
+number is never used again, since finished jobs name it.
 """
 
 from sqlalchemy import select
@@ -61,7 +59,7 @@ def delete_version(database: Database, name: str, version: int) -> None:
     try:
         _delete_version(database, name, version)
     except RowConflictError:
-        # Another version of the name was deleted at the same moment, or an alias came: this time that is seen.
+        # Another version of the name was deleted at the same moment, or an alias was set: the second try sees that.
         _delete_version(database, name, version)
 
 

@@ -109,15 +109,15 @@ def _domain(data: bytes) -> bytes:
 
 def _entry(data: bytes) -> tuple[bytes, bytes]:
     """Part one metadata entry: field 1 is the key, field 2 the value."""
-    found, start = {1: b"", 2: b""}, 0
+    fields, start = {1: b"", 2: b""}, 0
     while start < len(data):
         tag, start = _varint_at(data, start)
         length, start = _varint_at(data, start)
         if tag % 8 != _LENGTH or length > len(data) - start:
             raise ValueError("no string")
-        found[tag // 8] = data[start : start + length]
+        fields[tag // 8] = data[start : start + length]
         start += length
-    return found[1], found[2]
+    return fields[1], fields[2]
 
 
 def _varint(file: BinaryIO) -> int:

@@ -57,22 +57,22 @@ class Proofs:
         with self._database.write() as session:
             now = shared_now(session)
             row = version_row(session, name, version, locked=True)
-            is_taken = row.lease_until is not None and row.lease_until > now
-            if row.state != ModelState.PROVING or is_taken:
+            is_leased = row.lease_until is not None and row.lease_until > now
+            if row.state != ModelState.PROVING or is_leased:
                 raise StaleAttemptError(f"model {reference} is {row.state} and not to be proven now")
             row.attempt += 1
             row.worker, row.lease_until = worker, now + timedelta(seconds=lease_s)
             session.flush()
             return Proof(to_version(session, row), row.attempt, row.attempt - row.forgiven >= MAX_PROOFS)
 
-    def proving(self, references: Collection[str]) -> set[str]:
+    def unfinished(self, references: Collection[str]) -> set[str]:
         """Return those of the versions whose proof is still to come."""
         names = {parts_of(reference)[0] for reference in references}
         query = select(ModelRow.name, ModelRow.version)
         is_wanted = (ModelRow.name.in_(names)) & (ModelRow.state == ModelState.PROVING.value)
         with self._database.read() as session:
-            waiting = {reference_of(name, version) for name, version in session.execute(query.where(is_wanted))}
-        return waiting & set(references)
+            proving = {reference_of(name, version) for name, version in session.execute(query.where(is_wanted))}
+        return proving & set(references)
 
     def renew(self, proof: Proof, lease_s: float) -> None:
         """Prolong the lease; raise StaleAttemptError where the proof was taken away."""
@@ -102,7 +102,7 @@ class Proofs:
         with self._database.write() as session:
             if lease_s:
                 values = {**values, "lease_until": shared_now(session) + timedelta(seconds=lease_s)}
-            changed = session.execute(
+            result = session.execute(
                 update(ModelRow)
                 .where(
                     ModelRow.name == proof.model.name,
@@ -112,7 +112,7 @@ class Proofs:
                 )
                 .values(**values)
             )
-            if changed.rowcount != 1:  # type: ignore[attr-defined]
+            if result.rowcount != 1:  # type: ignore[attr-defined]
                 raise StaleAttemptError(f"proof {proof.attempt} of model {proof.reference} is no longer the latest")
 
 

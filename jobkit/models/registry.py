@@ -21,7 +21,7 @@ from jobkit.errors import ModelKindError, NameTakenError, RowConflictError
 from jobkit.models.errors import ModelDeprecatedError
 from jobkit.models.header import artifact_format, dictionary_card, to_wire_card
 from jobkit.models.network_header import check_network, read_network_card
-from jobkit.models.rows import check_proven, meant_row, to_alias, to_model, to_version, version_row
+from jobkit.models.rows import check_proven, resolved_row, to_alias, to_model, to_version, version_row
 from jobkit.schema import SELF, Alias, Model, ModelKind, ModelList, ModelState, ModelVersion
 from jobkit.storage.base import CHUNK_BYTES, ObjectStore, StoredObject
 from jobkit.storage.removals import assure
@@ -29,11 +29,11 @@ from shared_rules.dictionary_file import Card
 
 MODEL_PREFIX = "models"
 # Of one name, published at the same moment.
-_MOST_RIVALS = 20
+_MOST_CONFLICTS = 20
 # Of one model: when it is asked for, and in the list of all; a card has up to 64 KiB.
 MOST_VERSIONS = 100
 MOST_LISTED_VERSIONS = 20
-# What specs mean that name no model.
+# The models of specs that name none.
 DEFAULT_KINDS: dict[str, ModelKind] = {"default": "dictionary", "default-network": "autoencoder"}
 RESERVED_NAMES = frozenset({SELF, "smooth", "none", "latest"})
 
@@ -78,7 +78,7 @@ class Registry:
         version : int, optional
             Number to take; None: the next one.
         is_proven : bool
-            Whether the caller answers for the bytes; otherwise a worker has to prove them.
+            Whether the bytes are trusted; otherwise a worker has to prove them.
 
         Returns
         -------
@@ -93,8 +93,8 @@ class Registry:
             If the bytes are no model.
         """
         assure(self._database, self._store, stored.key)
-        kind, artifact, whole_card = self._inspect(stored, card)
-        wire_card = to_wire_card(whole_card).model_dump(mode="json")
+        kind, artifact, full_card = self._inspect(stored, card)
+        wire_card = to_wire_card(full_card).model_dump(mode="json")
         row = ModelRow(
             name=name,
             kind=kind,
@@ -108,7 +108,7 @@ class Registry:
             forgiven=0,
             created_at=utc_now(),
         )
-        for _ in range(_MOST_RIVALS):
+        for _ in range(_MOST_CONFLICTS):
             try:
                 return self._insert(row, version)
             except RowConflictError:
@@ -118,7 +118,7 @@ class Registry:
     def publish_file(
         self, name: str, path: Path, card: Card | None = None, version: int | None = None
     ) -> tuple[ModelVersion, bool]:
-        """Store a local file, for which the caller answers, and publish it; returns and raises as `publish`."""
+        """Store a local file that is trusted, and publish it; returns and raises as `publish`."""
         with path.open("rb") as source, self._store.writer(MODEL_PREFIX) as writer:
             while chunk := source.read(CHUNK_BYTES):
                 writer.write(chunk)
@@ -128,7 +128,7 @@ class Registry:
     def resolve(self, reference: str) -> ModelVersion:
         """Return the version that `name@version`, `name` or an alias means now; raise ModelNotFoundError."""
         with self._database.read() as session:
-            return to_version(session, meant_row(session, reference))
+            return to_version(session, resolved_row(session, reference))
 
     def usable(self, reference: str) -> ModelVersion:
         """Return the version that the reference means now, for a job.
@@ -141,7 +141,7 @@ class Registry:
             If the version is not proven.
         """
         with self._database.read() as session:
-            row = meant_row(session, reference)
+            row = resolved_row(session, reference)
             check_proven(row)
             return to_version(session, row)
 
@@ -170,12 +170,12 @@ class Registry:
         query = select(ModelRow.name).distinct().order_by(ModelRow.name).limit(limit + 1)
         with self._database.read() as session:
             names = list(session.scalars(query if cursor is None else query.where(ModelRow.name > cursor)))
-            shown = names[:limit]
-            aliases = session.scalars(select(AliasRow).where(AliasRow.name.in_(shown)).order_by(AliasRow.alias))
+            page_names = names[:limit]
+            aliases = session.scalars(select(AliasRow).where(AliasRow.name.in_(page_names)).order_by(AliasRow.alias))
             return ModelList(
-                models=list(readable(shown, lambda name: to_model(session, name, MOST_LISTED_VERSIONS))),
+                models=list(readable(page_names, lambda name: to_model(session, name, MOST_LISTED_VERSIONS))),
                 aliases=[to_alias(row) for row in aliases],
-                next_cursor=shown[-1] if len(names) > limit else None,
+                next_cursor=page_names[-1] if len(names) > limit else None,
             )
 
     def has_kind(self, kind: ModelKind) -> bool:
@@ -199,9 +199,9 @@ class Registry:
             If the version is not to be used.
         """
         with self._database.write() as session:
-            meant = meant_row(session, reference)
+            resolved = resolved_row(session, reference)
             # Locked: it may be deprecated or deleted at the same moment.
-            target = version_row(session, meant.name, meant.version, locked=True)
+            target = version_row(session, resolved.name, resolved.version, locked=True)
             check_proven(target)
             if target.deprecated_at is not None:
                 raise ModelDeprecatedError(f"{target.name}@{target.version} is deprecated; no alias may point to it")
@@ -231,15 +231,17 @@ class Registry:
             if row.name in RESERVED_NAMES or session.get(AliasRow, row.name) is not None:
                 raise NameTakenError(f"{row.name!r} is an alias, or reserved")
             is_same = (ModelRow.name == row.name) & (ModelRow.sha256 == row.sha256)
-            same = session.scalars(select(ModelRow).where(is_same).with_for_update()).one_or_none()
-            if same is not None:
-                _publish_again(same, row)
-                return to_version(session, same), False
-            number = _free_number(session, row.name, version)
-            fresh = ModelRow(**{c.key: getattr(row, c.key) for c in ModelRow.__table__.columns} | {"version": number})
-            session.add(fresh)
+            existing_row = session.scalars(select(ModelRow).where(is_same).with_for_update()).one_or_none()
+            if existing_row is not None:
+                _publish_again(existing_row, row)
+                return to_version(session, existing_row), False
+            new_version = _free_number(session, row.name, version)
+            new_row = ModelRow(
+                **{c.key: getattr(row, c.key) for c in ModelRow.__table__.columns} | {"version": new_version}
+            )
+            session.add(new_row)
             session.flush()
-            return to_version(session, fresh), True
+            return to_version(session, new_row), True
 
 
 def _kind_of_alias(session: Session, row: AliasRow) -> str | None:
@@ -249,26 +251,26 @@ def _kind_of_alias(session: Session, row: AliasRow) -> str | None:
     return version_row(session, row.name, row.version).kind
 
 
-def _free_number(session: Session, name: str, wanted: int | None) -> int:
+def _free_number(session: Session, name: str, requested_number: int | None) -> int:
     """Return the number for a new version; those of deleted versions never come back, since jobs name them."""
-    if wanted is not None and session.get(ModelRow, (name, wanted)) is not None:
-        raise NameTakenError(f"{name}@{wanted} is taken by other bytes; versions never change")
+    if requested_number is not None and session.get(ModelRow, (name, requested_number)) is not None:
+        raise NameTakenError(f"{name}@{requested_number} is taken by other bytes; versions never change")
     latest = session.scalar(select(func.max(ModelRow.version)).where(ModelRow.name == name)) or 0
     # Read last: a version that is deleted at this moment is seen among the rows above, or here.
-    deleted = session.scalar(select(DeletedModelRow.version).where(DeletedModelRow.name == name)) or 0
-    if wanted is None:
-        return max(latest, deleted) + 1
-    if wanted <= deleted:
-        raise NameTakenError(f"{name}@{deleted} was deleted; no version up to it comes back")
-    return wanted
+    last_deleted = session.scalar(select(DeletedModelRow.version).where(DeletedModelRow.name == name)) or 0
+    if requested_number is None:
+        return max(latest, last_deleted) + 1
+    if requested_number <= last_deleted:
+        raise NameTakenError(f"{name}@{last_deleted} was deleted; no version up to it comes back")
+    return requested_number
 
 
-def _publish_again(row: ModelRow, again: ModelRow) -> None:
+def _publish_again(row: ModelRow, new_row: ModelRow) -> None:
     """Let a version that was not usable be used, or be proven anew by the card that came now."""
     if row.state == ModelState.READY.value:
         return
-    if again.state == ModelState.READY.value or row.state == ModelState.REFUSED.value:
-        row.state, row.card, row.problem = again.state, again.card, None
+    if new_row.state == ModelState.READY.value or row.state == ModelState.REFUSED.value:
+        row.state, row.card, row.problem = new_row.state, new_row.card, None
         row.lease_until = row.enqueued_at = None
         # As many tries as a new one; one that is under way may write no more.
         row.attempt += 1

@@ -13,7 +13,7 @@ from jobkit.models.errors import ModelNotProvenError, ModelRefusedError
 from jobkit.schema import Alias, Deprecation, Model, ModelLinks, ModelState, ModelVersion
 
 # What clients get of a row as it stands there.
-_PLAIN = ModelVersion.model_fields.keys() - {"aliases", "links", "deprecated"}
+_COPIED_FIELDS = ModelVersion.model_fields.keys() - {"aliases", "links", "deprecated"}
 
 
 def version_row(session: Session, name: str, version: int, *, locked: bool = False) -> ModelRow:
@@ -24,7 +24,7 @@ def version_row(session: Session, name: str, version: int, *, locked: bool = Fal
     return row
 
 
-def meant_row(session: Session, reference: str) -> ModelRow:
+def resolved_row(session: Session, reference: str) -> ModelRow:
     """Return the row that `name@version`, `name` or an alias means now; raise ModelNotFoundError.
 
     A name alone means its highest version that is ready and not deprecated; where there is none, the highest that is
@@ -63,7 +63,7 @@ def to_model(session: Session, name: str, most: int, below: int | None = None) -
     rows = list(session.scalars(query if below is None else query.where(ModelRow.version < below)))
     return Model(
         name=name,
-        latest=meant_row(session, name).version,
+        latest=resolved_row(session, name).version,
         versions=list(readable(rows[:most], lambda row: to_version(session, row))),
         next_cursor=rows[most - 1].version if len(rows) > most else None,
     )
@@ -74,7 +74,7 @@ def to_version(session: Session, row: ModelRow) -> ModelVersion:
     path = f"/v1/models/{row.name}/versions/{row.version}"
     query = select(AliasRow.alias).where(AliasRow.name == row.name, AliasRow.version == row.version)
     aliases = session.scalars(query.order_by(AliasRow.alias)).all()
-    values = {name: getattr(row, name) for name in _PLAIN}
+    values = {name: getattr(row, name) for name in _COPIED_FIELDS}
     since = row.deprecated_at
     deprecated = None if since is None else Deprecation(at=since, reason=row.deprecation or "")
     links = ModelLinks(self=path, artifact=f"{path}/artifact")

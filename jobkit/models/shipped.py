@@ -1,4 +1,4 @@
-"""Registers the models that ship with the project, as often as one likes."""
+"""Registers the models that ship with the project; a second time changes nothing."""
 
 import json
 import logging
@@ -18,7 +18,7 @@ def seed_shipped(registry: Registry, folder: Path) -> list[ModelVersion]:
     """Register every `name@version.safetensors` and `name@version.onnx` of a folder.
 
     Models bring their cards; a network without one may have it beside it as `name@version.json`. They are taken as
-    proven: tests prove those that ship, and for others the operator answers. Where the aliases `default` and
+    proven: tests prove those that ship, and others are the choice of the operator. Where the aliases `default` and
     `default-network` point to nothing yet, they are pointed to the latest version of the first dictionary and of the
     first network that are not deprecated. A version that was deleted stays deleted.
 

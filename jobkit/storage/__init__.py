@@ -1,1 +1,1 @@
-"""The object store: local files or S3, bytes on their way, damage and removals."""
+"""The object store: local files or S3, incoming bytes, damage and removals."""

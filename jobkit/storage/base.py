@@ -1,7 +1,7 @@
 """Object store: bytes under keys, written whole or not at all.
 
 Uploads are content-addressed: their key follows from their sha256, so the same bytes are kept once. Results lie under
-`results/{job}/{attempt}/{name}`: a late twin of an attempt can't write over another one's files.
+`results/{job}/{attempt}/{name}`: an attempt can't overwrite the files of another one.
 """
 
 import re
@@ -29,7 +29,7 @@ class StoredObject:
 
 
 class ListedObject(NamedTuple):
-    """An object as a listing tells of it; `modified_at` is in UTC, by the clock of the store."""
+    """An entry of a listing; `modified_at` is in UTC, by the clock of the store."""
 
     key: str
     size_bytes: int
@@ -54,7 +54,7 @@ class ObjectWriter(Protocol):
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """Throw away what was not committed."""
+        """Discard what was not committed."""
         ...
 
 
@@ -115,6 +115,6 @@ def checked_key(key: str) -> str:
     return key
 
 
-def missing(key: str) -> ObjectNotFoundError:
+def not_found_error(key: str) -> ObjectNotFoundError:
     """Make the error of a key with nothing under it."""
     return ObjectNotFoundError(f"the store holds nothing under {key!r}")

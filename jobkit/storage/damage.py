@@ -1,4 +1,4 @@
-"""Objects whose bytes are known to be others than those that were stored: what the scrub found, and who asks for it."""
+"""Objects whose bytes are known to be others than those that were stored: the findings of the scrub."""
 
 from dataclasses import dataclass
 from datetime import datetime
@@ -23,7 +23,7 @@ class NamedObject:
 
 
 def note_damaged(session: Session, named_object: NamedObject, now: datetime) -> bool:
-    """Remember that the object is damaged; return whether that is new."""
+    """Record that the object is damaged; return whether that is new."""
     row = session.get(DamagedRow, named_object.key, with_for_update=True)
     if row is not None:
         row.checked_at = now
@@ -37,12 +37,12 @@ def note_damaged(session: Session, named_object: NamedObject, now: datetime) -> 
 
 
 def forget_damaged(session: Session, key: str) -> None:
-    """Remember nothing about the object: its bytes are right, or it is gone."""
+    """Delete the record of the object: its bytes are right, or it is missing."""
     session.execute(delete(DamagedRow).where(DamagedRow.key == key))
 
 
 def is_known_damaged(session: Session, key: str) -> bool:
-    """Tell whether the latest look at the object found it damaged."""
+    """Tell whether the latest check of the object found it damaged."""
     return session.get(DamagedRow, key) is not None
 
 

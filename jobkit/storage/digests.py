@@ -1,7 +1,4 @@
-"""Bytes held against the sha256 that names them, and that sha256 as HTTP writes it (RFC 9530).
-
-Tested in `tests/attacks/test_e_stored.py`.
-"""
+"""Checks of bytes against the sha256 that names them, and that sha256 as HTTP writes it (RFC 9530)."""
 
 import base64
 import hashlib
@@ -34,8 +31,8 @@ def verified_file(store: ObjectStore, key: str, sha256: str) -> Iterator[Path]:
     """
     with store.local_file(key) as path:
         with translated_os_errors():
-            found = sha256_of(path)
-        if found != sha256:
+            actual_sha256 = sha256_of(path)
+        if actual_sha256 != sha256:
             raise ObjectDamagedError(f"the bytes under {key!r} are not those that were stored")
         yield path
 
@@ -48,15 +45,15 @@ def verified_chunks(chunks: Iterable[bytes], sha256: str) -> Iterator[bytes]:
     ObjectDamagedError
         In place of the last chunk.
     """
-    digest, held = hashlib.sha256(), b""
+    digest, pending_chunk = hashlib.sha256(), b""
     for chunk in chunks:
         digest.update(chunk)
-        if held:
-            yield held
-        held = chunk
+        if pending_chunk:
+            yield pending_chunk
+        pending_chunk = chunk
     if digest.hexdigest() != sha256:
         raise ObjectDamagedError(f"the bytes of {sha256} in the store are not those that were stored")
-    yield held
+    yield pending_chunk
 
 
 def digest_field(sha256: str) -> str:

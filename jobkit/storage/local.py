@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 from jobkit.errors import StoreUnavailableError
-from jobkit.storage.base import CHUNK_BYTES, ListedObject, StoredObject, checked_key, missing
+from jobkit.storage.base import CHUNK_BYTES, ListedObject, StoredObject, checked_key, not_found_error
 from jobkit.storage.scratch import ScratchFolder
 from jobkit.storage.spool import SpoolingWriter, translated_os_errors
 
@@ -28,12 +28,12 @@ class LocalStore:
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
-        # Bytes on their way lie on the same file system, or they could not be renamed into place.
+        # Incoming bytes are on the same file system, so that they can be renamed into place.
         self._incoming = ScratchFolder(folder / _INCOMING)
 
     def writer(self, prefix: str, max_bytes: int | None = None) -> SpoolingWriter:
         """Open a sink."""
-        return SpoolingWriter(self._incoming, self._keep, prefix, max_bytes)
+        return SpoolingWriter(self._incoming, self._store_file, prefix, max_bytes)
 
     def put_file(self, key: str, path: Path) -> StoredObject:
         """Keep a copy of a local file under that key."""
@@ -66,14 +66,14 @@ class LocalStore:
         top = self._path(prefix) if prefix else self._folder
         for path in _files_below(top, self._incoming.folder):
             try:
-                facts = path.stat()
+                file_stat = path.stat()
             except FileNotFoundError:
                 continue  # deleted since it was listed
-            modified_at = datetime.fromtimestamp(facts.st_mtime, UTC)
-            yield ListedObject(path.relative_to(self._folder).as_posix(), facts.st_size, modified_at)
+            modified_at = datetime.fromtimestamp(file_stat.st_mtime, UTC)
+            yield ListedObject(path.relative_to(self._folder).as_posix(), file_stat.st_size, modified_at)
 
     def check(self) -> None:
-        """Write a byte and throw it away."""
+        """Write a byte and discard it."""
         with self.writer("") as writer:
             writer.write(b"0")
             writer.sync()
@@ -88,7 +88,7 @@ class LocalStore:
         with translated_os_errors(), contextlib.suppress(FileNotFoundError):
             shutil.rmtree(self._path(prefix))
 
-    def _keep(self, path: Path, key: str) -> None:
+    def _store_file(self, path: Path, key: str) -> None:
         target = self._path(key)
         with translated_os_errors():
             target.parent.mkdir(parents=True, exist_ok=True)
@@ -100,7 +100,7 @@ class LocalStore:
 
     @contextmanager
     def _existing(self, key: str) -> Iterator[Path]:
-        """Give the path of an object that may vanish at any moment; raise ObjectNotFoundError where it has."""
+        """Give the path of an object that may be removed at any moment; raise ObjectNotFoundError where it has."""
         path = self._path(key)
         with translated_os_errors():
             try:
@@ -109,39 +109,39 @@ class LocalStore:
                 yield path
             except FileNotFoundError as error:
                 self._assert_mounted()
-                raise missing(key) from error
+                raise not_found_error(key) from error
 
     def _assert_mounted(self) -> None:
-        """Refuse to take a disk that is not there for a store that has lost its objects."""
+        """Tell a disk that is not mounted from a store that has lost its objects."""
         if not self._incoming.folder.is_dir():
             raise StoreUnavailableError("the folder of the object store is not there")
 
 
-def _files_below(top: Path, left_out: Path) -> Iterator[Path]:
+def _files_below(top: Path, excluded: Path) -> Iterator[Path]:
     def refuse(error: OSError) -> None:
         if not isinstance(error, FileNotFoundError):
             raise StoreUnavailableError("the object store can't be listed") from error
 
     for folder, subfolders, files in os.walk(top, onerror=refuse):
-        subfolders[:] = [name for name in subfolders if Path(folder, name) != left_out]
+        subfolders[:] = [name for name in subfolders if Path(folder, name) != excluded]
         yield from (Path(folder, name) for name in files)
 
 
 def _read_range(file: BinaryIO, start: int, length: int | None) -> Iterator[bytes]:
     with file:
         file.seek(start)
-        left = length
-        while left is None or left > 0:
+        remaining = length
+        while remaining is None or remaining > 0:
             with translated_os_errors():
-                chunk = file.read(CHUNK_BYTES if left is None else min(CHUNK_BYTES, left))
+                chunk = file.read(CHUNK_BYTES if remaining is None else min(CHUNK_BYTES, remaining))
             if not chunk:
                 return
-            left = None if left is None else left - len(chunk)
+            remaining = None if remaining is None else remaining - len(chunk)
             yield chunk
 
 
 def _sync_folder(folder: Path) -> None:
-    # The rename itself lives in the folder: without this a power cut may undo it.
+    # The rename is stored in the folder: without this a power failure may undo it.
     descriptor = os.open(folder, os.O_RDONLY)
     try:
         os.fsync(descriptor)

@@ -1,15 +1,13 @@
-"""Objects whose key follows from their bytes: how a sweep removes one without taking it from an upload.
+"""Objects whose key follows from their bytes: how a sweep removes one that is not being uploaded again.
 
 Such an object may be written again, with the same bytes, while a sweep is about to delete it as unreferenced. So a
-sweep claims a key in the database before it looks at the object's age for the last time, and lets go of it after the
-deletion. The writer of an object waits for such a claim to go, and then looks whether the object is there, before a row
-may name it. Of an object written
+sweep claims a key in the database before it checks the object's age for the last time, and releases it after the
+deletion. The writer of an object waits until there is no such claim, and then checks that the object exists, before a
+row may name it. An object that is written
 
-- before that last look: the sweep sees that it is young, and leaves it;
-- between the look and the deletion: the writer meets the claim or misses the object, and is asked to send it again;
-- after the deletion: nothing happens to it.
-
-Tested in `tests/dispatcher/test_unreferenced_objects.py`.
+- before that last check is young, and the sweep leaves it;
+- between the check and the deletion has a claim or is missing, and the client is asked to send it again;
+- after the deletion stays.
 """
 
 import time
@@ -30,8 +28,8 @@ from jobkit.storage.damage import forget_damaged, is_known_damaged
 START_S = 60.0
 # When a claim of a sweep that was killed is void; a deletion that was started is over by then, whatever the store does.
 CLAIM_S = 600.0
-# How long a writer waits for a claim to go, which takes a moment unless a sweep was killed.
-PATIENCE_S = 10.0
+# How long a writer waits for the end of a claim, which takes a moment unless a sweep was killed.
+CLAIM_WAIT_S = 10.0
 _PAUSE_S = 0.05
 
 
@@ -43,18 +41,18 @@ def named_keys(session: Session, keys: set[str]) -> set[str]:
 
 def claim(database: Database, keys: Iterable[str]) -> list[str]:
     """Claim those keys that no mesh, model or other sweep names; return them."""
-    asked = set(keys)
+    requested_keys = set(keys)
     try:
         with database.write() as session:
             now = shared_now(session)
             session.execute(delete(RemovalRow).where(RemovalRow.until < now))
-            named = named_keys(session, asked)
-            named |= set(session.scalars(select(RemovalRow.key).where(RemovalRow.key.in_(asked))))
-            free = sorted(asked - named)
-            session.add_all(RemovalRow(key=key, until=now + timedelta(seconds=CLAIM_S)) for key in free)
+            used_keys = named_keys(session, requested_keys)
+            used_keys |= set(session.scalars(select(RemovalRow.key).where(RemovalRow.key.in_(requested_keys))))
+            free_keys = sorted(requested_keys - used_keys)
+            session.add_all(RemovalRow(key=key, until=now + timedelta(seconds=CLAIM_S)) for key in free_keys)
     except RowConflictError:
-        return []  # another sweep claimed one of them at the same moment; the next turn will do
-    return free
+        return []  # another sweep claimed one of them at the same moment; the next sweep tries again
+    return free_keys
 
 
 def release(database: Database, keys: Iterable[str]) -> None:
@@ -63,25 +61,25 @@ def release(database: Database, keys: Iterable[str]) -> None:
         session.execute(delete(RemovalRow).where(RemovalRow.key.in_(list(keys))))
 
 
-def assure(database: Database, store: ObjectStore, key: str, patience_s: float = PATIENCE_S) -> None:
-    """Make sure that an object that was just written stays; to be called before a row names it.
+def assure(database: Database, store: ObjectStore, key: str, claim_wait_s: float = CLAIM_WAIT_S) -> None:
+    """Make sure that no sweep removes an object that was just written; to be called before a row names it.
 
-    What was known of damage to it is forgotten: its bytes have just come again.
+    A record of damage is deleted: its bytes have just been written again.
 
     Parameters
     ----------
     database : Database
     store : ObjectStore
     key : str
-    patience_s : float
-        How long to wait for a sweep that is at the key, in seconds.
+    claim_wait_s : float
+        How long to wait for a sweep that claims the key, in seconds.
 
     Raises
     ------
     StoreUnavailableError
-        If a sweep took it away at the same moment, or was killed at it: it has to be written again.
+        If a sweep removed it at the same moment, or was killed before it could: it has to be written again.
     """
-    deadline = time.monotonic() + patience_s
+    deadline = time.monotonic() + claim_wait_s
     while _is_claimed(database, key):
         if time.monotonic() > deadline:
             raise StoreUnavailableError("the same bytes are being removed as unreferenced; send them again later")

@@ -1,7 +1,7 @@
-"""A store in a bucket of S3, or of a service that speaks like it.
+"""A store in a bucket of S3, or of a compatible service.
 
 Credentials, region and endpoint come from where other S3 clients look for them: the AWS_ environment variables (also
-those of roles and web identities), or the metadata service of the machine. They never pass through our settings.
+those of roles and web identities), or the metadata service of the machine. They are no settings of this project.
 """
 
 import logging
@@ -16,7 +16,7 @@ from obstore.exceptions import BaseError, PermissionDeniedError, Unauthenticated
 from obstore.store import S3Store as Bucket
 
 from jobkit.errors import StoreUnavailableError
-from jobkit.storage.base import CHUNK_BYTES, ListedObject, StoredObject, checked_key, missing
+from jobkit.storage.base import CHUNK_BYTES, ListedObject, StoredObject, checked_key, not_found_error
 from jobkit.storage.scratch import ScratchFolder
 from jobkit.storage.spool import SpoolingWriter, translated_os_errors
 
@@ -55,7 +55,7 @@ class S3Store:
             bucket,
             prefix=prefix or None,
             client_options={
-                # An endpoint without TLS was named on purpose.
+                # An endpoint without TLS is the choice of the operator.
                 "allow_http": _endpoint().startswith("http://"),
                 "connect_timeout": timedelta(seconds=_CONNECT_TIMEOUT_S),
                 "timeout": timedelta(seconds=_REQUEST_TIMEOUT_S),
@@ -149,7 +149,7 @@ class S3Store:
                 yield
             except FileNotFoundError as error:
                 obstore.list_with_delimiter(self._bucket, "no-such-prefix")
-                raise missing(key) from error
+                raise not_found_error(key) from error
 
 
 def _endpoint() -> str:

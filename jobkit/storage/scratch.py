@@ -1,6 +1,6 @@
-"""Files that are still on their way: each is locked by its maker, so those of killed makers can be told from the rest.
+"""Files that are being written: each is locked by its process, so that those of killed processes can be recognised.
 
-The kernel drops a lock with the process that holds it. The next process that opens the folder removes what is not held.
+The kernel drops a lock with the process that holds it. The next process that opens the folder removes unlocked files.
 """
 
 import contextlib
@@ -34,7 +34,7 @@ class ScratchFolder:
             file = path.open("x+b")
             try:
                 fcntl.flock(file, fcntl.LOCK_EX)
-                # A sweep may have come between the two.
+                # A sweep may have removed it before it was locked.
                 if os.fstat(file.fileno()).st_nlink:
                     return path, file
             except BaseException:

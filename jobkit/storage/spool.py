@@ -1,4 +1,4 @@
-"""Bytes on their way into a store: counted, hashed and kept in a local file until all of them are there."""
+"""Incoming bytes of a store: counted, hashed and written to a local file until they are complete."""
 
 import contextlib
 import errno
@@ -19,12 +19,12 @@ _READ_ONLY = (errno.EROFS, errno.EACCES, errno.EPERM)
 
 
 class SpoolingWriter:
-    """An ObjectWriter over a file of a scratch folder; memory stays the same whatever the size.
+    """An ObjectWriter over a file of a scratch folder; memory does not depend on the size.
 
     Parameters
     ----------
     scratch : ScratchFolder
-    keep : callable
+    store_file : callable
         Puts the file, whole and on the disk, under its key; may move it away.
     prefix : str
         Of content-addressed keys.
@@ -33,9 +33,9 @@ class SpoolingWriter:
     """
 
     def __init__(
-        self, scratch: ScratchFolder, keep: Callable[[Path, str], None], prefix: str, max_bytes: int | None
+        self, scratch: ScratchFolder, store_file: Callable[[Path, str], None], prefix: str, max_bytes: int | None
     ) -> None:
-        self._keep = keep
+        self._store_file = store_file
         self._prefix = prefix
         self._max_bytes = max_bytes
         self._hash = hashlib.sha256()
@@ -55,10 +55,10 @@ class SpoolingWriter:
     def commit(self, key: str | None = None) -> StoredObject:
         """Sync and keep."""
         digest = self._hash.hexdigest()
-        final = checked_key(key or content_key(self._prefix, digest))
+        final_key = checked_key(key or content_key(self._prefix, digest))
         self.sync()
-        self._keep(self._path, final)
-        return StoredObject(final, self._size, digest)
+        self._store_file(self._path, final_key)
+        return StoredObject(final_key, self._size, digest)
 
     def sync(self) -> None:
         """Let the bytes reach the disk."""
@@ -83,7 +83,7 @@ class SpoolingWriter:
 
 @contextmanager
 def translated_os_errors() -> Iterator[None]:
-    """Say in the contract's words what the disk of a store refuses; paths stay out of the message."""
+    """Raise errors of the disk as errors of the contract; paths stay out of the message."""
     try:
         yield
     except FileNotFoundError as error:

@@ -8,7 +8,7 @@ from sqlalchemy import CursorResult, delete, select
 from sqlalchemy.orm import Session
 
 from jobkit.database.clock import utc_now
-from jobkit.database.idempotency import Idempotency, once
+from jobkit.database.idempotency import Idempotency, make_once
 from jobkit.database.readable_rows import readable
 from jobkit.database.session import Database
 from jobkit.database.tables import DeliveryRow, DeliveryTryRow, WebhookRow
@@ -92,7 +92,7 @@ class Deliveries:
             message = Message(type="webhook.test", timestamp=utc_now(), data={"webhook_id": webhook_id})
             return _add(session, new_delivery(session, webhook_id, message))
 
-        return self._once(webhook_id, idempotency, make)
+        return self._make_once(webhook_id, idempotency, make)
 
     def replay(self, webhook_id: str, delivery_id: str) -> DeliveryDetail:
         """Have the message of a delivery sent again, under the same message id. Raises as `replay_once`."""
@@ -120,11 +120,11 @@ class Deliveries:
             _enabled(session, webhook_id)
             if row.state == DeliveryState.PENDING.value:
                 raise DeliveryPendingError(f"delivery {delivery_id} is still under way")
-            again = new_delivery(session, webhook_id, Message.model_validate(row.payload), row.job_id)
-            again.payload, again.replay_of = row.payload, message_id(row)
-            return _add(session, again)
+            delivery = new_delivery(session, webhook_id, Message.model_validate(row.payload), row.job_id)
+            delivery.payload, delivery.replay_of = row.payload, message_id(row)
+            return _add(session, delivery)
 
-        return self._once(webhook_id, idempotency, make)
+        return self._make_once(webhook_id, idempotency, make)
 
     def forget_before(self, moment: datetime, most: int = 1000) -> int:
         """Remove deliveries that ended before a moment, with their tries; return how many of at most `most`."""
@@ -134,7 +134,7 @@ class Deliveries:
             result = session.execute(delete(DeliveryRow).where(DeliveryRow.id.in_(ids)))
             return result.rowcount if isinstance(result, CursorResult) else 0
 
-    def _once(
+    def _make_once(
         self,
         webhook_id: str,
         idempotency: Idempotency | None,
@@ -143,7 +143,7 @@ class Deliveries:
         def show(session: Session, delivery_id: str) -> DeliveryDetail:
             return _detail(session, _existing(session, webhook_id, delivery_id))
 
-        return once(self._database, idempotency, make, show)
+        return make_once(self._database, idempotency, make, show)
 
 
 def message_id(row: DeliveryRow) -> str:

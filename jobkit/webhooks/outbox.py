@@ -1,6 +1,6 @@
-"""Messages to subscribers, written in the very transaction that makes what they tell of true.
+"""Messages to subscribers, written in the transaction of the change that they report.
 
-So a message is there if and only if its change is; the dispatcher sends it later, as often as it takes.
+So a message exists if and only if its change does; the dispatcher sends it later, and retries where needed.
 """
 
 from collections.abc import Mapping
@@ -26,12 +26,12 @@ EVENTS: Mapping[EventType, WebhookEvent] = MappingProxyType(
         "canceled": "job.canceled",
     }
 )
-# What depends on settings, other jobs or the hour; it would be wrong by the time that the message is read.
-UNTOLD = ("expires_at", "queue_position", "eta_s")
+# Fields that depend on settings, other jobs or the time; they would be wrong when the message is read.
+OMITTED_FIELDS = ("expires_at", "queue_position", "eta_s")
 
 
 def write_messages(session: Session, job_id: str, change: EventType, at: datetime) -> None:
-    """Leave a message for each subscription to a change of a job; one query where there is none."""
+    """Write a message for each subscription to a change of a job; one query where there is none."""
     event = EVENTS.get(change)
     if event is None:
         return
@@ -40,16 +40,16 @@ def write_messages(session: Session, job_id: str, change: EventType, at: datetim
     query = (
         select(WebhookRow.id, WebhookRow.events).where(WebhookRow.enabled).with_for_update(read=True, key_share=True)
     )
-    wanted_by = [webhook_id for webhook_id, events in session.execute(query) if event in events]
-    if not wanted_by:
+    webhook_ids = [webhook_id for webhook_id, events in session.execute(query) if event in events]
+    if not webhook_ids:
         return
     for job in readable([existing_job(session, job_id)], to_job):
-        _leave(session, wanted_by, event, job, at)
+        _add_messages(session, webhook_ids, event, job, at)
 
 
-def _leave(session: Session, wanted_by: list[str], event: WebhookEvent, job: Job, at: datetime) -> None:
-    message = Message(type=event, timestamp=at, data={"job": job.model_dump(mode="json", exclude=set(UNTOLD))})
-    for webhook_id in wanted_by:
+def _add_messages(session: Session, webhook_ids: list[str], event: WebhookEvent, job: Job, at: datetime) -> None:
+    message = Message(type=event, timestamp=at, data={"job": job.model_dump(mode="json", exclude=set(OMITTED_FIELDS))})
+    for webhook_id in webhook_ids:
         session.add(new_delivery(session, webhook_id, message, job.id))
 
 

@@ -10,7 +10,7 @@ from sqlalchemy import delete, func, select, update
 from sqlalchemy.orm import Session
 
 from jobkit.database.clock import utc_now
-from jobkit.database.idempotency import Idempotency, forget_made, is_repeated, once
+from jobkit.database.idempotency import Idempotency, forget_made, is_repeated, make_once
 from jobkit.database.readable_rows import readable
 from jobkit.database.session import Database
 from jobkit.database.tables import DeliveryRow, WebhookRow
@@ -69,7 +69,7 @@ class Webhooks:
         """
         if not is_repeated(self._database, idempotency):
             self._check_url(new.url)
-        return once(self._database, idempotency, lambda session: _create(session, new), _show_with_secret)
+        return make_once(self._database, idempotency, lambda session: _create(session, new), _show_with_secret)
 
     def list_all(self) -> WebhookList:
         """Return all subscriptions, oldest first."""
@@ -98,7 +98,7 @@ class Webhooks:
         if change.enabled:
             values["failing_since"] = None
         if change.url is not None:
-            self.get(webhook_id)  # what is not there comes before what is wrong with the URL
+            self.get(webhook_id)  # a missing subscription is reported before a wrong URL
             self._check_url(change.url)
         with self._database.write() as session:
             _write(session, webhook_id, values)
@@ -125,10 +125,10 @@ class Webhooks:
         IdempotencyError
             If the key came before with another request.
         """
-        return once(self._database, idempotency, lambda session: _rotate(session, webhook_id), _show_with_secret)
+        return make_once(self._database, idempotency, lambda session: _rotate(session, webhook_id), _show_with_secret)
 
     def delete(self, webhook_id: str) -> None:
-        """Forget a subscription with all that is on its way to it, and its keys; raise WebhookNotFoundError."""
+        """Delete a subscription with its deliveries and its idempotency keys; raise WebhookNotFoundError."""
         with self._database.write() as session:
             existing_webhook(session, webhook_id)
             forget_made(session, webhook_id)
@@ -175,7 +175,7 @@ def existing_webhook(session: Session, webhook_id: str) -> WebhookRow:
 
 
 def give_up_pending(session: Session, webhook_id: str) -> None:
-    """Give up all that is on its way to a subscriber; it can be replayed."""
+    """Give up all pending deliveries to a subscriber; it can be replayed."""
     session.execute(
         update(DeliveryRow)
         .where(DeliveryRow.webhook_id == webhook_id, DeliveryRow.state == DeliveryState.PENDING.value)

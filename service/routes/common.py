@@ -57,7 +57,7 @@ class Caller:
     principal: str
     key: str | None
 
-    def once(self, *request: str) -> Idempotency | None:
+    def idempotency(self, *request: str) -> Idempotency | None:
         """Return the key for what the request asks for: its operation, and everything that it says."""
         return idempotency_of(self.principal, self.key, *request)
 

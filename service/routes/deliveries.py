@@ -55,5 +55,5 @@ def replay_delivery(
     services: ServicesDep, caller: CallerDep, webhook_id: WebhookIdPath, delivery_id: DeliveryIdPath
 ) -> Response:
     """Have a message sent again, under the same message id, so that a receiver that knows it already can tell."""
-    idempotency = caller.once("replay_delivery", webhook_id, delivery_id)
+    idempotency = caller.idempotency("replay_delivery", webhook_id, delivery_id)
     return delivery_response(*services.deliveries.replay_once(webhook_id, delivery_id, idempotency))

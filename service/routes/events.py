@@ -54,7 +54,7 @@ async def list_events(
         page = await run_in_threadpool(services.jobs.events, job_id, after, limit)
         return json_response(page, Vary="Accept")
     known = int(last_event_id or after)
-    job = await run_in_threadpool(services.jobs.glance, job_id)
+    job = await run_in_threadpool(services.jobs.status, job_id)
     if job.state.is_terminal and known >= job.revision:
         return Response(status_code=HTTPStatus.NO_CONTENT, headers={"Vary": "Accept"})
     return services.streams.respond(job_id, known)

@@ -94,8 +94,8 @@ async def get_job(
     """Show where a job stands. Its entity tag covers all but `eta_s`, which ages by itself."""
     has_waited = await _wait_for_end(services, job_id, prefer)
     if if_none_match is not None:
-        view = await services.job_cache.glance(job_id)
-        tag = etag_of(view.glance.revision, view.queue_position, view.glance.is_pinned)
+        view = await services.job_cache.status(job_id)
+        tag = etag_of(view.status.revision, view.queue_position, view.status.is_pinned)
         if is_unchanged(request, tag):
             return Response(status_code=304, headers={"ETag": tag})
     response = job_response(await services.job_cache.job(job_id))
@@ -168,6 +168,6 @@ async def answer_submission(services: Services, submission: Submission, prefer: 
 async def _wait_for_end(services: Services, job_id: str, prefer: str | None) -> bool:
     """Wait as the client prefers; return whether that was possible, so that it can be told."""
     wait_s = min(preferred_wait_s(prefer), services.settings.max_wait_s)
-    if wait_s <= 0 or (await services.job_cache.glance(job_id)).glance.state.is_terminal:
+    if wait_s <= 0 or (await services.job_cache.status(job_id)).status.state.is_terminal:
         return True
     return await services.job_waiters.wait(job_id, wait_s)

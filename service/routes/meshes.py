@@ -94,8 +94,8 @@ async def upload_mesh(
     """Upload a mesh. The same bytes are the same mesh, however often they come."""
     rules = UploadRules("file", frozenset(), MESH_PREFIX, services.settings.max_upload_mb << 20)
     upload = await receive_upload(request, services.store, rules)
-    request_said = ("upload_mesh", upload.stored.sha256, filename or upload.filename or "", format or "")
-    idempotency = caller.once(*request_said)
+    request_parts = ("upload_mesh", upload.stored.sha256, filename or upload.filename or "", format or "")
+    idempotency = caller.idempotency(*request_parts)
     await run_in_threadpool(refuse_conflict, services.database, idempotency)
     mesh, is_new = await run_in_threadpool(register_mesh, services, upload, filename, format)
     is_first = await run_in_threadpool(note_request, services.database, idempotency, mesh.links.self)

@@ -57,7 +57,7 @@ QUEUED: dict[int | str, dict[str, Any]] = {
 )
 def create_webhook(services: ServicesDep, caller: CallerDep, new: NewWebhook) -> Response:
     """Subscribe to what happens to jobs."""
-    webhook, is_new = services.webhooks.create_once(new, caller.once("create_webhook", new.model_dump_json()))
+    webhook, is_new = services.webhooks.create_once(new, caller.idempotency("create_webhook", new.model_dump_json()))
     response = json_response(webhook, HTTPStatus.CREATED, Location=webhook.links.self, Cache_Control="no-store")
     return note_replayed(response, is_new=is_new)
 
@@ -95,13 +95,15 @@ def delete_webhook(services: ServicesDep, webhook_id: WebhookIdPath) -> Response
 )
 def test_webhook(services: ServicesDep, caller: CallerDep, webhook_id: WebhookIdPath) -> Response:
     """Have a `webhook.test` message sent."""
-    return delivery_response(*services.deliveries.send_test_once(webhook_id, caller.once("test_webhook", webhook_id)))
+    return delivery_response(
+        *services.deliveries.send_test_once(webhook_id, caller.idempotency("test_webhook", webhook_id))
+    )
 
 
 @router.post("/v1/webhooks/{webhook_id}/rotate", response_model=WebhookWithSecret, responses=problems(404, 409))
 def rotate_webhook_secret(services: ServicesDep, caller: CallerDep, webhook_id: WebhookIdPath) -> Response:
     """Get a new secret. For a day messages are signed with the old one as well."""
-    idempotency = caller.once("rotate_webhook_secret", webhook_id)
+    idempotency = caller.idempotency("rotate_webhook_secret", webhook_id)
     webhook, is_new = services.webhooks.rotate_once(webhook_id, idempotency)
     return note_replayed(json_response(webhook, Cache_Control="no-store"), is_new=is_new)
 

@@ -229,7 +229,7 @@ def test_versions_of_earlier_releases_are_proven_after_an_upgrade(
     database.migrate()
     queue = TaskQueue(settings.redis_url.get_secret_value(), settings.queue_name, 60)
     assert reconcile(database, queue, TimeLimits(60.0, 60.0, 1024)).enqueued_models == 1
-    assert queue.waiting() == {model_entry("junk@1", 1)}
+    assert queue.entries() == {model_entry("junk@1", 1)}
     queue.close()
     with working(settings, database, store) as context:
         prove_model("junk@1")

@@ -11,7 +11,7 @@ from sqlalchemy import func, select
 from starlette.testclient import TestClient
 
 from jobkit.database.clock import utc_now
-from jobkit.database.idempotency import KEPT, Idempotency, forget_keys, note_request
+from jobkit.database.idempotency import KEEP_FOR, Idempotency, forget_keys, note_request
 from jobkit.database.tables import DeliveryRow, IdempotencyRow, JobRow, WebhookRow
 from service.services import Services
 
@@ -169,6 +169,6 @@ def test_keys_are_forgotten_but_those_of_jobs(client: TestClient, services: Serv
     body = {"mesh_id": mesh_id, "method": {"method": "smooth"}}
     client.post("/v1/jobs", json=body, headers={"Idempotency-Key": "of-a-job"})
     assert forget_keys(services.database, utc_now()) == 0
-    assert forget_keys(services.database, utc_now() + KEPT) == 1
+    assert forget_keys(services.database, utc_now() + KEEP_FOR) == 1
     with services.database.read() as session:
         assert list(session.scalars(select(IdempotencyRow.key))) == ["of-a-job"]

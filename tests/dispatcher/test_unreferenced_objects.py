@@ -109,7 +109,7 @@ def test_bytes_that_come_again_before_the_last_look_are_kept(database: Database,
     aging.on_list = send_again
     assert sweep(database, aging) == SweepResult()
     assert len(arrived) == 1
-    assure(database, aging, arrived[0], patience_s=0)
+    assure(database, aging, arrived[0], claim_wait_s=0)
 
 
 def test_bytes_that_come_again_between_look_and_deletion_have_to_be_sent_once_more(

@@ -23,7 +23,7 @@ from jobkit.jobs.jobs import Jobs
 from jobkit.schema import DeliveryState
 from jobkit.settings import Settings
 from jobkit.webhooks.deliveries import Deliveries
-from jobkit.webhooks.outbox import UNTOLD
+from jobkit.webhooks.outbox import OMITTED_FIELDS
 from jobkit.webhooks.subscriptions import Webhooks
 from tests.dispatcher.conftest import FailJob, Subscribe
 from tests.dispatcher.receivers import receiving
@@ -51,7 +51,7 @@ def test_a_subscriber_hears_of_the_end_of_a_job(
     (request,) = receiver.received
     message = Webhook(webhook.secret).verify(request.body, request.headers)
     assert message["type"] == "job.failed"
-    assert message["data"] == {"job": Jobs(database).get(job_id).model_dump(mode="json", exclude=set(UNTOLD))}
+    assert message["data"] == {"job": Jobs(database).get(job_id).model_dump(mode="json", exclude=set(OMITTED_FIELDS))}
     assert message["data"]["job"]["error"]["message"] == "größer als 5 µm"
     (delivery,) = deliveries.page(webhook.id, 9).items
     assert (delivery.state, delivery.job_id) == (DeliveryState.DELIVERED, job_id)

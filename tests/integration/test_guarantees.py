@@ -49,7 +49,7 @@ def test_a_job_outlives_the_service_and_the_queue(
     with serve() as service, dispatching(settings):
         again = get(f"{service.url}/v1/jobs/{job['id']}", Prefer="wait=1")
         assert again == job
-        wait_until(lambda: job_entry(job["id"], 1) in queue.waiting())
+        wait_until(lambda: job_entry(job["id"], 1) in queue.entries())
     queue.close()
 
 

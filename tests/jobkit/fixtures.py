@@ -41,7 +41,7 @@ def put(store: ObjectStore, data: bytes, prefix: str = "meshes", key: str | None
 def upload(database: Database, store: ObjectStore, data: bytes) -> Mesh:
     """Do what the service does with an upload."""
     stored = put(store, data)
-    assure(database, store, stored.key, patience_s=0)
+    assure(database, store, stored.key, claim_wait_s=0)
     return Meshes(database).add(stored, "scan.ply", "ply")[0]
 
 

@@ -17,7 +17,7 @@ from jobkit.database.session import Database
 from jobkit.database.tables import AttemptRow, JobRow, LeaderRow
 from jobkit.errors import JobFinishedError, StaleAttemptError
 from jobkit.jobs.attempts import Attempts
-from jobkit.jobs.endings import Attempt, another_try, end_attempt
+from jobkit.jobs.endings import Attempt, end_attempt, retry_ending
 from jobkit.jobs.jobs import Jobs, NewJob
 from jobkit.jobs.timeouts import TimeLimits, end_overdue
 from jobkit.meshes import Meshes
@@ -119,7 +119,7 @@ def test_a_cancel_reaches_a_job_that_is_just_being_handed_back(database: Databas
     mine = Attempts(database).start(job.id, "w", 30).attempt
     with ThreadPoolExecutor(1) as pool:
         with database.write() as session:
-            end_attempt(session, mine, another_try(ERROR), utc_now())
+            end_attempt(session, mine, retry_ending(ERROR), utc_now())
             # The other one still finds a running job, and then waits for this transaction.
             canceled = pool.submit(Jobs(database).request_cancel, job.id)
             let_others_run()

@@ -58,7 +58,7 @@ def test_a_queue_that_lost_everything_is_filled_again(
     rq_queue.empty()
     found = reconcile(database, queue, LIMITS, utc_now() + timedelta(seconds=GRACE_S + 1))
     assert (found.enqueued_jobs, found.enqueued_meshes) == (1, 1)
-    assert queue.waiting() == {job_entry(job.id, 1), mesh_entry(mesh.id, 1)}
+    assert queue.entries() == {job_entry(job.id, 1), mesh_entry(mesh.id, 1)}
 
 
 def test_what_waits_in_the_queue_is_not_put_there_twice(
@@ -84,7 +84,7 @@ def test_an_attempt_whose_worker_went_silent_is_started_again(database: Database
     attempts.start(job.id, "w", 5)
     found = reconcile(database, queue, LIMITS, utc_now() + timedelta(seconds=6))
     assert (found.ended, found.enqueued_jobs) == (1, 1)
-    assert job_entry(job.id, 2) in queue.waiting()
+    assert job_entry(job.id, 2) in queue.entries()
     assert attempts.start(job.id, "w", 5).attempt.number == 2
 
 

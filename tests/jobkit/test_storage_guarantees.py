@@ -82,7 +82,7 @@ class World:
         """Go on with an upload that was put into the store some time ago."""
         stored = self.put.pop(which, None)
         if stored is not None:
-            assure(self.database, self.store, stored.key, patience_s=0)
+            assure(self.database, self.store, stored.key, claim_wait_s=0)
             Meshes(self.database).add(stored, "late.ply", "ply")
 
     def _create(self, which: int) -> None:

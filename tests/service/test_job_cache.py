@@ -9,7 +9,7 @@ from jobkit.database.session import Database
 from jobkit.errors import JobNotFoundError
 from jobkit.jobs.attempts import Attempts
 from jobkit.jobs.estimates import Estimates
-from jobkit.jobs.jobs import Glance, Jobs, NewJob
+from jobkit.jobs.jobs import Jobs, JobStatus, NewJob
 from jobkit.meshes import Meshes
 from jobkit.schema import Job, JobSpec, JobState, ResolvedModel
 from jobkit.storage.base import ObjectStore
@@ -23,14 +23,14 @@ class CountingJobs(Jobs):
 
     def __init__(self, database: Database) -> None:
         super().__init__(database)
-        self.glanced: list[set[str]] = []
+        self.status_queries: list[set[str]] = []
         self.read_whole: list[set[str]] = []
         self.has_begun = threading.Event()
         self.may_go_on = threading.Event()
 
-    def glances(self, job_ids: Collection[str]) -> dict[str, Glance]:
-        self.glanced.append(set(job_ids))
-        found = super().glances(job_ids)
+    def statuses(self, job_ids: Collection[str]) -> dict[str, JobStatus]:
+        self.status_queries.append(set(job_ids))
+        found = super().statuses(job_ids)
         self.has_begun.set()
         assert self.may_go_on.wait(GUARD_S)
         return found
@@ -75,7 +75,7 @@ def test_who_comes_during_a_look_shares_the_next_one_and_sees_what_has_changed_m
 
     job_cache = JobCache(jobs, Estimates(database))
     anyio.run(live)
-    assert len(jobs.glanced) == 2
+    assert len(jobs.status_queries) == 2
     assert {found[place].state for place in range(1, 50)} == {JobState.RUNNING}
 
 
@@ -86,11 +86,11 @@ def test_a_job_is_read_whole_once_for_each_change_and_only_if_somebody_wants_it(
     job_cache = JobCache(jobs, Estimates(database))
 
     async def live() -> None:
-        await job_cache.glance(job.id)
+        await job_cache.status(job.id)
         assert (await job_cache.job(job.id)).revision == 1
         await job_cache.job(job.id)
         await anyio.to_thread.run_sync(Attempts(database).start, job.id, "test", 30.0)
-        assert (await job_cache.glance(job.id)).glance.revision == 2
+        assert (await job_cache.status(job.id)).status.revision == 2
         assert (await job_cache.job(job.id)).revision == 2
 
     anyio.run(live)
@@ -154,4 +154,4 @@ def test_those_that_shared_a_look_write_their_answers_one_after_the_other(
     job_cache = JobCache(jobs, Estimates(database))
     jobs.may_go_on.set()
     assert anyio.run(most_in_a_round, lambda: job_cache.job(job.id), 100) == 1
-    assert len(jobs.glanced) < 10
+    assert len(jobs.status_queries) < 10

@@ -10,7 +10,7 @@ from jobkit.database.clock import utc_now
 from jobkit.database.session import Database
 from jobkit.database.tables import JobRow, MeshRow
 from jobkit.jobs.attempts import Attempts
-from jobkit.jobs.estimates import MIN_PAST, Estimates, PastJob, Speeds, left_at_work, left_in_queue
+from jobkit.jobs.estimates import MIN_PAST, Estimates, PastJob, Rates, remaining_queued_s, remaining_running_s
 from jobkit.jobs.jobs import Jobs, NewJob
 from jobkit.schema import Job, JobError, JobResult, JobState
 
@@ -33,38 +33,40 @@ class Clock:
 
 @given(rate=st.floats(0.01, 100.0), sizes=st.lists(st.integers(MIB, 2 * MIB - 1), min_size=MIN_PAST), size=st.just(MIB))
 def test_jobs_of_one_pace_foretell_their_like_exactly(rate: float, sizes: list[int], size: int) -> None:
-    speeds = Speeds(PastJob("self", past, rate * past) for past in sizes)
-    assert speeds.seconds("self", size) == pytest.approx(rate * size)
+    rates = Rates(PastJob("self", past, rate * past) for past in sizes)
+    assert rates.seconds("self", size) == pytest.approx(rate * size)
 
 
 def test_one_odd_job_among_many_changes_little() -> None:
     past = [PastJob("self", MIB, 10.0)] * 8 + [PastJob("self", MIB, 5000.0)]
-    assert Speeds(past).seconds("self", MIB) == pytest.approx(10.0)
+    assert Rates(past).seconds("self", MIB) == pytest.approx(10.0)
 
 
 @pytest.mark.parametrize(
     ("kind", "size", "n_past"), [("none", MIB, 9), ("self", 8 * MIB, 9), ("self", MIB // 8, 9), ("self", MIB, 2)]
 )
 def test_other_kinds_other_sizes_and_too_few_jobs_foretell_nothing(kind: str, size: int, n_past: int) -> None:
-    assert Speeds([PastJob("self", MIB, 10.0)] * n_past).seconds(kind, size) is None
+    assert Rates([PastJob("self", MIB, 10.0)] * n_past).seconds(kind, size) is None
 
 
-@given(whole=seconds, done=st.floats(0.0, 0.999), worked=seconds)
-def test_a_job_that_was_just_heard_of_has_left_what_it_has_not_done(whole: float, done: float, worked: float) -> None:
-    assert left_at_work(whole, done, worked, 0.0) == pytest.approx((1.0 - done) * whole)
+@given(whole=seconds, done_share=st.floats(0.0, 0.999), worked=seconds)
+def test_a_job_that_was_just_heard_of_has_left_what_it_has_not_done(
+    whole: float, done_share: float, worked: float
+) -> None:
+    assert remaining_running_s(whole, done_share, worked, 0.0) == pytest.approx((1.0 - done_share) * whole)
 
 
 def test_a_job_that_takes_longer_than_others_goes_by_its_own_pace() -> None:
-    assert left_at_work(10.0, 0.5, 60.0, 20.0) == pytest.approx(60.0)
-    assert left_at_work(10.0, 0.0, 60.0, 60.0) is None
-    assert left_at_work(None, 0.5, 60.0, 0.0) is None
+    assert remaining_running_s(10.0, 0.5, 60.0, 20.0) == pytest.approx(60.0)
+    assert remaining_running_s(10.0, 0.0, 60.0, 60.0) is None
+    assert remaining_running_s(None, 0.5, 60.0, 0.0) is None
 
 
 @given(jobs=st.lists(seconds, min_size=1, max_size=20), n_workers=st.integers(1, 5))
 def test_a_queue_never_ends_before_its_work_is_shared_and_never_after_one_worker_had_done_it(
     jobs: list[float], n_workers: int
 ) -> None:
-    ends = [end for end in left_in_queue([0.0] * n_workers, [(job, 0.0) for job in jobs]) if end is not None]
+    ends = [end for end in remaining_queued_s([0.0] * n_workers, [(job, 0.0) for job in jobs]) if end is not None]
     assert len(ends) == len(jobs)
     assert max(ends) >= max(sum(jobs) / n_workers, *jobs) * (1 - 1e-9)
     assert max(ends) <= sum(jobs) * (1 + 1e-9)
@@ -73,14 +75,14 @@ def test_a_queue_never_ends_before_its_work_is_shared_and_never_after_one_worker
 
 def test_an_unknown_job_holds_its_worker_for_ever_and_the_others_go_on() -> None:
     jobs = [(None, 0.0), (10.0, 0.0), (10.0, 0.0)]
-    assert left_in_queue([0.0, 5.0], jobs) == [None, 15.0, 25.0]
-    assert left_in_queue([0.0], jobs) == [None, None, None]
-    assert left_in_queue([], jobs) == [None, None, None]
-    assert left_in_queue([math.inf], [(1.0, 0.0)]) == [None]
+    assert remaining_queued_s([0.0, 5.0], jobs) == [None, 15.0, 25.0]
+    assert remaining_queued_s([0.0], jobs) == [None, None, None]
+    assert remaining_queued_s([], jobs) == [None, None, None]
+    assert remaining_queued_s([math.inf], [(1.0, 0.0)]) == [None]
 
 
 def test_a_job_that_has_to_wait_starts_no_sooner() -> None:
-    assert left_in_queue([0.0], [(10.0, 30.0)]) == [40.0]
+    assert remaining_queued_s([0.0], [(10.0, 30.0)]) == [40.0]
 
 
 @pytest.fixture
@@ -143,19 +145,21 @@ def test_a_running_job_and_those_behind_it_are_foretold_from_past_ones(
     attempt = Attempts(database).start(running.id, "test", 60).attempt
     Attempts(database).report_progress(attempt, "fill", 40.0)
     clock.now += 10
-    left = [completed(estimates, jobs.get(job.id)).eta_s for job in (running, second, third)]
-    assert left == pytest.approx([60.0, 160.0, 260.0], abs=5.0)
+    remaining_s = [completed(estimates, jobs.get(job.id)).eta_s for job in (running, second, third)]
+    assert remaining_s == pytest.approx([60.0, 160.0, 260.0], abs=5.0)
     clock.now += 0.5
-    assert completed(estimates, jobs.get(running.id)).eta_s == pytest.approx(left[0] - 0.5 if left[0] else None)
+    assert completed(estimates, jobs.get(running.id)).eta_s == pytest.approx(
+        remaining_s[0] - 0.5 if remaining_s[0] else None
+    )
 
 
 @pytest.mark.usefixtures("past")
 def test_a_worker_whose_lease_ran_out_takes_no_more_jobs(
     database: Database, new_job: NewJob, estimates: Estimates
 ) -> None:
-    lost, waiting = (Jobs(database).create(new_job)[0] for _ in range(2))
+    lost, queued_jobs = (Jobs(database).create(new_job)[0] for _ in range(2))
     Attempts(database).start(lost.id, "test", -1.0)
-    assert completed(estimates, Jobs(database).get(waiting.id)).eta_s is None
+    assert completed(estimates, Jobs(database).get(queued_jobs.id)).eta_s is None
 
 
 @pytest.mark.usefixtures("past")

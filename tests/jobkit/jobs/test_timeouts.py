@@ -7,7 +7,7 @@ from jobkit.database.session import Database
 from jobkit.errors import StaleAttemptError
 from jobkit.jobs.attempts import Attempts
 from jobkit.jobs.jobs import Jobs, NewJob
-from jobkit.jobs.timeouts import CANCEL_PATIENCE_S, TimeLimits, end_overdue
+from jobkit.jobs.timeouts import CANCEL_TIMEOUT_S, TimeLimits, end_overdue
 from jobkit.schema import Job, JobResult, JobState, Limits
 
 LIMITS = TimeLimits(queue_s=1e6, total_s=1e6, memory_mb=1000)
@@ -83,7 +83,7 @@ def test_a_cancel_waits_for_a_living_worker_and_for_a_dead_one_a_moment_only(dat
     Jobs(database).request_cancel(job.id)
     assert end_later(database, 0) == 0
     assert Jobs(database).get(job.id).state == JobState.CANCELING
-    assert end_later(database, CANCEL_PATIENCE_S + 0.5) == 1
+    assert end_later(database, CANCEL_TIMEOUT_S + 0.5) == 1
     assert Jobs(database).get(job.id).state == JobState.CANCELED
     with pytest.raises(StaleAttemptError):
         attempts.publish(attempt, JobResult(format="ply"))

@@ -13,8 +13,7 @@ from jobkit.jobs.attempts import Attempts
 from jobkit.jobs.endings import end_attempt, failure
 from jobkit.jobs.jobs import Jobs, NewJob
 from jobkit.schema import Job, JobError, JobResult, JobState, NewWebhook
-from jobkit.schema.webhooks import WebhookEvent
-from jobkit.webhooks.outbox import UNTOLD
+from jobkit.webhooks.outbox import OMITTED_FIELDS
 from jobkit.webhooks.subscriptions import Webhooks
 
 ERROR = JobError(code="no_quads", message="the outline is too small")
@@ -49,7 +48,7 @@ def test_every_change_that_is_subscribed_to_leaves_a_message_with_the_job_as_it_
     assert {(row.webhook_id, row.job_id, row.state, row.tries) for row in found} == {(webhook_id, job.id, "pending", 0)}
     told = [row.payload["data"]["job"] for row in found]
     assert [job["state"] for job in told] == ["running", "queued", "running", "succeeded_with_warnings"]
-    assert told[-1] == Jobs(database).get(job.id).model_dump(mode="json", exclude=set(UNTOLD))
+    assert told[-1] == Jobs(database).get(job.id).model_dump(mode="json", exclude=set(OMITTED_FIELDS))
     assert len({row.id for row in found}) == 4
 
 

@@ -103,7 +103,7 @@ def test_an_upload_waits_for_its_proof(
     client: TestClient, services: Services, dictionary_bytes: Make, is_sound: bool, status: int
 ) -> None:
     def work() -> None:
-        reference = wait_until(lambda: next(iter(services.proofs.proving(["reliefs@1"])), None))
+        reference = wait_until(lambda: next(iter(services.proofs.unfinished(["reliefs@1"])), None))
         if is_sound:
             services.proofs.accept(services.proofs.start(reference, "test", 30))
         else:

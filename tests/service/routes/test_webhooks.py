@@ -6,7 +6,7 @@ from starlette.testclient import TestClient
 
 from jobkit.schema import Job
 from jobkit.settings import Settings
-from jobkit.webhooks.outbox import UNTOLD
+from jobkit.webhooks.outbox import OMITTED_FIELDS
 
 OPEN = "https://8.8.8.8/hook"
 
@@ -107,5 +107,7 @@ def test_an_end_of_a_job_stands_in_the_log_until_it_is_sent(
     assert (delivery["type"], delivery["state"], delivery["tries"]) == ("job.succeeded", "pending", 0)
     detail = client.get(delivery["links"]["self"]).json()
     job = client.get(delivery["links"]["job"]).json()
-    assert detail["message"]["data"]["job"] == {name: value for name, value in job.items() if name not in UNTOLD}
+    assert detail["message"]["data"]["job"] == {
+        name: value for name, value in job.items() if name not in OMITTED_FIELDS
+    }
     assert detail["log"] == []
