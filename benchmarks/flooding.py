@@ -105,7 +105,7 @@ async def _hold(
 
 
 async def run(plan: Flood) -> Tally:
-    """Flood until stdin ends; say on stdout when each client has had its first connection."""
+    """Flood until stdin ends; print a line when each client has had its first connection."""
     tally = Tally()
     clients = asyncio.create_task(flood(plan, tally))
     while tally.n_opened < plan.n_waiters + plan.n_half_open + plan.n_endless:

@@ -23,12 +23,12 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.output_hashes", description=__doc__)
     parser.add_argument("folder", type=Path, help="folder of meshes with holes")
     parser.add_argument("--model", action="append", help=f"model, may be repeated; by default {', '.join(MODELS)}")
-    chosen = parser.parse_args(arguments)
-    scans = sorted(path for path in chosen.folder.iterdir() if path.suffix in {".ply", ".stl", ".obj", ".off"})
+    options = parser.parse_args(arguments)
+    scans = sorted(path for path in options.folder.iterdir() if path.suffix in {".ply", ".stl", ".obj", ".off"})
     if not scans:
-        sys.exit(f"error: there is no mesh in {chosen.folder}")
+        sys.exit(f"error: there is no mesh in {options.folder}")
     for scan in scans:
-        for model in chosen.model or MODELS:
+        for model in options.model or MODELS:
             print(*hashes(scan, model), scan.name, model, flush=True)  # noqa: T201
 
 
@@ -44,8 +44,8 @@ def hashes(scan: Path, model: str) -> tuple[str, str]:
         repaired, report = Path(folder, "repaired" + scan.suffix), Path(folder, "report.json")
         command = [sys.executable, "-m", "quadpatch", "fill", str(scan), "-o", str(repaired), "--report", str(report)]
         subprocess.run([*command, "--model", model], check=True, capture_output=True)
-        kept = json.dumps(_without_seconds(json.loads(report.read_bytes())), sort_keys=True)
-        return hashlib.sha256(repaired.read_bytes()).hexdigest(), hashlib.sha256(kept.encode()).hexdigest()
+        comparable = json.dumps(_without_seconds(json.loads(report.read_bytes())), sort_keys=True)
+        return hashlib.sha256(repaired.read_bytes()).hexdigest(), hashlib.sha256(comparable.encode()).hexdigest()
 
 
 def _without_seconds(value: Any) -> Any:

@@ -67,18 +67,18 @@ async def _poll(plan: Plan, number: int, start: float, tally: Tally) -> None:
     reader, writer = await asyncio.open_connection(plan.host, plan.port)
     path = plan.paths[number % len(plan.paths)]
     request = f"GET {path} HTTP/1.1\r\nHost: {plan.host}:{plan.port}\r\nAccept: application/json\r\n"
-    due, tag = start + plan.interval_s * number / plan.n_clients, ""
+    send_at, tag = start + plan.interval_s * number / plan.n_clients, ""
     try:
-        while due < start + plan.seconds:
-            await asyncio.sleep(max(due - loop.time(), 0))
+        while send_at < start + plan.seconds:
+            await asyncio.sleep(max(send_at - loop.time(), 0))
             condition = f"If-None-Match: {tag}\r\n" if tag and plan.is_conditional else ""
             writer.write(f"{request}{condition}\r\n".encode())
             status, tag = await _answer(reader, tag)
-            tally.times.append(loop.time() - due)
+            tally.times.append(loop.time() - send_at)
             tally.unchanged += status == HTTPStatus.NOT_MODIFIED
             if status not in (HTTPStatus.OK, HTTPStatus.NOT_MODIFIED):
                 tally.errors.append(f"status {status}")
-            due = due + plan.interval_s if plan.interval_s else loop.time()
+            send_at = send_at + plan.interval_s if plan.interval_s else loop.time()
     except (OSError, EOFError, ValueError) as error:
         tally.errors.append(repr(error))
     finally:

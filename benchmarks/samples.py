@@ -23,7 +23,7 @@ ROOT = Path(__file__).resolve().parent.parent
 DOCUMENTS = (ROOT / "README.md", ROOT / "docs" / "api.md")
 RECORD = ROOT / "docs" / "samples.json"
 BLOCK = re.compile(r"(<!-- sample: (?P<name>[\w-]+) -->\n```\n)(?P<text>.*?)(\n```\n)", re.DOTALL)
-MORE = "…"
+ELLIPSIS = "…"
 _WIDTH = 118
 _WAIT = {"Prefer": "wait=30"}
 _README_URL = "http://127.0.0.1:8000"
@@ -53,9 +53,9 @@ def record(url: str, scan: bytes) -> dict[str, str]:
             "label": "station 4, part 1187",
         }
         accepted = http.post("/v1/jobs", json=spec).json()
-        followed = _ended(http, accepted["id"])
+        followed = _wait_for_end(http, accepted["id"])
         repair = http.post("/v1/repairs", files={"mesh": ("scan.ply", scan)}).json()
-        repaired = _ended(http, repair["id"])
+        repaired = _wait_for_end(http, repair["id"])
         report = http.get(f"/v1/jobs/{repair['id']}/report").json()
     job = ("id", "state", "percent")
     return {
@@ -71,7 +71,7 @@ def record(url: str, scan: bytes) -> dict[str, str]:
     }
 
 
-def _ended(http: httpx.Client, job_id: str) -> dict[str, Any]:
+def _wait_for_end(http: httpx.Client, job_id: str) -> dict[str, Any]:
     while True:
         job: dict[str, Any] = http.get(f"/v1/jobs/{job_id}", headers=_WAIT).json()
         if job["finished_at"] is not None:
@@ -93,20 +93,20 @@ _FACTS = {
 
 def line(answer: Mapping[str, Any], keys: tuple[str, ...]) -> str:
     """Write some of an answer in one line."""
-    return "{" + ",".join([*(f'"{key}":{_compact(answer[key])}' for key in keys), f" {MORE}"]) + "}"
+    return "{" + ",".join([*(f'"{key}":{_compact(answer[key])}' for key in keys), f" {ELLIPSIS}"]) + "}"
 
 
 def lines(answer: Mapping[str, Any], keys: tuple[str, ...], inner: Mapping[str, tuple[str, ...]]) -> str:
     """Write some of an answer, broken between its parts; of a list only the first entry."""
-    parts = [f'"{key}":{_shown(key, answer[key], inner)}' for key in keys]
-    return wrapped("{" + ",".join([*parts, f" {MORE}"]) + "}")
+    parts = [f'"{key}":{_abridged(key, answer[key], inner)}' for key in keys]
+    return wrapped("{" + ",".join([*parts, f" {ELLIPSIS}"]) + "}")
 
 
 def wrapped(text: str) -> str:
     """Break a long line after commas that end a member."""
     written = []
     while len(text) > _WIDTH:
-        place = max(text.rfind(',"', 1, _WIDTH), text.rfind(f", {MORE}", 1, _WIDTH))
+        place = max(text.rfind(',"', 1, _WIDTH), text.rfind(f", {ELLIPSIS}", 1, _WIDTH))
         if place <= 0:
             break
         written.append(text[: place + 1])
@@ -114,12 +114,14 @@ def wrapped(text: str) -> str:
     return "\n".join([*written, text])
 
 
-def _shown(key: str, value: Any, inner: Mapping[str, tuple[str, ...]]) -> str:
+def _abridged(key: str, value: Any, inner: Mapping[str, tuple[str, ...]]) -> str:
     if isinstance(value, list) and key in inner:
-        return f"[{_shown(key, value[0], inner)}, {MORE}]" if value else "[]"
+        return f"[{_abridged(key, value[0], inner)}, {ELLIPSIS}]" if value else "[]"
     if not isinstance(value, dict) or key not in inner:
         return _compact(value)
-    return "{" + ",".join(f'"{k}":{_shown(k, value[k], _deeper(inner, key))}' for k in inner[key]) + f", {MORE}}}"
+    return (
+        "{" + ",".join(f'"{k}":{_abridged(k, value[k], _deeper(inner, key))}' for k in inner[key]) + f", {ELLIPSIS}}}"
+    )
 
 
 def _deeper(inner: Mapping[str, tuple[str, ...]], key: str) -> dict[str, tuple[str, ...]]:

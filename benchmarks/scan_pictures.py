@@ -93,8 +93,8 @@ def _perimeter(points: Vertices) -> float:
 
 def _tiles(scenes: _Scenes, points: Vertices) -> list[Image.Image]:
     camera = _camera(scenes.scene, points)
-    drawn = [clay.draw(camera, (_TILE, _TILE)) for clay in (scenes.before, scenes.after)]
-    return [Image.fromarray(np.round(255 * tile).astype(np.uint8)) for tile in drawn]
+    images = [clay.draw(camera, (_TILE, _TILE)) for clay in (scenes.before, scenes.after)]
+    return [Image.fromarray(np.round(255 * tile).astype(np.uint8)) for tile in images]
 
 
 def _camera(scene: RayScene, points: Vertices) -> Camera:
@@ -110,20 +110,20 @@ def _camera(scene: RayScene, points: Vertices) -> Camera:
 
 
 def _caption(hole: dict[str, Any]) -> str:
-    said = f"{hole['id']}: {hole['edges']} edges, {hole['diameter']:.4g} wide, {hole['verdict']}"
+    text = f"{hole['id']}: {hole['edges']} edges, {hole['diameter']:.4g} wide, {hole['verdict']}"
     if hole["verdict"] in ("skipped", "refused"):
-        return f"{said}, {hole['code']}"
-    return f"{said}, confidence {hole['confidence']:.2f}"
+        return f"{text}, {hole['code']}"
+    return f"{text}, confidence {hole['confidence']:.2f}"
 
 
 def _compose(pairs: Sequence[tuple[str, list[Image.Image]]]) -> Image.Image:
     n_rows = -(-len(pairs) // _PAIRS_PER_ROW)
     width, height = 2 * _TILE + 3 * _GAP, _CAPTION + _TILE + _GAP
     sheet = Image.new("RGB", (_PAIRS_PER_ROW * width, n_rows * height), "white")
-    pen = ImageDraw.Draw(sheet)
+    canvas = ImageDraw.Draw(sheet)
     for k, (caption, tiles) in enumerate(pairs):
         top, left = (k // _PAIRS_PER_ROW) * height, (k % _PAIRS_PER_ROW) * width
-        pen.text((left + 4, top + 4), caption, font=ImageFont.load_default(13), fill="black")
+        canvas.text((left + 4, top + 4), caption, font=ImageFont.load_default(13), fill="black")
         for i, tile in enumerate(tiles):
             sheet.paste(tile, (left + i * (_TILE + _GAP), top + _CAPTION))
     return sheet

@@ -69,7 +69,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     progress, measured = Progress(len(runs)), []
     for run in runs:
         measured.append(measure(run))
-        progress.step(f"{run.name}: {measured[-1]['error'] or _said(measured[-1])}")
+        progress.step(f"{run.name}: {measured[-1]['error'] or _summary(measured[-1])}")
         if not measured[-1]["error"]:
             write_loops(run, measured[-1]["holes"])
             if not chosen.no_pictures:
@@ -103,12 +103,12 @@ def measure(run: Run) -> dict[str, Any]:
     run.repaired.parent.mkdir(parents=True, exist_ok=True)
     command = [sys.executable, "-m", "quadpatch", "fill", str(run.scan), "-o", str(run.repaired)]
     command += ["--report", str(run.report), "--model", run.model, "--quiet"]
-    said = run.report.with_suffix(".err")
-    with said.open("w") as errors:
+    error_log = run.report.with_suffix(".err")
+    with error_log.open("w") as errors:
         exit_code, cpu_s, peak_mb = _run(command, errors)
     facts: dict[str, Any] = {"scan": run.scan.stem, "model": run.model, "error": "", "cpu_s": cpu_s, "peak_mb": peak_mb}
     if exit_code:
-        return {**facts, "error": said.read_text().strip() or f"exit code {exit_code}"}
+        return {**facts, "error": error_log.read_text().strip() or f"exit code {exit_code}"}
     report = json.loads(run.report.read_text())
     faults = find_faults_in_files(run.scan, run.repaired)
     facts |= {"counts": report["counts"], "holes": report["holes"], "warnings": report["warnings"]}
@@ -120,8 +120,8 @@ def measure(run: Run) -> dict[str, Any]:
         "nonmanifold": faults.n_nonmanifold,
         "slivers": faults.n_slivers,
     }
-    named = ("folds", "crossings")
-    facts["named"] = {name: int(sum(hole["measures"].get(name, 0) for hole in report["holes"])) for name in named}
+    measures = ("folds", "crossings")
+    facts["named"] = {name: int(sum(hole["measures"].get(name, 0) for hole in report["holes"])) for name in measures}
     return facts
 
 
@@ -146,13 +146,22 @@ def write_loops(run: Run, holes: Sequence[dict[str, Any]]) -> Path:
         rows = csv.writer(file, delimiter="\t")
         rows.writerow(["id", "edges", "diameter", "verdict", "code", "reason", "confidence", "folds", "crossings"])
         for hole in holes:
-            sure = "" if hole["confidence"] is None else f"{hole['confidence']:.2f}"
-            what = [hole["id"], hole["edges"], f"{hole['diameter']:.4g}", hole["verdict"], hole["code"], hole["reason"]]
-            rows.writerow([*what, sure, *(int(hole["measures"].get(name, 0)) for name in ("folds", "crossings"))])
+            confidence = "" if hole["confidence"] is None else f"{hole['confidence']:.2f}"
+            facts = [
+                hole["id"],
+                hole["edges"],
+                f"{hole['diameter']:.4g}",
+                hole["verdict"],
+                hole["code"],
+                hole["reason"],
+            ]
+            rows.writerow(
+                [*facts, confidence, *(int(hole["measures"].get(name, 0)) for name in ("folds", "crossings"))]
+            )
     return path
 
 
-def _said(facts: dict[str, Any]) -> str:
+def _summary(facts: dict[str, Any]) -> str:
     found = facts["found"]
     return f"{found['folds']} folds, {found['crossings']} crossing triangles in {facts['cpu_s']:.1f} CPU s"
 
@@ -164,8 +173,8 @@ def _faults(measured: Sequence[dict[str, Any]]) -> Table:
         if facts["error"]:
             rows.append([facts["scan"], facts["model"], "–", facts["error"], "–", "–", "–", *cost])
             continue
-        counts, found, named = facts["counts"], facts["found"], facts["named"]
-        faults = [f"{found[name]} ({named[name]} named)" for name in ("folds", "crossings")]
+        counts, faults_found, reported = facts["counts"], facts["found"], facts["named"]
+        faults = [f"{faults_found[name]} ({reported[name]} named)" for name in ("folds", "crossings")]
         closed = [str(counts[name]) for name in ("found", "filled", "filled_smooth")]
         rows.append([facts["scan"], facts["model"], *closed, *faults, *cost])
     return Table("raw scans: faults of the repaired files, and those that the report names", _COLUMNS, rows)

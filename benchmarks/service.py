@@ -146,7 +146,7 @@ def streams_table(service: RunningService, arguments: argparse.Namespace) -> tup
 
 
 def polling_table(service: RunningService, arguments: argparse.Namespace) -> tuple[Table, bool]:
-    """Measure every load; return the table, and whether those with a pause of a second keep the promise."""
+    """Measure every load; return the table, and whether those with a pause of a second stay within the limit."""
     table = Table(title=f"{arguments.clients} clients poll {arguments.jobs} jobs, {arguments.seconds:g} s each")
     heads = (
         "each client polls",
@@ -191,7 +191,7 @@ def upload_table(service: RunningService, mib: int) -> tuple[Table, bool]:
 
 
 def main() -> int:
-    """Read the command line and print the tables; return 1 where a promise is broken."""
+    """Read the command line and print the tables; return 1 where a limit is exceeded."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0] if __doc__ else None)
     parser.add_argument("what", nargs="*", help="polling, streams or upload; default: all")
     parser.add_argument("--clients", type=int, default=200)

@@ -198,16 +198,18 @@ def _runs_through_another(mesh: TriangleMesh, is_new: BoolArray) -> BoolArray:
     Where a corner lies on an edge that does not end there, MeshLab sees a crossing or none, as rounding has it; so what
     it finds is looked at again.
     """
-    found = np.zeros(len(mesh.triangles), dtype=bool)
+    is_crossing = np.zeros(len(mesh.triangles), dtype=bool)
     corners = mesh.vertices[mesh.triangles]
     low, high = corners.min(axis=1), corners.max(axis=1)
     has_area = ~_is_sliver(mesh)
     # Loop over what MeshLab found, which is little.
     for i in np.flatnonzero(_crosses(mesh) & is_new & has_area).tolist():
         n_common = np.isin(mesh.triangles, mesh.triangles[i]).sum(axis=1)
-        near = ((low <= high[i]) & (high >= low[i])).all(axis=1) & has_area & (n_common < 2)
-        found[i] = any(_common_length(mesh, i, j) > _SAME_POINT * _size(mesh) for j in np.flatnonzero(near).tolist())
-    return found
+        is_near = ((low <= high[i]) & (high >= low[i])).all(axis=1) & has_area & (n_common < 2)
+        is_crossing[i] = any(
+            _common_length(mesh, i, j) > _SAME_POINT * _size(mesh) for j in np.flatnonzero(is_near).tolist()
+        )
+    return is_crossing
 
 
 def _common_length(mesh: TriangleMesh, one: int, other: int) -> float:
@@ -220,9 +222,13 @@ def _common_length(mesh: TriangleMesh, one: int, other: int) -> float:
         corners = mesh.vertices[mesh.triangles[edges]]
         height = (corners - a) @ normal / np.linalg.norm(normal)
         for k in range(3):
-            here, there = float(height[k - 1]), float(height[k])
-            if here * there < 0 and min(abs(here), abs(there)) > _SAME_PLANE * _size(mesh):
-                point = corners[k - 1] + (corners[k] - corners[k - 1]) * (here / (here - there))
+            height_before, height_after = float(height[k - 1]), float(height[k])
+            if height_before * height_after < 0 and min(abs(height_before), abs(height_after)) > _SAME_PLANE * _size(
+                mesh
+            ):
+                point = corners[k - 1] + (corners[k] - corners[k - 1]) * (
+                    height_before / (height_before - height_after)
+                )
                 if _barycentric(point[None], a, b, c).min() > -_SAME_PLANE:
                     points.append(point)
     return max((float(np.linalg.norm(p - q)) for p in points for q in points), default=0.0)
@@ -244,23 +250,23 @@ def _size(mesh: TriangleMesh) -> float:
 
 def _crosses(mesh: TriangleMesh) -> BoolArray:
     """Whether each triangle (m,) runs through another one, as MeshLab finds it."""
-    found = np.zeros(len(mesh.triangles), dtype=bool)
+    is_crossing = np.zeros(len(mesh.triangles), dtype=bool)
     proper = np.flatnonzero(_is_proper(mesh.triangles))
     if not len(proper):
-        return found
+        return is_crossing
     meshes = pymeshlab.MeshSet(verbose=False)
     meshes.add_mesh(pymeshlab.Mesh(_centred(mesh.vertices), mesh.triangles[proper].astype(np.int32)))
     meshes.compute_selection_by_self_intersections_per_face()
-    found[proper] = meshes.current_mesh().face_selection_array().astype(bool)
-    return found
+    is_crossing[proper] = meshes.current_mesh().face_selection_array().astype(bool)
+    return is_crossing
 
 
 def _lies_on_another(mesh: TriangleMesh, is_new: BoolArray) -> BoolArray:
     """Whether each triangle (m,) is new and lies on one that it has no edge in common with, or that one on it."""
-    found = np.zeros(len(mesh.triangles), dtype=bool)
+    is_overlapping = np.zeros(len(mesh.triangles), dtype=bool)
     proper = np.flatnonzero(_is_proper(mesh.triangles))
     if not is_new[proper].any():
-        return found
+        return is_overlapping
     centres = mesh.vertices[mesh.triangles[proper]].mean(axis=1)
     # Triangles of one size at a time, so that a few large ones do not make candidates of all.
     reach = np.linalg.norm(mesh.vertices[mesh.triangles[proper]] - centres[:, None], axis=2).max(axis=1, initial=0)
@@ -274,8 +280,8 @@ def _lies_on_another(mesh: TriangleMesh, is_new: BoolArray) -> BoolArray:
         is_asked = (is_new[lower] | is_new[upper]) & (lower != upper)
         lower, upper = lower[is_asked], upper[is_asked]
         lies = _has_on_it(mesh, upper, lower)
-        found[lower[lies]] = found[upper[lies]] = True
-    return found & is_new
+        is_overlapping[lower[lies]] = is_overlapping[upper[lies]] = True
+    return is_overlapping & is_new
 
 
 def _has_on_it(mesh: TriangleMesh, upper: IntArray, lower: IntArray) -> BoolArray:

@@ -57,13 +57,13 @@ def lock_text(report: dict[str, Any]) -> str:
 
 def read_lock(extra: str) -> dict[str, tuple[str, str]]:
     """Return version and sha256 of each distribution of a lock."""
-    found = {}
+    pins = {}
     for line in (LOCKS / f"{extra}.txt").read_text("utf-8").splitlines():
         if line and not line.startswith("#"):
             pin, sha256 = line.split(" --hash=sha256:")
             name, version = pin.split("==")
-            found[name] = (version, sha256)
-    return found
+            pins[name] = (version, sha256)
+    return pins
 
 
 def main() -> int:
@@ -81,21 +81,21 @@ def main() -> int:
 
 
 def _check_machine() -> None:
-    here = (platform.system(), platform.machine(), sys.version_info[:2])
-    if here != ("Linux", MACHINE, PYTHON):
-        raise LockError(f"locks hold for Linux {MACHINE} and Python {PYTHON}; this is {here}")
+    machine = (platform.system(), platform.machine(), sys.version_info[:2])
+    if machine != ("Linux", MACHINE, PYTHON):
+        raise LockError(f"locks hold for Linux {MACHINE} and Python {PYTHON}; this is {machine}")
 
 
 def _resolve(extra: str) -> dict[str, Any]:
-    """Let pip say what it would install into an empty environment."""
+    """Return pip's report of what it would install into an empty environment."""
     with tempfile.TemporaryDirectory() as folder:
-        wanted, report = Path(folder) / "wanted.txt", Path(folder) / "report.json"
-        wanted.write_text("\n".join(requirements(extra)), "utf-8")
+        requirements_file, report = Path(folder) / "wanted.txt", Path(folder) / "report.json"
+        requirements_file.write_text("\n".join(requirements(extra)), "utf-8")
         pip = [sys.executable, "-m", "pip", "install", "--quiet", "--dry-run", "--ignore-installed"]
         options = ["--only-binary", ":all:", "--constraint", str(ROOT / "constraints.txt")]
-        subprocess.run([*pip, *options, "--report", str(report), "--requirement", str(wanted)], check=True)
-        found: dict[str, Any] = json.loads(report.read_text("utf-8"))
-        return found
+        subprocess.run([*pip, *options, "--report", str(report), "--requirement", str(requirements_file)], check=True)
+        resolved: dict[str, Any] = json.loads(report.read_text("utf-8"))
+        return resolved
 
 
 if __name__ == "__main__":

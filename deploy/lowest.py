@@ -24,13 +24,13 @@ def lowest_versions() -> dict[str, str]:
     """
     project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
     extras = [texts for extra, texts in project["optional-dependencies"].items() if extra != _NOT_RUN]
-    found = {}
+    versions = {}
     for text in [*project["dependencies"], *(text for texts in extras for text in texts)]:
         bound = _BOUND.match(text)
         if bound is None:
             raise ValueError(f"{text} has no lower bound")
-        found[bound["name"]] = bound["version"]
-    return found
+        versions[bound["name"]] = bound["version"]
+    return versions
 
 
 if __name__ == "__main__":

@@ -103,14 +103,14 @@ def _dependencies(project: str, locked: dict[str, tuple[str, str]], extras: list
         *(line for extra in extras for line in document["optional-dependencies"][extra]),
     ]
     extras_of: dict[str, set[str]] = {canonicalize_name(r.name): r.extras for r in map(Requirement, direct)}
-    yield {"ref": project, "dependsOn": _known(direct, references, set())}
+    yield {"ref": project, "dependsOn": _locked_references(direct, references, set())}
     for name in sorted(references):
-        found = _installed(name)
-        needed = found.requires or [] if found else []
-        yield {"ref": references[name], "dependsOn": _known(needed, references, extras_of.get(name, set()))}
+        installed = _installed(name)
+        needed = installed.requires or [] if installed else []
+        yield {"ref": references[name], "dependsOn": _locked_references(needed, references, extras_of.get(name, set()))}
 
 
-def _known(requirements: Iterable[str], references: dict[str, str], extras: set[str]) -> list[str]:
+def _locked_references(requirements: Iterable[str], references: dict[str, str], extras: set[str]) -> list[str]:
     """Return what applies to the image and is in its locks."""
     names = {
         canonicalize_name(requirement.name)
@@ -122,14 +122,14 @@ def _known(requirements: Iterable[str], references: dict[str, str], extras: set[
 
 def _licences(name: str, version: str) -> list[dict[str, Any]]:
     """Return what an installed distribution of that version states: an SPDX expression, or a name."""
-    found = _installed(name)
-    if found is None or found.version.split("+")[0] != version:
+    installed = _installed(name)
+    if installed is None or installed.version.split("+")[0] != version:
         return []
-    stated = found.metadata.json
-    expression, text = stated.get("license_expression"), stated.get("license")
+    metadata = installed.metadata.json
+    expression, text = metadata.get("license_expression"), metadata.get("license")
     if expression:
         return [{"expression": expression}]
-    classifiers = [line.rsplit(" :: ", 1)[-1] for line in stated.get("classifier", []) if "License" in line]
+    classifiers = [line.rsplit(" :: ", 1)[-1] for line in metadata.get("classifier", []) if "License" in line]
     # Some put the whole text of their licence here.
     names = classifiers or ([text] if isinstance(text, str) and len(text) < 100 and "\n" not in text else [])
     return [{"license": {"name": name}} for name in names]

@@ -180,12 +180,12 @@ class EventStreams:
             # The streams stay open: their clients get no events for a while, and lose none.
             _logger.warning("event streams wait for the database: %r", error.__cause__ or error)
             return
-        frames = {job_id: [(event, _frame(event)) for event in found.events] for job_id, found in news.items()}
+        frames = {job_id: [(event, _frame(event)) for event in job_news.events] for job_id, job_news in news.items()}
         for stream in streams:
-            found = news.get(stream.job_id)
+            job_news = news.get(stream.job_id)
             for event, frame in frames.get(stream.job_id, ()):
                 stream.hand(event, frame)
-            if found is None or found.is_all:
+            if job_news is None or job_news.is_all:
                 stream.end()
 
     def _read(self, watched: Mapping[str, int]) -> dict[str, NewEvents]:

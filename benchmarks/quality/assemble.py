@@ -24,7 +24,7 @@ _IMAGE = re.compile(r"(!\[[^\]]*\]\()([^)/]+)(\))")
 
 
 def main() -> None:
-    """Fill the document; say which places stayed as they were."""
+    """Fill the document; print which places stayed as they were."""
     parser = argparse.ArgumentParser(
         prog="python -m benchmarks.quality.assemble",
         description=__doc__,

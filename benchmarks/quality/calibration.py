@@ -14,7 +14,7 @@ LEAST_CONFIDENT = 0.1
 
 @dataclass(frozen=True)
 class Calibration:
-    """How well expected errors and confidences tell good fills from bad ones.
+    """How well expected errors and confidences rank fills.
 
     Attributes
     ----------
@@ -48,14 +48,14 @@ def calibrate(holes: Sequence[dict[str, Any]]) -> Calibration | None:
         None for fewer than ten holes with an expected error (the paper's recipe gives none), or where these are all
         the same: there is nothing to rank.
     """
-    judged = [hole for hole in holes if hole["expected_error"] is not None]
+    rated = [hole for hole in holes if hole["expected_error"] is not None]
     true, expected, confidence = (
-        np.array([float(hole[name]) for hole in judged]) for name in ("true_error", "expected_error", "confidence")
+        np.array([float(hole[name]) for hole in rated]) for name in ("true_error", "expected_error", "confidence")
     )
-    if len(judged) < round(1 / LEAST_CONFIDENT) or not np.ptp(expected) or not np.ptp(true):
+    if len(rated) < round(1 / LEAST_CONFIDENT) or not np.ptp(expected) or not np.ptp(true):
         return None
     rank = float(spearmanr(expected, true).statistic)
-    return Calibration(len(judged), rank, _tenth_ratio(true, confidence), float(true.mean() / expected.mean()))
+    return Calibration(len(rated), rank, _tenth_ratio(true, confidence), float(true.mean() / expected.mean()))
 
 
 def _tenth_ratio(true: FloatArray, confidence: FloatArray) -> float:
@@ -66,5 +66,5 @@ def _tenth_ratio(true: FloatArray, confidence: FloatArray) -> float:
     for rank in np.unique(lowest):
         tied = lowest == rank
         share[tied] = np.clip((tenth - rank) / tied.sum(), 0.0, 1.0)
-    worst, rest = (float((true * weight).sum() / weight.sum()) for weight in (share, 1 - share))
-    return worst / rest
+    least_confident, others = (float((true * weight).sum() / weight.sum()) for weight in (share, 1 - share))
+    return least_confident / others

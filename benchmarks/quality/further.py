@@ -78,8 +78,8 @@ def collect(folder: Path, sources: Sequence[Path]) -> list[Further]:
             missing.append(mesh)
         elif suffix in READERS:
             surface = READERS[suffix](data)
-            read = trimesh.Trimesh(surface.vertices, surface.triangles, process=False)
-            read.export(folder / f"{mesh.name}.ply")
+            mesh_read = trimesh.Trimesh(surface.vertices, surface.triangles, process=False)
+            mesh_read.export(folder / f"{mesh.name}.ply")
         else:
             (folder / f"{mesh.name}{suffix}").write_bytes(data)
     return missing
@@ -88,8 +88,8 @@ def collect(folder: Path, sources: Sequence[Path]) -> list[Further]:
 def look_up(source: Path, path: str) -> bytes | None:
     """Read a file by its path inside a wheel, or by the end of its path inside a folder; None if it is not there."""
     if source.is_dir():
-        found = sorted(source.rglob(path))
-        return found[0].read_bytes() if found else None
+        paths = sorted(source.rglob(path))
+        return paths[0].read_bytes() if paths else None
     with zipfile.ZipFile(source) as wheel:
         return wheel.read(path) if path in wheel.namelist() else None
 

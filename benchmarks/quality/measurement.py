@@ -102,12 +102,12 @@ def _per_hole(bench: Bench, case: Case, repaired: Path, report: dict[str, Any]) 
     points, hole_id = new_vertices(repaired)
     distance = distance_to_mesh(points, bench.read(case.shape.truth))
     punched = cKDTree(np.array([hole["centre"] for hole in case.holes()]))
-    found = []
+    entries = []
     for hole in report["holes"]:
-        mine = hole_id == hole["id"]
-        centre = points[mine].mean(axis=0) if mine.any() else np.full(3, np.inf)
+        is_of_hole = hole_id == hole["id"]
+        centre = points[is_of_hole].mean(axis=0) if is_of_hole.any() else np.full(3, np.inf)
         # Holes that the mesh had before the punch have no known truth.
-        if mine.any() and punched.query(centre)[0] < float(case.radius):
+        if is_of_hole.any() and punched.query(centre)[0] < float(case.radius):
             facts = {key: hole[key] for key in ("id", "verdict", "code", "confidence", "expected_error")}
-            found.append({**facts, "true_error": float(distance[mine].mean()), "centre": centre.tolist()})
-    return found
+            entries.append({**facts, "true_error": float(distance[is_of_hole].mean()), "centre": centre.tolist()})
+    return entries

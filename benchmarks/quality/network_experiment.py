@@ -35,42 +35,42 @@ class Networks:
     paper : Paper
         For the dictionaries that networks are compared with.
     trainer : NetworkTrainer
-    every : sequence of Shape
+    all_shapes : sequence of Shape
         What global networks are trained on.
     architectures : sequence of Architecture
     """
 
     paper: Paper
     trainer: NetworkTrainer
-    every: Sequence[Shape]
+    all_shapes: Sequence[Shape]
     architectures: Sequence[Architecture]
 
     def find(self, protocol: Protocol, case: Case) -> Finding:
         """Train, repair and measure, or take what was kept."""
-        paper, found = self.paper, Finding(case)
+        paper, finding = self.paper, Finding(case)
         trained = self.trained(protocol, case)
         for architecture in self.architectures:
             name, network = architecture.name, trained.get(architecture.name)
-            found.errors[name] = paper.error(case, network.method if network else None)
+            finding.errors[name] = paper.error(case, network.method if network else None)
             if network is not None:
                 measured = measure(paper.bench, case, network.method, paper.results)
                 use = {"complete_s": measured["stages"]["inpaint"], "n_completed": measured["n_patches"]}
-                found.networks[name] = {**network.facts, **use, "resolution": architecture.resolution}
-        found.errors[DICTIONARY] = paper.error(case, self._dictionary(protocol, case))
+                finding.networks[name] = {**network.facts, **use, "resolution": architecture.resolution}
+        finding.errors[DICTIONARY] = paper.error(case, self._dictionary(protocol, case))
         for peer in (MESHLAB, FAIR):
-            found.errors[peer] = float(case.peers[peer]["error"]) if peer in case.peers else None
-        return found
+            finding.errors[peer] = float(case.peers[peer]["error"]) if peer in case.peers else None
+        return finding
 
     def trained(self, protocol: Protocol, case: Case) -> dict[str, TrainedNetwork]:
         """Train the networks for a case, by name; those without enough patches are left out."""
         name, shapes = self._sources(protocol, case.shape)
         scale = self.scale(case)
-        found = {a.name: self.trainer.train(name, shapes, scale, a) for a in self.architectures}
-        return {name: network for name, network in found.items() if network is not None}
+        networks = {a.name: self.trainer.train(name, shapes, scale, a) for a in self.architectures}
+        return {name: network for name, network in networks.items() if network is not None}
 
     def scale(self, case: Case) -> PatchScale:
         """Patch length and overlap for the holes of a case, the same for all meshes."""
-        return self.paper.learner.scale(self.every, case.radius)
+        return self.paper.learner.scale(self.all_shapes, case.radius)
 
     def tiles(self, protocol: Protocol, case: Case) -> list[dict[str, Tile]]:
         """Complete some patches of the undamaged mesh by every network, for a picture."""
@@ -95,8 +95,8 @@ class Networks:
         if protocol == "local":
             return f"local-{shape.name}", [shape]
         if protocol == "global":
-            return "global", list(self.every)
-        return f"without-{shape.name}", [other for other in self.every if other.name != shape.name]
+            return "global", list(self.all_shapes)
+        return f"without-{shape.name}", [other for other in self.all_shapes if other.name != shape.name]
 
 
 def find_architectures(names: Sequence[str]) -> list[Architecture]:
@@ -109,11 +109,11 @@ def find_architectures(names: Sequence[str]) -> list[Architecture]:
     BenchError
         If one is none of the paper's.
     """
-    found = [find_architecture(name) for name in dict.fromkeys(names)]
-    for architecture in found:
+    architectures = [find_architecture(name) for name in dict.fromkeys(names)]
+    for architecture in architectures:
         if architecture.recipe != PAPER:
             raise BenchError(f"{architecture.name} is none of the paper's networks")
-    return found
+    return architectures
 
 
 def networks_experiment(
@@ -138,11 +138,11 @@ def networks_experiment(
     tables, plots, data = [], {}, []
     for protocol in options.protocols:
         for radius in dict.fromkeys(case.radius for case in cases):
-            found = [networks.find(protocol, case) for case in cases if case.radius == radius]
-            tables += network_tables(protocol, found)
+            findings = [networks.find(protocol, case) for case in cases if case.radius == radius]
+            tables += network_tables(protocol, findings)
             if len(networks.architectures) > 1:
-                plots[f"parameters_{protocol}_{radius}"] = _plot(protocol, found)
-            for f in found:
+                plots[f"parameters_{protocol}_{radius}"] = _plot(protocol, findings)
+            for f in findings:
                 row = {"mesh": f.case.shape.name, "radius": radius, "protocol": protocol}
                 data.append({**row, "errors": f.errors, "networks": f.networks})
         if is_drawing:
@@ -151,14 +151,14 @@ def networks_experiment(
     return Outcome("networks", tables, {"rows": data}, plots)
 
 
-def _plot(protocol: Protocol, found: Sequence[Finding]) -> Figure:
+def _plot(protocol: Protocol, findings: Sequence[Finding]) -> Figure:
     """Draw the networks' errors against their parameters."""
     points = {}
-    for name in found[0].networks:
-        mean = mean_to_fair(found, name)
+    for name in findings[0].networks:
+        mean = mean_to_fair(findings, name)
         if mean is not None:
-            points[name] = float(found[0].networks[name]["n_parameters"]), mean
-    lines = {name: mean for name in (DICTIONARY, MESHLAB) if (mean := mean_to_fair(found, name)) is not None}
-    meshes = ", ".join(f.case.shape.name for f in found)
-    title = f"{protocol}, hole radius {found[0].case.radius}: {meshes}"
+            points[name] = float(findings[0].networks[name]["n_parameters"]), mean
+    lines = {name: mean for name in (DICTIONARY, MESHLAB) if (mean := mean_to_fair(findings, name)) is not None}
+    meshes = ", ".join(f.case.shape.name for f in findings)
+    title = f"{protocol}, hole radius {findings[0].case.radius}: {meshes}"
     return labelled_plot(title, ("parameters", f"error / {FAIR}, geometric mean"), points, lines)

@@ -12,8 +12,8 @@ from benchmarks.quality.paper_experiments import FAIR, MESHLAB
 from benchmarks.quality.tables import NOTHING, Table, figure, geometric_mean, ratio, scientific
 
 DICTIONARY = "dictionary"
-# What a table must say of where the networks have their knowledge from.
-TOLD: dict[Protocol, str] = {
+# What a table must say of what the networks were trained on.
+PROTOCOL_NOTES: dict[Protocol, str] = {
     "local": "local (training and test share the mesh)",
     "global": "global (all meshes, that of the test among them)",
     "leave-one-out": "leave-one-out (all meshes but that of the test)",
@@ -43,39 +43,39 @@ class Finding:
         return ratio(self.errors[name], self.errors[FAIR])
 
 
-def network_tables(protocol: Protocol, found: Sequence[Finding]) -> list[Table]:
+def network_tables(protocol: Protocol, findings: Sequence[Finding]) -> list[Table]:
     """Tabulate what was found for several meshes at one radius."""
-    how = f"hole radius {found[0].case.radius}, {TOLD[protocol]}"
-    return [_ratios(how, found), _errors(how, found), _costs(how, found)]
+    subtitle = f"hole radius {findings[0].case.radius}, {PROTOCOL_NOTES[protocol]}"
+    return [_ratios(subtitle, findings), _errors(subtitle, findings), _costs(subtitle, findings)]
 
 
-def mean_to_fair(found: Sequence[Finding], name: str) -> float | None:
+def mean_to_fair(findings: Sequence[Finding], name: str) -> float | None:
     """Geometric mean over the meshes; None with a gap."""
-    return geometric_mean(finding.to_fair(name) for finding in found)
+    return geometric_mean(finding.to_fair(name) for finding in findings)
 
 
-def _ratios(how: str, found: Sequence[Finding]) -> Table:
-    names = [name for name in found[0].errors if name != FAIR]
-    body = [[f.case.shape.name, *(figure(f.to_fair(name)) for name in names)] for f in found]
-    means = ["geometric mean", *(figure(mean_to_fair(found, name)) for name in names)]
-    to_dictionary = [geometric_mean(ratio(f.errors[name], f.errors[DICTIONARY]) for f in found) for name in names]
+def _ratios(subtitle: str, findings: Sequence[Finding]) -> Table:
+    names = [name for name in findings[0].errors if name != FAIR]
+    body = [[f.case.shape.name, *(figure(f.to_fair(name)) for name in names)] for f in findings]
+    means = ["geometric mean", *(figure(mean_to_fair(findings, name)) for name in names)]
+    to_dictionary = [geometric_mean(ratio(f.errors[name], f.errors[DICTIONARY]) for f in findings) for name in names]
     other = [f"to the {DICTIONARY}", *(figure(value) for value in to_dictionary)]
-    return Table(f"error / {FAIR}, {how}", ["mesh", *names], [*body, means, other], 2)
+    return Table(f"error / {FAIR}, {subtitle}", ["mesh", *names], [*body, means, other], 2)
 
 
-def _errors(how: str, found: Sequence[Finding]) -> Table:
-    names = list(found[0].errors)
-    body = [[f.case.shape.name, *(scientific(f.errors[name]) for name in names)] for f in found]
-    return Table(f"error, millionths of the object's size, {how}", ["mesh", *names], body)
+def _errors(subtitle: str, findings: Sequence[Finding]) -> Table:
+    names = list(findings[0].errors)
+    body = [[f.case.shape.name, *(scientific(f.errors[name]) for name in names)] for f in findings]
+    return Table(f"error, millionths of the object's size, {subtitle}", ["mesh", *names], body)
 
 
-def _costs(how: str, found: Sequence[Finding]) -> Table:
+def _costs(subtitle: str, findings: Sequence[Finding]) -> Table:
     """Means over the meshes: what each network is, what its training took and what it takes to use."""
-    names = [name for name in found[0].errors if name not in (DICTIONARY, MESHLAB, FAIR)]
+    names = [name for name in findings[0].errors if name not in (DICTIONARY, MESHLAB, FAIR)]
     columns = ["network", "bins", "parameters", "patches", "steps", "held-out loss"]
     columns += ["training s", "of them CPU s", "completion s", "ms a patch"]
-    rows = [_cost(name, [f.networks[name] for f in found if name in f.networks]) for name in names]
-    return Table(f"networks (for measuring only), means over the meshes, {how}", columns, rows)
+    rows = [_cost(name, [f.networks[name] for f in findings if name in f.networks]) for name in names]
+    return Table(f"networks (for measuring only), means over the meshes, {subtitle}", columns, rows)
 
 
 def _cost(name: str, facts: Sequence[dict[str, Any]]) -> list[str]:

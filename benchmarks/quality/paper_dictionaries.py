@@ -74,8 +74,8 @@ class Learner:
                 raise BenchError(f"{method.model} is no dictionary")
             heights, known = self._patches(shape, scale)
             # More patches than this don't change the mean.
-            some = slice(None, None, -(-len(heights) // MOST_CODED) or 1)
-            return {"error": _coding_error(heights[some], known[some], dictionary)}
+            sample = slice(None, None, -(-len(heights) // MOST_CODED) or 1)
+            return {"error": _coding_error(heights[sample], known[sample], dictionary)}
 
         return float(self.results.get(CODINGS, key, compute)["error"])
 
@@ -83,11 +83,11 @@ class Learner:
         label = f"paper-{name}_{n_atoms}_{scale.length:.4g}"
         sources = {shape.name: shape.sha256 for shape in shapes}
         key: Key = {"name": label, "sources_sha256": json.dumps(sources), "seed": SEED}
-        found = self.results.get(MODELS, key, lambda: self._learn(label, key, shapes, (scale, n_atoms)))
-        return Method(label, str(self.folder / found["file"]), _options(scale)) if found["file"] else None
+        model = self.results.get(MODELS, key, lambda: self._learn(label, key, shapes, (scale, n_atoms)))
+        return Method(label, str(self.folder / model["file"]), _options(scale)) if model["file"] else None
 
-    def _learn(self, label: str, key: Key, shapes: Sequence[Shape], how: tuple[PatchScale, int]) -> dict[str, Any]:
-        scale, n_atoms = how
+    def _learn(self, label: str, key: Key, shapes: Sequence[Shape], size: tuple[PatchScale, int]) -> dict[str, Any]:
+        scale, n_atoms = size
         cut = [self._patches(shape, scale) for shape in shapes]
         learned = learn_heights(
             np.concatenate([heights for heights, _ in cut]),
@@ -106,19 +106,21 @@ class Learner:
 
     def _patches(self, shape: Shape, scale: PatchScale) -> tuple[FloatArray, BoolArray]:
         """Heights (n, N, N) and known bins of a whole mesh; those of one scale at a time are kept in memory."""
-        wanted = (shape.sha256, scale)
-        if wanted not in self._cut:
+        cache_key = (shape.sha256, scale)
+        if cache_key not in self._cut:
             self._cut = {key: cut for key, cut in self._cut.items() if key[1] == scale}
             patches = cut_heights(self.bench.read(shape.truth), scale)
-            self._cut[wanted] = patches.heights, patches.known
-        return self._cut[wanted]
+            self._cut[cache_key] = patches.heights, patches.known
+        return self._cut[cache_key]
 
 
 def _coding_error(heights: FloatArray, known: BoolArray, dictionary: Dictionary) -> float:
     """Mean absolute difference between known heights and what their codes make of them."""
-    signals, taken = mean_free(heights, known)
+    signals, centred = mean_free(heights, known)
     flat = known.reshape(signals.shape)
-    coded = masked_omp(signals, flat, dictionary.atoms, dictionary.n_nonzero) @ dictionary.atoms.T + taken.mean[:, None]
+    coded = (
+        masked_omp(signals, flat, dictionary.atoms, dictionary.n_nonzero) @ dictionary.atoms.T + centred.mean[:, None]
+    )
     return float(np.abs(coded - heights.reshape(signals.shape))[flat].mean())
 
 

@@ -54,14 +54,14 @@ class Paper:
         if method is None:
             self.progress.step(f"{case.shape.name} {case.radius}: too few patches to learn from")
             return None
-        found = float(measure(self.bench, case, method, self.results)["error"])
-        to_fair = figure(ratio(found, case.peers.get(FAIR, {}).get("error")))
+        error = float(measure(self.bench, case, method, self.results)["error"])
+        to_fair = figure(ratio(error, case.peers.get(FAIR, {}).get("error")))
         self.progress.step(f"{case.shape.name} {case.radius} {method.name}: {to_fair} of {FAIR}")
-        return found
+        return error
 
 
 def dictionaries_experiment(
-    paper: Paper, cases: Sequence[Case], every: Sequence[Shape], ours: Sequence[Method]
+    paper: Paper, cases: Sequence[Case], every: Sequence[Shape], own_methods: Sequence[Method]
 ) -> Outcome:
     """Compare local, global, leave-one-out and self-similar dictionaries, and our methods with the default recipe.
 
@@ -71,13 +71,13 @@ def dictionaries_experiment(
     cases : sequence of Case
     every : sequence of Shape
         What the global dictionaries are learned from.
-    ours : sequence of Method
+    own_methods : sequence of Method
     """
     tables, plots, data = [], {}, []
     for radius in dict.fromkeys(case.radius for case in cases):
         of_radius = [case for case in cases if case.radius == radius]
         scale = paper.learner.scale(every, radius)
-        rows = {case.shape.name: _row(paper, case, every, ours) for case in of_radius}
+        rows = {case.shape.name: _row(paper, case, every, own_methods) for case in of_radius}
         fair = {case.shape.name: case.peers[FAIR]["error"] for case in of_radius}
         names = [*next(iter(rows.values())), MESHLAB]
         for case in of_radius:
@@ -92,7 +92,7 @@ def dictionaries_experiment(
     return Outcome("dictionaries", tables, {"rows": data}, plots)
 
 
-def _row(paper: Paper, case: Case, every: Sequence[Shape], ours: Sequence[Method]) -> dict[str, float | None]:
+def _row(paper: Paper, case: Case, every: Sequence[Shape], own_methods: Sequence[Method]) -> dict[str, float | None]:
     learner, shape = paper.learner, case.shape
     scale = learner.scale(every, case.radius)
     others = [other for other in every if other.name != shape.name]
@@ -101,7 +101,7 @@ def _row(paper: Paper, case: Case, every: Sequence[Shape], ours: Sequence[Method
         "paper global": learner.many("global", every, scale),
         "paper leave-one-out": learner.many(f"without-{shape.name}", others, scale),
         "paper self-similar": learner.self_similar(scale),
-        **{f"ours {method.name}": method for method in ours},
+        **{f"ours {method.name}": method for method in own_methods},
     }
     return {name: paper.error(case, method) for name, method in methods.items()}
 
@@ -129,14 +129,14 @@ def atoms_experiment(paper: Paper, cases: Sequence[Case], every: Sequence[Shape]
     return Outcome("atoms", tables, {"atoms": list(ATOMS), "filling": filled, "coding": coded}, plots)
 
 
-def patch_length_experiment(paper: Paper, cases: Sequence[Case], ours: Sequence[Method]) -> Outcome:
+def patch_length_experiment(paper: Paper, cases: Sequence[Case], own_methods: Sequence[Method]) -> Outcome:
     """Measure against the ratio of hole to patch: local dictionaries of the paper, our methods with set patches."""
     by_name: dict[str, Series] = {}
     for case in cases:
         for share in HOLE_TO_PATCH:
             scale = paper.learner.scale([case.shape], case.radius, share)
             methods: dict[str, Method | None] = {"paper local": paper.learner.local(case.shape, scale)}
-            for method in ours:
+            for method in own_methods:
                 options = {"patches": {"length": scale.length}}
                 methods[f"ours {method.name}"] = Method(f"{method.name}_{scale.length:.4g}", method.model, options)
             for name, chosen in methods.items():

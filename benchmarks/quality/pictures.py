@@ -88,24 +88,24 @@ def _camera(stage: _Stage, centre: Vertices, radius: float) -> Camera:
 
 def _caption(name: str, case: Case, method: Method, hole: dict[str, Any]) -> str:
     share = 100 * hole["true_error"] / float(case.radius)
-    sure = "" if hole["confidence"] is None else f", confidence {hole['confidence']:.2f}"
+    confidence = "" if hole["confidence"] is None else f", confidence {hole['confidence']:.2f}"
     return (
         f"{case.shape.name}, radius {case.radius}, {method.name}: {name} hole ({hole['id']}), error {share:.1f} % of "
-        f"the radius, {hole['verdict']}{sure}"
+        f"the radius, {hole['verdict']}{confidence}"
     )
 
 
 def _compose(rows: list[tuple[str, list[FloatArray]]]) -> Image.Image:
     width = len(_COLUMNS) * (_TILE + _GAP) - _GAP
     sheet = Image.new("RGB", (width, len(rows) * (2 * _CAPTION + _TILE + _GAP)), "white")
-    pen = ImageDraw.Draw(sheet)
+    canvas = ImageDraw.Draw(sheet)
     top = 0
     for caption, tiles in rows:
-        pen.text((4, top + 5), caption, font=ImageFont.load_default(14), fill="black")
+        canvas.text((4, top + 5), caption, font=ImageFont.load_default(14), fill="black")
         top += _CAPTION
         for k, (tile, name) in enumerate(zip(tiles, _COLUMNS, strict=True)):
             left = k * (_TILE + _GAP)
-            pen.text((left + 4, top + 4), name, font=ImageFont.load_default(13), fill="grey")
+            canvas.text((left + 4, top + 4), name, font=ImageFont.load_default(13), fill="grey")
             sheet.paste(Image.fromarray(np.round(255 * tile).astype(np.uint8)), (left, top + _CAPTION))
         top += _CAPTION + _TILE + _GAP
     return sheet

@@ -31,19 +31,22 @@ def ratio_plot(title: str, meshes: Sequence[str], series: Mapping[str, Sequence[
 def calibration_plot(holes: Mapping[str, Sequence[dict[str, Any]]]) -> Figure:
     """Draw true over expected error of every hole, one panel for each method; on the line they agree."""
     figure = Figure(figsize=(4.0 * max(len(holes), 1), 4.2), layout="constrained")
-    for k, (name, found) in enumerate(holes.items()):
+    for k, (name, method_holes) in enumerate(holes.items()):
         axes = figure.add_subplot(1, len(holes), k + 1)
         # A missing expectation becomes a NaN, which no comparison holds for.
-        expected = np.array([hole["expected_error"] for hole in found], dtype=np.float64)
-        true = np.array([hole["true_error"] for hole in found], dtype=np.float64)
-        shown = (expected > 0) & (true > 0)
-        axes.loglog(expected[shown], true[shown], ".", markersize=2, alpha=0.5)
-        if shown.any():
-            ends = [min(expected[shown].min(), true[shown].min()), max(expected[shown].max(), true[shown].max())]
+        expected = np.array([hole["expected_error"] for hole in method_holes], dtype=np.float64)
+        true = np.array([hole["true_error"] for hole in method_holes], dtype=np.float64)
+        is_shown = (expected > 0) & (true > 0)
+        axes.loglog(expected[is_shown], true[is_shown], ".", markersize=2, alpha=0.5)
+        if is_shown.any():
+            ends = [
+                min(expected[is_shown].min(), true[is_shown].min()),
+                max(expected[is_shown].max(), true[is_shown].max()),
+            ]
             axes.loglog(ends, ends, color="black", linewidth=0.8)
         axes.set_xlabel("expected error")
         axes.set_ylabel("true error")
-        axes.set_title(f"{name}, {len(found)} holes")
+        axes.set_title(f"{name}, {len(method_holes)} holes")
     return figure
 
 

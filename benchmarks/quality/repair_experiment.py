@@ -60,7 +60,7 @@ def repair_experiment(
             found[method.name] = measure(bench, case, method, results)
             measured.append({"mesh": case.shape.name, "radius": case.radius, "method": method.name})
             measured[-1] |= found[method.name]
-            progress.step(_said(case, method, found[method.name]))
+            progress.step(_summary(case, method, found[method.name]))
         rows.append(_row(case, found))
     names = [method.name for method in methods]
     tables, plots = [], {}
@@ -83,14 +83,14 @@ def repair_experiment(
     return Outcome("repair", tables, data, plots)
 
 
-def _said(case: Case, method: Method, found: dict[str, Any]) -> str:
-    to_reference = ratio(found["error"], case.peers.get(REFERENCE, {}).get("error"))
-    said = f"{figure(to_reference)} of {REFERENCE} in {found['seconds']:.1f} s"
-    return f"{case.shape.name} {case.radius} {method.name}: {said}"
+def _summary(case: Case, method: Method, measured: dict[str, Any]) -> str:
+    to_reference = ratio(measured["error"], case.peers.get(REFERENCE, {}).get("error"))
+    text = f"{figure(to_reference)} of {REFERENCE} in {measured['seconds']:.1f} s"
+    return f"{case.shape.name} {case.radius} {method.name}: {text}"
 
 
-def _row(case: Case, found: dict[str, dict[str, Any]]) -> Row:
-    figures = {**case.peers, **found}
+def _row(case: Case, measured: dict[str, dict[str, Any]]) -> Row:
+    figures = {**case.peers, **measured}
     errors = {name: float(figure["error"]) for name, figure in figures.items()}
     seconds = {name: float(f.get("seconds", f.get("fill_seconds", float("nan")))) for name, f in figures.items()}
     return Row(case.shape.name, case.radius, errors, seconds)

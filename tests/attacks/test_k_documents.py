@@ -14,7 +14,7 @@ import pytest
 import yaml
 
 import client.sdk
-from benchmarks.samples import BLOCK, DOCUMENTS, MORE, RECORD, line, wrapped
+from benchmarks.samples import BLOCK, DOCUMENTS, ELLIPSIS, RECORD, line, wrapped
 from jobkit.jobs.timeouts import CANCEL_TIMEOUT_S
 from jobkit.schema import HoleCounts, Job, JobResult, Mesh, MeshFacts
 from tests.waiting import GUARD_S, wait_until
@@ -102,7 +102,7 @@ def test_samples_are_those_that_the_script_wrote() -> None:
 )
 def test_samples_show_fields_of_the_contract(name: str, models: tuple[Any, ...]) -> None:
     answer = json.loads(RECORD.read_text("utf-8"))[name].split("\n", 1)[1]
-    whole = json.loads(re.sub(rf",\s*{MORE}", "", answer))
+    whole = json.loads(re.sub(rf",\s*{ELLIPSIS}", "", answer))
     assert whole.keys() <= models[0].model_fields.keys()
     for field, model in zip(("result", "facts"), models[1:2] * 2, strict=False):
         if whole.get(field):
@@ -116,4 +116,4 @@ def test_a_sample_is_broken_between_its_members() -> None:
     answer = {"a": "x" * 80, "b": "y" * 80}
     text = wrapped(line(answer, ("a", "b")))
     assert len(text.splitlines()) == 2
-    assert json.loads(re.sub(rf",\s*{MORE}", "", text)) == answer
+    assert json.loads(re.sub(rf",\s*{ELLIPSIS}", "", text)) == answer

@@ -66,8 +66,8 @@ class ConsistencyReport:
     @property
     def violations(self) -> dict[str, list[str]]:
         """Everything that must be empty."""
-        names = ("lost", "stuck", "unasked", "twice", "broken_logs", "broken_files", "open_attempts")
-        return {name: getattr(self, name) for name in (*names, "left_processes", "left_folders")}
+        names = ("lost_jobs", "stuck_jobs", "duplicate_jobs", "wrong_result_counts", "event_gaps", "broken_files")
+        return {name: getattr(self, name) for name in (*names, "open_attempts", "orphan_processes", "orphan_folders")}
 
 
 def check_consistency(

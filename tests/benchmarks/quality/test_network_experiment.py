@@ -38,7 +38,7 @@ def networks(tmp_path_factory: pytest.TempPathFactory) -> Networks:
 def test_every_protocol_learns_from_its_own_meshes_and_gives_three_tables_and_a_picture(
     networks: Networks, tmp_path: Path
 ) -> None:
-    cases = [networks.paper.bench.case(networks.every[0], "0.1", tmp_path)]
+    cases = [networks.paper.bench.case(networks.all_shapes[0], "0.1", tmp_path)]
     outcome = networks_experiment(networks, cases, NetworkOptions(protocols=PROTOCOLS, budget=BUDGET), is_drawing=True)
     assert [sum(name in table.title for table in outcome.tables) for name in PROTOCOLS] == [3, 3, 3]
     assert set(outcome.plots) == {f"patches_{name}" for name in PROTOCOLS}
@@ -54,7 +54,7 @@ def test_every_protocol_learns_from_its_own_meshes_and_gives_three_tables_and_a_
 
 def test_several_networks_are_drawn_over_their_parameters(networks: Networks, tmp_path: Path) -> None:
     two = replace(networks, architectures=[SMALL, TWIN])
-    cases = [networks.paper.bench.case(networks.every[0], "0.1", tmp_path)]
+    cases = [networks.paper.bench.case(networks.all_shapes[0], "0.1", tmp_path)]
     outcome = networks_experiment(two, cases, NetworkOptions(budget=BUDGET), is_drawing=False)
     (axes,) = outcome.plots["parameters_local_0.1"].axes
     assert [np.asarray(line.get_xydata()).tolist() for line in axes.lines[:2]] == [[[65_345, 2.0]]] * 2
@@ -62,7 +62,7 @@ def test_several_networks_are_drawn_over_their_parameters(networks: Networks, tm
 
 
 def test_a_network_repairs_by_the_recipe_of_the_paper(networks: Networks, tmp_path: Path) -> None:
-    case = networks.paper.bench.case(networks.every[0], "0.1", tmp_path)
+    case = networks.paper.bench.case(networks.all_shapes[0], "0.1", tmp_path)
     trained = networks.trained("local", case)
     found = measure(networks.paper.bench, case, trained["small_4x"].method, networks.paper.results)
     assert "inpaint" in found["stages"]

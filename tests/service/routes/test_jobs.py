@@ -25,7 +25,7 @@ def test_a_job_is_promised_with_its_place_and_its_defaults(
     assert answer.headers["retry-after"] == "2"
     assert job["spec"]["output"] == {"format": None, "preview": True, "closeups": False}
     assert client.get(answer.headers["location"]).json() == job
-    assert f"{job['id']}-1" in services.queue.waiting()
+    assert f"{job['id']}-1" in services.queue.entries()
 
 
 def test_a_mesh_id_alone_is_a_job_for_the_default_dictionary(

@@ -67,7 +67,7 @@ def test_the_same_bytes_are_the_same_mesh(client: TestClient, stored_files: Call
 
 
 def test_a_fresh_mesh_is_queued_for_its_analysis(client: TestClient, services: Services, mesh_id: str) -> None:
-    assert f"mesh_{mesh_id}-1" in services.queue.waiting()
+    assert f"mesh_{mesh_id}-1" in services.queue.entries()
 
 
 @pytest.mark.parametrize("kind", ["stated", "chunked", "form"])

@@ -81,7 +81,7 @@ def test_what_is_not_proven_is_neither_used_nor_pointed_to(
     answer = client.post("/v1/models/reliefs/versions", content=dictionary_bytes(2), headers={"Prefer": "wait=0"})
     assert (answer.status_code, answer.json()["state"], answer.headers["retry-after"]) == (202, "proving", "2")
     assert answer.headers["location"] == "/v1/models/reliefs/versions/2"
-    assert model_entry("reliefs@2", 1) in services.queue.waiting()
+    assert model_entry("reliefs@2", 1) in services.queue.entries()
     job = {"mesh_id": mesh_id, "method": {"method": "dictionary", "model": "reliefs@2"}}
     for refusal in (client.post("/v1/jobs", json=job), client.put("/v1/aliases/ours", json={"model": "reliefs@2"})):
         assert (refusal.status_code, refusal.json()["code"]) == (409, "model_not_proven")
