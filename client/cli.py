@@ -11,7 +11,7 @@ import typer
 from rich.console import Console
 
 from client.connection import connected, print_json
-from client.exits import exit_codes_text
+from client.exit_codes import exit_codes_text
 from client.job_commands import cancel, delete, fetch, pin, wait
 from client.options import (
     DEFAULT_URL,

@@ -7,7 +7,7 @@ import typer
 from pydantic import BaseModel
 
 from client.errors import ClientError
-from client.exits import ExitCode, exit_code_of
+from client.exit_codes import ExitCode, exit_code_of
 from client.screen import Screen
 from client.sdk import Client
 

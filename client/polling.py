@@ -8,7 +8,7 @@ import httpx
 from pydantic import BaseModel
 
 from client.errors import AnswerError
-from client.lenient import read_leniently
+from client.lenient_json import read_leniently
 from client.transport import Transport, retry_after_s
 
 M = TypeVar("M", bound=BaseModel)

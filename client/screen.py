@@ -1,6 +1,6 @@
-"""What a person sees while something takes time: bars on a terminal, plain lines elsewhere, nothing when quiet.
+"""Output for people: progress bars on a terminal, plain lines elsewhere, errors only when quiet.
 
-All of it goes to stderr unless told otherwise; stdout is for data.
+All of it goes to stderr by default; stdout is for data.
 """
 
 from collections.abc import Callable, Iterator
@@ -24,7 +24,7 @@ _LABEL_WIDTH = 12
 
 
 class Screen:
-    """The person at the terminal, or the log of a script.
+    """Messages and progress on a terminal, or in the log of a script.
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ class Screen:
 
     @contextmanager
     def transfer(self, label: str) -> Iterator[ByteProgress]:
-        """Show bytes on their way; yields the callback for them."""
+        """Show the progress of a transfer; yields the callback for it."""
         if self._quiet or not self.console.is_terminal:
             yield no_progress
             return
@@ -65,7 +65,7 @@ class Screen:
 
     @contextmanager
     def repair(self) -> Iterator[Callable[[Job], None]]:
-        """Show how a job gets on; yields the callback for its changes."""
+        """Show the progress of a job; yields the callback for its changes."""
         if self._quiet:
             yield lambda job: None
             return
@@ -79,10 +79,10 @@ class Screen:
 
 
 def status_line(job: Job) -> str:
-    """Say where a job stands: its stage or state, its place in the queue, and how long it still takes."""
-    place = None if job.queue_position is None else f"number {job.queue_position} in line"
-    left = None if job.eta_s is None else f"about {_duration(job.eta_s)} left"
-    return ", ".join(part for part in (_stage(job), place, left) if part)
+    """Describe the progress of a job: its stage or state, its place in the queue, and the seconds left."""
+    position = None if job.queue_position is None else f"number {job.queue_position} in line"
+    remaining = None if job.eta_s is None else f"about {_duration(job.eta_s)} left"
+    return ", ".join(part for part in (_stage(job), position, remaining) if part)
 
 
 class _StageLines:
@@ -93,9 +93,9 @@ class _StageLines:
         self._last: tuple[str, int | None] | None = None
 
     def __call__(self, job: Job) -> None:
-        where = (_stage(job), job.queue_position)
-        if where != self._last:
-            self._last = where
+        progress = (_stage(job), job.queue_position)
+        if progress != self._last:
+            self._last = progress
             self._screen.say(f"{job.percent:5.1f} %  {status_line(job)}")
 
 

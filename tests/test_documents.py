@@ -15,8 +15,9 @@ from PIL import Image
 
 import jobkit.errors
 import quadpatch.errors
-from client.exits import MEANINGS
-from jobkit.schema import STAGES, JobState
+from client.exit_codes import MEANINGS
+from jobkit.schema import JobState
+from jobkit.schema.jobs import STAGES
 from jobkit.settings import settings_table
 from onebox.demo import find_scan
 from quadpatch.calibration import calibration_set, error_model

@@ -13,8 +13,8 @@ import pytest
 from pydantic import ValidationError
 
 from client.errors import JobFailedError, MeshRejectedError, UnreachableError, UsageError
-from client.exits import ExitCode, exit_code_of
-from client.lenient import read_leniently
+from client.exit_codes import ExitCode, exit_code_of
+from client.lenient_json import read_leniently
 from client.options import HoleChoice, MethodChoice
 from client.packing import packed
 from client.repairing import Task, repair

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from client.errors import UsageError
-from client.exits import ExitCode
+from client.exit_codes import ExitCode
 from client.outputs import check_stdout, is_stream
 from client.repairing import format_of
 from client.transfers import download, no_progress

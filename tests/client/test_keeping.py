@@ -11,7 +11,7 @@ from typing import Any
 from typer.testing import CliRunner
 
 from client.cli import app
-from client.exits import ExitCode
+from client.exit_codes import ExitCode
 from client.sdk import Client
 from jobkit.schema import JobSpec, JobState, SmoothMethod
 

@@ -14,7 +14,7 @@ import pytest
 from typer.testing import CliRunner, Result
 
 from client.cli import app
-from client.exits import ExitCode
+from client.exit_codes import ExitCode
 from client.sdk import Client
 from jobkit.schema import Job, JobSpec, JobState
 from tests.waiting import GUARD_S, wait_until

@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 
 from client.cli import app
 from client.errors import RefusedError
-from client.exits import ExitCode
+from client.exit_codes import ExitCode
 from client.sdk import Client
 from jobkit.schema import Job, JobSpec, JobState
 from quadpatch.formats.reading import read_scan

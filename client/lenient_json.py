@@ -1,10 +1,8 @@
-"""Answers of a newer service: what is unknown in them is passed over, and the rest is read.
+"""Lenient reading of answers: a newer service may send what this client does not know.
 
 What a client sends is checked strictly. What it reads may hold options, states and words that came later: an unknown
-option is left out, an unknown word stays as it is, and an unknown state is taken for the one that the rest of the
-answer speaks of.
-
-Tested in `tests/attacks/test_j_client.py`.
+option is left out, an unknown word stays as it is, and an unknown state is replaced by the one that fits the rest of
+the answer.
 """
 
 import json
@@ -17,7 +15,7 @@ from pydantic_core import ErrorDetails
 M = TypeVar("M", bound=BaseModel)
 
 _Location = tuple[int | str, ...]
-# Each round deals with one level of what is unknown; answers nest less deep.
+# Each round handles one level of nesting; answers have fewer levels.
 _MOST_ROUNDS = 16
 _UNKNOWN_WORDS = ("enum", "literal_error")
 
@@ -39,30 +37,34 @@ def read_leniently(model: type[M], content: bytes) -> M:
     try:
         return model.model_validate_json(content)
     except ValidationError as error:
-        first = error
+        first_error = error
     try:
         data = json.loads(content)
     except (ValueError, RecursionError):
-        raise first from None
-    words: list[tuple[_Location, str]] = []
+        raise first_error from None
+    unknown_words: list[tuple[_Location, str]] = []
     for _ in range(_MOST_ROUNDS):
         try:
             value = model.model_validate_json(json.dumps(data))
         except ValidationError as error:
-            # Of several errors at one place, as of the variants of a union, the first will do.
-            found = {_in_answer(data, detail["loc"]): detail for detail in reversed(error.errors(include_url=False))}
-            for location, detail in found.items():
-                _pass_over(data, location, detail, words, first)
+            # Of several errors at one place, as of the variants of a union, the first one is used.
+            details = {
+                _location_in_answer(data, detail["loc"]): detail for detail in reversed(error.errors(include_url=False))
+            }
+            for location, detail in details.items():
+                _replace_unknown(data, location, detail, unknown_words, first_error)
         else:
-            _put_back(value, words)
+            _restore_words(value, unknown_words)
             return value
-    raise first
+    raise first_error
 
 
-def _pass_over(data: Any, location: _Location, detail: ErrorDetails, words: list[Any], first: ValidationError) -> None:
-    """Take what could not be read out of the answer, or put a known word in its place for now."""
+def _replace_unknown(
+    data: Any, location: _Location, detail: ErrorDetails, unknown_words: list[Any], first_error: ValidationError
+) -> None:
+    """Remove from the answer what could not be read, or put a known word in its place until the end."""
     if not location or detail["type"] == "missing":
-        raise first
+        raise first_error
     owner = data
     for step in location[:-1]:
         owner = owner[step]
@@ -71,15 +73,15 @@ def _pass_over(data: Any, location: _Location, detail: ErrorDetails, words: list
         if key == "state":
             owner[key] = _state_of(owner)
         else:
-            words.append((location, owner[key]))
+            unknown_words.append((location, owner[key]))
             owner[key] = _first_known(detail)
     elif detail["type"] == "extra_forbidden" or "spec" in location[:-1]:
         del owner[key]
     else:
-        raise first
+        raise first_error
 
 
-def _in_answer(data: Any, location: _Location) -> _Location:
+def _location_in_answer(data: Any, location: _Location) -> _Location:
     """Return a location without the steps that name a variant of a union and not a place in the answer."""
     steps: list[int | str] = []
     for step in location:
@@ -106,10 +108,10 @@ def _first_known(detail: ErrorDetails) -> str:
     return match[1] if match else ""
 
 
-def _put_back(value: Any, words: list[Any]) -> None:
-    for location, word in words:
+def _restore_words(value: Any, unknown_words: list[Any]) -> None:
+    for location, text in unknown_words:
         owner = value
         for step in location[:-1]:
             owner = owner[step] if isinstance(step, int) or isinstance(owner, dict) else getattr(owner, step)
         if isinstance(owner, BaseModel):
-            setattr(owner, str(location[-1]), word)
+            setattr(owner, str(location[-1]), text)

@@ -20,7 +20,7 @@ _SERVER_ERROR = 500
 
 
 class ExitCode(IntEnum):
-    """What a process tells the script that started it."""
+    """The exit code of the command line."""
 
     OK = 0
     JOB_FAILED = 1
@@ -50,7 +50,7 @@ def exit_codes_text() -> str:
 
 
 def exit_code_of(error: ClientError) -> ExitCode:
-    """Return the exit code that stands for an error."""
+    """Return the exit code of an error."""
     if isinstance(error, RefusedError):
         return ExitCode.OTHER if error.problem.status >= _SERVER_ERROR else ExitCode.REJECTED
     by_class: dict[type[ClientError], ExitCode] = {
