@@ -1,4 +1,4 @@
-"""What the service bears: clients that poll and follow jobs, and the memory that a large upload takes.
+"""Load on the service: clients that poll and follow jobs, and the memory that a large upload takes.
 
 Run ``python -m benchmarks.service``. It starts a queue and the API of a local stack with their default settings in a
 fresh folder, on two cores together with the clients, fills the database with jobs in all states, and keeps some of

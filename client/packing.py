@@ -1,9 +1,7 @@
 """A glTF file and the files that it names, as one file: the service gets no others.
 
 Only files in the folder of the glTF file and below it are taken up. A name that leads elsewhere is refused: the file
-may come from a stranger, and what it names is sent away.
-
-Tested in `tests/attacks/test_j_client.py`.
+may be untrusted, and the files that it names are sent to the service.
 """
 
 import base64

@@ -119,7 +119,7 @@ class PostgresServer:
         self.execute(SQL("CREATE DATABASE {} TEMPLATE {}").format(Identifier(name), Identifier(template)))
 
     def drop(self, name: str) -> None:
-        """Remove a database, and whoever is connected to it; nothing happens where there is none."""
+        """Remove a database, and end the connections to it; nothing happens where there is none."""
         self.execute(SQL("DROP DATABASE IF EXISTS {} WITH (FORCE)").format(Identifier(name)))
 
     def execute(self, statement: SQL | Composed) -> None:
@@ -245,7 +245,7 @@ def _user() -> str | None:
 
 
 def free_port() -> int:
-    """Return a port that nobody listens on."""
+    """Return a port that no process listens on."""
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         return int(free.getsockname()[1])

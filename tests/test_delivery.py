@@ -161,8 +161,8 @@ def test_the_queue_keeps_its_log_evicts_nothing_and_hides_its_password(tmp_path:
         assert {name: connection.config_get(name)[name] for name in wanted} == wanted
         limit = int(connection.config_get("maxmemory")["maxmemory"])
         assert 0 < limit < megabytes(SERVICES["valkey"]["mem_limit"]) * 2**20
-        with Redis(host="127.0.0.1", port=port) as stranger, pytest.raises(AuthenticationError):
-            stranger.ping()
+        with Redis(host="127.0.0.1", port=port) as anonymous, pytest.raises(AuthenticationError):
+            anonymous.ping()
         if (command := Path(f"/proc/{process.pid}/cmdline")).exists():
             assert PASSWORD.encode() not in command.read_bytes()
 

@@ -30,7 +30,7 @@ def section(docstring: str, title: str) -> list[str]:
     return [name.strip().lstrip("*") for head in heads for name in head.split(",")]
 
 
-def strangers(tree: ast.Module) -> Iterator[str]:
+def stale_names(tree: ast.Module) -> Iterator[str]:
     """Yield what docstrings explain and the code does not have."""
     for node in ast.walk(tree):
         if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
@@ -65,9 +65,9 @@ def _attributes(node: ast.ClassDef) -> set[str]:
 
 def test_docstrings_explain_what_is_there() -> None:
     found = [
-        f"{path.relative_to(ROOT)}: {stranger}"
+        f"{path.relative_to(ROOT)}: {name}"
         for path in FILES
-        for stranger in strangers(ast.parse(path.read_text("utf-8")))
+        for name in stale_names(ast.parse(path.read_text("utf-8")))
     ]
     assert found == []
 
@@ -80,4 +80,4 @@ def test_docstrings_explain_what_is_there() -> None:
     ],
 )
 def test_a_name_that_is_gone_is_found(source: str) -> None:
-    assert [stranger.split(": ")[1] for stranger in strangers(ast.parse(source))] == ["old"]
+    assert [name.split(": ")[1] for name in stale_names(ast.parse(source))] == ["old"]

@@ -16,7 +16,7 @@ from worker.engine.seccomp import has_seccomp
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = ("quadpatch", "jobkit", "service", "worker", "dispatcher", "training", "client", "onebox", "benchmarks")
 IMPORTS_IT = re.compile(r"^\s*(?:import|from) (?:onnxruntime|quadpatch\.onnx_runtime)\b", re.MULTILINE)
-TRAP = "from worker.engine.seccomp import die_of_sockets; die_of_sockets()\n"
+TRAP = "from worker.engine.seccomp import kill_on_socket; kill_on_socket()\n"
 REPAIR = """
 from pathlib import Path
 from quadpatch.options import RepairOptions

@@ -33,7 +33,7 @@ def reached(tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[str, bool
     (outside / "object").write_text("a mesh")
     (folder / "source.ply").symlink_to(outside / "object")
     (folder / "worker.pid").write_text(str(os.getpid()))
-    request = EngineRequest("inspect", "source.ply", LIMITS, options={"deed": "reach_out"})
+    request = EngineRequest("inspect", "source.ply", LIMITS, options={"behaviour": "reach_out"})
     with pytest.MonkeyPatch.context() as environment:
         environment.setenv("PYTHONPATH", str(Path(reaching_out.__file__).parent))
         with ForkServer(n_threads=1, engine="rogue_engine") as fork_server:

@@ -1,4 +1,4 @@
-"""The client keeps its word: it is patient, reads what is new, and finds its job again."""
+"""The client retries, reads answers of newer services, and finds its job again."""
 
 import base64
 import hashlib
@@ -34,7 +34,7 @@ REPORT = json.dumps({"holes": [], "warnings": [], "stages": []}).encode()
 Server = scripted.ScriptedServer
 
 
-# Patience
+# Retries
 
 
 def test_a_line_that_breaks_before_the_first_answer_is_no_wrong_address(server: Server) -> None:
@@ -44,7 +44,7 @@ def test_a_line_that_breaks_before_the_first_answer_is_no_wrong_address(server: 
     assert len(server.requests) == 3
 
 
-def test_where_nothing_listens_patience_is_short() -> None:
+def test_where_nothing_listens_the_client_gives_up_soon() -> None:
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         url = f"http://127.0.0.1:{probe.getsockname()[1]}"
@@ -52,7 +52,7 @@ def test_where_nothing_listens_patience_is_short() -> None:
         transport.request("GET", "/")
 
 
-def test_an_upload_that_breaks_after_longer_than_the_patience_is_sent_again(server: Server) -> None:
+def test_an_upload_that_breaks_after_longer_than_the_timeout_is_sent_again(server: Server) -> None:
     tries = []
 
     def attempt() -> str:
@@ -205,7 +205,7 @@ REJECTED = MeshRejectedError(MeshProblem(code="unreadable_mesh", message="no mes
         (Service(failed("fill"), REJECTED), ExitCode.JOB_FAILED),
     ],
 )
-def test_a_bad_mesh_ends_with_the_same_code_whoever_sees_it_first(
+def test_a_bad_mesh_ends_with_the_same_code_wherever_it_is_found_first(
     service: Service, code: ExitCode, tmp_path: Path
 ) -> None:
     (tmp_path / "scan.ply").write_bytes(b"ply")

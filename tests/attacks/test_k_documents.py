@@ -35,7 +35,7 @@ def test_curl_saves_no_error_as_a_mesh(path: Path) -> None:
 
 
 @pytest.mark.parametrize("path", [*TEXTS, *SOURCES], ids=lambda path: str(path.relative_to(ROOT)))
-def test_nobody_is_sent_to_an_index_that_does_not_have_the_project(path: Path) -> None:
+def test_no_document_names_an_index_that_does_not_have_the_project(path: Path) -> None:
     assert not re.search(r"install '?quadpatch\b", path.read_text("utf-8"))
 
 

@@ -63,7 +63,7 @@ def test_an_error_of_another_program_is_told_apart(server: Any, answers: Any, bo
         transport.request("GET", "/")
 
 
-def test_nobody_there_is_unreachable() -> None:
+def test_a_port_without_a_server_is_unreachable() -> None:
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         port = probe.getsockname()[1]

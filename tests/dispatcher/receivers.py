@@ -75,7 +75,7 @@ def receiving(context: ssl.SSLContext | None = None, held: bool = False, **value
 
 @contextmanager
 def talking(talk: Callable[[socket.socket], None]) -> Iterator[str]:
-    """Run a server that says what it likes once it has got a request, until nobody listens; gives its URL."""
+    """Run a server that sends arbitrary bytes after a request, until the client disconnects; gives its URL."""
 
     class Handler(socketserver.BaseRequestHandler):
         def handle(self) -> None:

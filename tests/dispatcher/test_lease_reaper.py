@@ -6,7 +6,7 @@ from jobkit.requeue import Reconciled
 HEARTBEAT_S = 3600.0
 
 
-def test_workers_get_a_heartbeat_where_nobody_led_and_none_otherwise() -> None:
+def test_workers_get_a_heartbeat_after_a_time_without_a_leader_and_none_otherwise() -> None:
     took_leases: list[bool] = []
 
     def reconcile(takes_leases: bool) -> Reconciled:

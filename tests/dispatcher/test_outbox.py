@@ -90,14 +90,14 @@ def test_a_late_success_counts(database: Database, deliveries: Deliveries, subsc
 def test_a_receiver_with_much_to_get_leaves_room_for_the_others(
     database: Database, deliveries: Deliveries, subscribe: Subscribe
 ) -> None:
-    greedy, modest = subscribe(URL).id, subscribe(URL).id
+    many_due, one_due = subscribe(URL).id, subscribe(URL).id
     for _ in range(250):
-        deliveries.send_test(greedy)
-    deliveries.send_test(modest)
+        deliveries.send_test(many_due)
+    deliveries.send_test(one_due)
     claims = claims_of(database)
-    assert Counter(claim.webhook_id for claim in claims) == {greedy: MAX_PER_WEBHOOK, modest: 1}
-    assert claims_of(database, at_work={greedy: MAX_PER_WEBHOOK}) == []
-    assert len(claims_of(database, at_work={greedy: MAX_PER_WEBHOOK - 1})) == 1
+    assert Counter(claim.webhook_id for claim in claims) == {many_due: MAX_PER_WEBHOOK, one_due: 1}
+    assert claims_of(database, at_work={many_due: MAX_PER_WEBHOOK}) == []
+    assert len(claims_of(database, at_work={many_due: MAX_PER_WEBHOOK - 1})) == 1
     assert len(claims_of(database, most=2)) == 2
     assert claims_of(database, most=0) == []
 

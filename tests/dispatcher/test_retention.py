@@ -38,7 +38,7 @@ def test_a_sweep_tells_what_it_found_in_either_direction(database: Database, sto
     job = finish(database, aging, Jobs(database).create(new_job(kept))[0].id)
     sweeper = Sweeper(database, aging)
     assert sweeper.sweep(never) == ""
-    put(aging, b"nobody's")
+    put(aging, b"without a row")
     store.delete(Meshes(database).source(lost.id).key)
     store.delete_prefix(f"results/{job.id}")
     aging.wait(GRACE + timedelta(minutes=1))

@@ -168,11 +168,11 @@ def test_over_tls_certificate_and_server_name_are_those_of_the_name(
         wrong = send(receiver.url("other.example"), look_up=looked_up(["127.0.0.1"]))
         assert wrong.status is None
         assert "CERTIFICATE_VERIFY_FAILED" in str(wrong.error)
-        # Whoever holds the address but not the certificate gets nothing.
+        # A server at the address without the certificate gets nothing.
         assert len(receiver.received) == 1
 
 
-def test_a_certificate_that_nobody_vouches_for_is_refused(tmp_path: Path) -> None:
+def test_a_certificate_of_an_unknown_authority_is_refused(tmp_path: Path) -> None:
     context, _, _ = tls(tmp_path, NAME)
     with receiving(context) as receiver:
         answer = send(receiver.url(NAME), look_up=looked_up(["127.0.0.1"]))

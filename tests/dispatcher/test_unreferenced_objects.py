@@ -97,7 +97,7 @@ def test_files_that_are_no_objects_are_left_alone(database: Database, data_dir: 
 
 
 def test_bytes_that_come_again_before_the_last_look_are_kept(database: Database, aging: AgingStore, mesh: Mesh) -> None:
-    """The sweep has taken them for nobody's and claimed them when they arrive."""
+    """The sweep has claimed them as unreferenced when they arrive."""
     delete_mesh(database, mesh.id)
     anchor(database, aging)
     arrived: list[str] = []

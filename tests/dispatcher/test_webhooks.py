@@ -108,13 +108,13 @@ def test_two_dispatchers_at_once_send_every_message_once(
 def test_a_receiver_that_does_not_answer_holds_up_no_other(
     database: Database, settings: Settings, subscribe: Subscribe, deliveries: Deliveries
 ) -> None:
-    patient = settings.model_copy(update={"webhook_timeout_s": 60.0})
+    slow_settings = settings.model_copy(update={"webhook_timeout_s": 60.0})
     with receiving(held=True) as slow, receiving() as quick:
         stuck = subscribe(slow.url())
         for _ in range(3 * MAX_PER_WEBHOOK):
             deliveries.send_test(stuck.id)
-        deliverer = threading.Thread(target=deliver_webhooks, args=(database, patient, never))
-        deliverer.start()
+        delivery_thread = threading.Thread(target=deliver_webhooks, args=(database, slow_settings, never))
+        delivery_thread.start()
         for _ in range(MAX_PER_WEBHOOK):
             assert slow.arrived.acquire(timeout=GUARD_S)
         # While the slow one has all that it may have, messages to another one come and go.
@@ -125,7 +125,7 @@ def test_a_receiver_that_does_not_answer_holds_up_no_other(
             assert quick.arrived.acquire(timeout=GUARD_S)
         assert len(slow.received) == MAX_PER_WEBHOOK
         slow.hold.set()
-        deliverer.join()
+        delivery_thread.join()
     assert len(set(slow.ids())) == 3 * MAX_PER_WEBHOOK
     assert len(set(quick.ids())) == 2 * MAX_PER_WEBHOOK
 
@@ -137,31 +137,31 @@ def test_many_receivers_that_do_not_answer_are_waited_for_at_the_same_time(
         receivers = [stack.enter_context(receiving(held=True)) for _ in range(12)]
         for receiver in receivers:
             deliveries.send_test(subscribe(receiver.url()).id)
-        deliverer = threading.Thread(target=deliver_webhooks, args=(database, settings, never))
-        deliverer.start()
+        delivery_thread = threading.Thread(target=deliver_webhooks, args=(database, settings, never))
+        delivery_thread.start()
         # None of them has answered when the last one is asked.
         assert all(receiver.arrived.acquire(timeout=GUARD_S) for receiver in receivers)
         for receiver in receivers:
             receiver.hold.set()
-        deliverer.join()
+        delivery_thread.join()
 
 
 def test_a_dispatcher_that_has_to_go_breaks_off_and_the_message_comes_again(
     database: Database, settings: Settings, subscribe: Subscribe, deliveries: Deliveries
 ) -> None:
-    patient = settings.model_copy(update={"webhook_timeout_s": 60.0})
+    slow_settings = settings.model_copy(update={"webhook_timeout_s": 60.0})
     over = threading.Event()
     with receiving(held=True) as receiver:
         webhook = subscribe(receiver.url())
         delivery = deliveries.send_test(webhook.id)
-        deliverer = threading.Thread(target=deliver_webhooks, args=(database, patient, over.is_set))
-        deliverer.start()
+        delivery_thread = threading.Thread(target=deliver_webhooks, args=(database, slow_settings, over.is_set))
+        delivery_thread.start()
         assert receiver.arrived.acquire(timeout=GUARD_S)
         over.set()
-        deliverer.join(timeout=GUARD_S)
-        assert not deliverer.is_alive()
+        delivery_thread.join(timeout=GUARD_S)
+        assert not delivery_thread.is_alive()
         assert deliveries.get(webhook.id, delivery.id).state is DeliveryState.PENDING
-        assert deliver_webhooks(database, patient, over.is_set) == ""
+        assert deliver_webhooks(database, slow_settings, over.is_set) == ""
         receiver.hold.set()
         make_all_due(database)
         deliver_webhooks(database, settings, never)

@@ -47,7 +47,7 @@ def test_the_end_of_a_job_reaches_its_subscriber_although_the_dispatcher_is_kill
         assert told.body == again.body
         message = Webhook(webhook["secret"]).verify(again.body, again.headers)
         assert (message["type"], message["data"]["job"]["id"]) == ("job.canceled", job["id"])
-        # The try that nobody lived to note is missing in the log, and counted.
+        # The try of the killed dispatcher is missing in the log, and counted.
         assert [entry["number"] for entry in client.get(delivery["links"]["self"]).json()["log"]] == [2]
 
 

@@ -109,7 +109,7 @@ def test_the_request_is_known_within_its_block_alone() -> None:
     assert current_request_id() is None
 
 
-def test_a_field_that_nobody_looks_for_is_refused() -> None:
+def test_an_unknown_field_is_refused() -> None:
     with pytest.raises(ValueError, match="jobid"), log_about(jobid="job_1"):
         pass
 

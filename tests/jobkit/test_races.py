@@ -66,7 +66,7 @@ def test_a_job_is_started_by_one_of_many_workers(database: Database, job: Job) -
     assert_log_is_whole(database, job.id)
 
 
-def test_a_job_ends_in_one_way_whoever_wants_its_end(database: Database, new_job: NewJob) -> None:
+def test_a_job_ends_in_one_way_under_competing_endings(database: Database, new_job: NewJob) -> None:
     jobs, attempts = Jobs(database), Attempts(database)
     endings = Counter[str]()
     for _ in range(12):
@@ -172,7 +172,7 @@ def test_one_of_many_candidates_leads(database: Database) -> None:
         assert at_once([candidate.lead for candidate in candidates]) == leads
         with database.write() as session:
             session.execute(update(LeaderRow).values(until=utc_now() - timedelta(seconds=1)))
-        # Whoever leads may renew even then, as long as nobody else was first.
+        # The leader may renew even then, unless another one was first.
         assert sum(at_once([candidate.lead for candidate in candidates])) == 1
         candidates[0].resign()
 

@@ -93,7 +93,7 @@ def test_a_mesh_that_comes_back_at_once_has_its_bytes(database: Database, store:
 def test_a_mesh_is_never_deleted_from_under_a_job_that_is_being_made(
     database: Database, store: ObjectStore, new_job: NewJob
 ) -> None:
-    """Whoever wins: there is a job with its mesh, or neither."""
+    """In either order: there is a job with its mesh, or neither."""
     for _ in range(10):
         mesh = upload(database, store, b"ply\n")
         made: list[Job] = []

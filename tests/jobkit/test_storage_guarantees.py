@@ -36,7 +36,7 @@ from tests.jobkit.fixtures import (
 )
 
 RETENTION_DAYS = 2.0
-# What ends a step without being a fault: somebody asked for what is not there, or is in use.
+# What ends a step without being a fault: the object is missing, or in use.
 EXPECTED = (KilledError, NotFoundError, ConflictError, StaleAttemptError, StoreUnavailableError)
 STEPS = ("upload", "put", "register", "create", "finish", "fail", "cancel", "pin", "unpin", "delete job", "delete mesh")
 TURNS = ("expire", "sweep", "wait", "wait long", "kill before", "kill after")

@@ -74,7 +74,7 @@ def test_stages_follow_each_other_within_the_attempt(recorded: Recorded) -> None
 
 
 @given(header=st.text(max_size=80))
-def test_a_header_that_nobody_can_read_starts_a_trace_of_its_own(header: str) -> None:
+def test_an_unreadable_header_starts_a_trace_of_its_own(header: str) -> None:
     recorded = Recorded()
     with recorded.telemetry.span("around"), recorded.telemetry.span("request", SpanKind.SERVER, header):
         pass

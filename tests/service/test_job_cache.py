@@ -79,7 +79,7 @@ def test_who_comes_during_a_look_shares_the_next_one_and_sees_what_has_changed_m
     assert {found[place].state for place in range(1, 50)} == {JobState.RUNNING}
 
 
-def test_a_job_is_read_whole_once_for_each_change_and_only_if_somebody_wants_it(
+def test_a_job_is_read_whole_once_for_each_change_and_only_if_a_request_wants_it(
     database: Database, job: Job, jobs: CountingJobs
 ) -> None:
     jobs.may_go_on.set()
@@ -128,7 +128,9 @@ def test_one_unknown_job_leaves_the_others_their_answers(database: Database, job
     assert refused
 
 
-def test_a_client_that_hangs_up_takes_nobody_elses_look_away(database: Database, job: Job, jobs: CountingJobs) -> None:
+def test_a_client_that_disconnects_does_not_cancel_the_query_of_others(
+    database: Database, job: Job, jobs: CountingJobs
+) -> None:
     job_cache = JobCache(jobs, Estimates(database))
     found = []
 

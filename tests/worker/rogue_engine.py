@@ -1,4 +1,4 @@
-"""An engine that does whatever the options of its request say, above all wrong things."""
+"""An engine that misbehaves as the options of its request say."""
 
 import ctypes
 import json
@@ -22,24 +22,24 @@ else:
 
 
 def run_request(folder: Path, descriptor: int) -> None:
-    def do_the_deed(request: EngineRequest, reporter: Reporter) -> None:
+    def run_behaviour(request: EngineRequest, reporter: Reporter) -> None:
         reporter.progress("fill", 0.5)
         if request.options.get("delivers"):
             (folder / "repaired.ply").write_text("a mesh")
             reporter.delivered()
             reporter.progress("preview", 0.0)
-        getattr(Deeds, request.options["deed"])(folder)
+        getattr(Behaviours, request.options["behaviour"])(folder)
         (folder / "facts.json").write_text(
             json.dumps({"cwd": os.getcwd(), "pid": os.getpid(), "names": list(os.environ)})
         )
 
-    if EngineRequest.load(folder).options["deed"] == "start_a_grandchild":
+    if EngineRequest.load(folder).options["behaviour"] == "start_a_grandchild":
         grandchild = subprocess.Popen(["sleep", "600"])
         (folder / "grandchild").write_text(str(grandchild.pid))
-    run_confined(folder, descriptor, do_the_deed)
+    run_confined(folder, descriptor, run_behaviour)
 
 
-class Deeds:
+class Behaviours:
     @staticmethod
     def behave(folder: Path) -> None:
         libc = ctypes.CDLL(None)
@@ -53,9 +53,9 @@ class Deeds:
 
     @staticmethod
     def hog_memory(folder: Path) -> None:
-        hoard = []
+        blocks = []
         while True:
-            hoard.append(bytearray(16 << 20))
+            blocks.append(bytearray(16 << 20))
             time.sleep(0.01)
 
     @staticmethod

@@ -117,7 +117,7 @@ def test_a_model_whose_proofs_crash_is_refused_in_the_end(
     settings: Settings, database: Database, store: ObjectStore, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("PYTHONPATH", str(Path(__file__).parent))
-    with working(settings, database, store, "engine_that_dies_drawing") as context:
+    with working(settings, database, store, "engine_killed_while_drawing") as context:
         publish(context.registry, context.store, network(tmp_path, card=PAPER))
         for _ in range(MAX_PROOFS):
             assert context.registry.resolve("parts@1").state is ModelState.PROVING

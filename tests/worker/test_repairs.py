@@ -1,7 +1,4 @@
-"""The end of an attempt when the database, or somebody else, comes in between.
-
-Also tests `worker.outcomes`.
-"""
+"""The end of an attempt when the database fails, or another process ends it first."""
 
 import io
 import json
@@ -127,12 +124,12 @@ def test_a_job_that_asks_for_close_ups_has_one_of_each_chosen_hole(settings: Set
 @pytest.mark.parametrize(
     ("asked", "words"), [({"preview": True}, "there is no picture"), ({"closeups": True}, "there are no close-ups")]
 )
-def test_a_job_whose_engine_dies_while_it_draws_has_its_mesh_and_a_warning(
+def test_a_job_whose_engine_is_killed_while_it_draws_has_its_mesh_and_a_warning(
     settings: Settings, store: ObjectStore, monkeypatch: pytest.MonkeyPatch, asked: dict[str, bool], words: str
 ) -> None:
     monkeypatch.setenv("PYTHONPATH", str(Path(__file__).parent))
     database = Database(settings.effective_database_url)
-    with working(settings, database, store, "engine_that_dies_drawing") as context:
+    with working(settings, database, store, "engine_killed_while_drawing") as context:
         job = new_job(context, **asked)
         run_job(job.id)
         ended = context.jobs.get(job.id)
@@ -171,7 +168,7 @@ def test_a_task_waits_for_a_database_that_is_away(settings: Settings, store: Obj
     assert refusing.refusals == 0
 
 
-def test_an_attempt_that_was_ended_by_somebody_else_is_noticed_before_its_next_heartbeat(
+def test_an_attempt_that_another_process_ended_is_noticed_before_its_next_heartbeat(
     settings: Settings, database: Database, store: ObjectStore
 ) -> None:
     with working(settings, Database(settings.effective_database_url), store) as context:

@@ -29,7 +29,7 @@ def test_the_first_one_leads_and_the_second_stands_by(database: Database) -> Non
     assert (leader.holder, leader.left_s > 50) == ("a", True)
 
 
-def test_nobody_leads_before_the_first_one_comes(database: Database) -> None:
+def test_there_is_no_leader_before_the_first_candidate(database: Database) -> None:
     assert current_leader(database, "dispatcher") is None
 
 
@@ -72,7 +72,7 @@ def test_of_many_that_start_at_once_one_leads(database: Database) -> None:
 
 
 def test_a_handover_is_no_outage_and_a_long_vacancy_is_one(database: Database) -> None:
-    """Whoever leads after the database was away learns of it, be it the same one or another."""
+    """The leader after an outage of the database notices the outage, whether it led before or not."""
     lease_s = 10 * GUARD_S
     same, other = candidate(database, "a", lease_s), candidate(database, "b", lease_s)
     assert same.lead()

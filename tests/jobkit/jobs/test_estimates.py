@@ -141,7 +141,7 @@ def test_a_running_job_and_those_behind_it_are_foretold_from_past_ones(
 ) -> None:
     jobs = Jobs(database)
     running, second, third = (jobs.create(new_job)[0] for _ in range(3))
-    assert completed(estimates, second).eta_s is None  # nobody works
+    assert completed(estimates, second).eta_s is None  # no worker has a lease
     attempt = Attempts(database).start(running.id, "test", 60).attempt
     Attempts(database).report_progress(attempt, "fill", 40.0)
     clock.now += 10

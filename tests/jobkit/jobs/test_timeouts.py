@@ -89,7 +89,7 @@ def test_a_cancel_waits_for_a_living_worker_and_for_a_dead_one_a_moment_only(dat
         attempts.publish(attempt, JobResult(format="ply"))
 
 
-def test_a_job_that_nobody_takes_is_given_up(database: Database, job: Job) -> None:
+def test_a_job_that_no_worker_takes_is_given_up(database: Database, job: Job) -> None:
     limits = TimeLimits(queue_s=60, total_s=1e6, memory_mb=1000)
     assert end_later(database, 50, limits) == 0
     assert end_later(database, 70, limits) == 1

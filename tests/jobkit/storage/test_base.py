@@ -138,7 +138,7 @@ def test_the_object_is_a_file_for_those_who_need_one(any_store: ObjectStore) -> 
         any_store.size(key)
 
 
-def test_an_error_of_whoever_uses_the_file_stays_what_it_is(any_store: ObjectStore) -> None:
+def test_an_error_of_the_user_of_the_file_is_not_translated(any_store: ObjectStore) -> None:
     key = put(any_store, b"atoms")
     with pytest.raises(PermissionError, match="theirs"), any_store.local_file(key):
         raise PermissionError("theirs")

@@ -60,7 +60,7 @@ def test_a_server_that_is_gone_is_an_outage_whatever_is_asked_of_it(
     bucket: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     with socket.socket() as silent:
-        silent.bind(("127.0.0.1", 0))  # nobody listens
+        silent.bind(("127.0.0.1", 0))  # no server listens
         monkeypatch.setenv("AWS_ENDPOINT_URL", f"http://127.0.0.1:{silent.getsockname()[1]}")
         for call in everything(S3Store(bucket, "", tmp_path / "scratch")):
             with pytest.raises(StoreUnavailableError, match="does not answer") as caught:

@@ -64,7 +64,9 @@ def test_a_replay_is_the_same_message_on_a_way_of_its_own(
     assert [entry.status for entry in deliveries.get(webhook_id, original.id).log] == [204]
 
 
-def test_a_delivery_to_somebody_else_is_not_found(database: Database, deliveries: Deliveries, webhook_id: str) -> None:
+def test_a_delivery_of_another_subscription_is_not_found(
+    database: Database, deliveries: Deliveries, webhook_id: str
+) -> None:
     other = Webhooks(database, lambda _: None).create(NewWebhook(url="https://b.example/")).id
     delivery = deliveries.send_test(webhook_id)
     with pytest.raises(DeliveryNotFoundError):

@@ -101,7 +101,7 @@ def test_a_queue_that_does_not_say_is_unknown_and_no_reason_to_degrade(settings:
 
 
 def test_without_its_queue_the_service_still_takes_jobs(without_queue: TestClient) -> None:
-    """The promise stands in the database; whoever finds the queue again puts the job there."""
+    """The job is in the database; the dispatcher puts it into the queue once that answers."""
     mesh = without_queue.post("/v1/meshes?filename=a.ply", content=b"ply").json()
     answer = without_queue.post("/v1/jobs", json={"mesh_id": mesh["id"], "method": {"method": "smooth"}})
     assert (answer.status_code, answer.json()["state"]) == (202, "queued")

@@ -21,13 +21,13 @@ def never() -> StopReason | None:
     return None
 
 
-def request(deed: str, limits: EngineLimits = LIMITS) -> EngineRequest:
-    return EngineRequest(task="inspect", source="source.ply", limits=limits, options={"deed": deed})
+def request(behaviour: str, limits: EngineLimits = LIMITS) -> EngineRequest:
+    return EngineRequest(task="inspect", source="source.ply", limits=limits, options={"behaviour": behaviour})
 
 
-def failure_of(fork_server: ForkServer, folder: Path, deed: str, limits: EngineLimits = LIMITS) -> Failure:
+def failure_of(fork_server: ForkServer, folder: Path, behaviour: str, limits: EngineLimits = LIMITS) -> Failure:
     with pytest.raises(EngineFailedError) as caught:
-        run_engine(fork_server, request(deed, limits), folder, Observer(lambda stage, fraction: None, never))
+        run_engine(fork_server, request(behaviour, limits), folder, Observer(lambda stage, fraction: None, never))
     return caught.value.failure
 
 
@@ -86,10 +86,10 @@ def test_an_engine_over_its_time_is_ended(rogue_fork_server: ForkServer, tmp_pat
     assert engines() == []
 
 
-@pytest.mark.parametrize("deed", ["hog_memory", "ask_for_too_much_at_once"])
-def test_an_engine_over_its_memory_is_ended(rogue_fork_server: ForkServer, tmp_path: Path, deed: str) -> None:
+@pytest.mark.parametrize("behaviour", ["hog_memory", "ask_for_too_much_at_once"])
+def test_an_engine_over_its_memory_is_ended(rogue_fork_server: ForkServer, tmp_path: Path, behaviour: str) -> None:
     limits = EngineLimits(time_s=GUARD_S, memory_mb=300, n_threads=1)
-    failure = failure_of(rogue_fork_server, tmp_path, deed, limits)
+    failure = failure_of(rogue_fork_server, tmp_path, behaviour, limits)
     assert (failure.code, failure.retryable) == ("out_of_memory", False)
     assert engines() == []
 
@@ -137,7 +137,7 @@ def test_an_engine_that_can_not_even_write_its_log_says_that_the_disk_is_full(
 
 
 @pytest.mark.parametrize(
-    ("deed", "code"),
+    ("behaviour", "code"),
     [
         ("crash", "engine_crashed"),
         ("leave_silently", "engine_crashed"),
@@ -149,10 +149,10 @@ def test_an_engine_that_can_not_even_write_its_log_says_that_the_disk_is_full(
     ],
 )
 def test_whatever_ends_an_engine_after_it_has_delivered_the_result_is_kept(
-    rogue_fork_server: ForkServer, tmp_path: Path, deed: str, code: str
+    rogue_fork_server: ForkServer, tmp_path: Path, behaviour: str, code: str
 ) -> None:
     limits = EngineLimits(time_s=60.0, memory_mb=300, file_mb=4, n_threads=1)
-    asked = EngineRequest("inspect", "source.ply", limits, options={"deed": deed, "delivers": True})
+    asked = EngineRequest("inspect", "source.ply", limits, options={"behaviour": behaviour, "delivers": True})
     failure = run_engine(rogue_fork_server, asked, tmp_path, Observer(lambda stage, fraction: None, never))
     assert failure is not None
     assert (failure.code, failure.stage) == (code, "preview")
@@ -164,7 +164,9 @@ def test_an_engine_that_draws_beyond_its_time_has_delivered_all_the_same(
     rogue_fork_server: ForkServer, tmp_path: Path
 ) -> None:
     limits = EngineLimits(time_s=1.0, memory_mb=1024, n_threads=1)
-    asked = EngineRequest("inspect", "source.ply", limits, options={"deed": "hang_in_native_code", "delivers": True})
+    asked = EngineRequest(
+        "inspect", "source.ply", limits, options={"behaviour": "hang_in_native_code", "delivers": True}
+    )
     failure = run_engine(rogue_fork_server, asked, tmp_path, Observer(lambda stage, fraction: None, never))
     assert failure is not None
     assert failure.code == "time_limit_exceeded"
@@ -180,7 +182,9 @@ def test_an_engine_that_has_delivered_still_stops_when_it_is_asked_to(
             is_drawing.set()
 
     observer = Observer(note, lambda: StopReason.CANCELED if is_drawing.is_set() else None)
-    asked = EngineRequest("inspect", "source.ply", LIMITS, options={"deed": "hang_in_native_code", "delivers": True})
+    asked = EngineRequest(
+        "inspect", "source.ply", LIMITS, options={"behaviour": "hang_in_native_code", "delivers": True}
+    )
     with pytest.raises(EngineStoppedError):
         run_engine(rogue_fork_server, asked, tmp_path, observer)
 
@@ -193,10 +197,10 @@ def test_what_an_engine_started_ends_with_it(rogue_fork_server: ForkServer, tmp_
     wait_until(lambda: not psutil.pid_exists(pid) or psutil.Process(pid).status() == psutil.STATUS_ZOMBIE)
 
 
-@pytest.mark.parametrize("deed", ["hang_in_native_code", "ignore_signals_and_hang"])
+@pytest.mark.parametrize("behaviour", ["hang_in_native_code", "ignore_signals_and_hang"])
 @pytest.mark.parametrize("reason", list(StopReason))
 def test_an_engine_is_ended_when_asked_whatever_it_does(
-    rogue_fork_server: ForkServer, tmp_path: Path, deed: str, reason: StopReason
+    rogue_fork_server: ForkServer, tmp_path: Path, behaviour: str, reason: StopReason
 ) -> None:
     is_at_work = threading.Event()
 
@@ -205,7 +209,7 @@ def test_an_engine_is_ended_when_asked_whatever_it_does(
 
     observer = Observer(lambda stage, fraction: is_at_work.set(), stop_reason)
     with pytest.raises(EngineStoppedError) as caught:
-        run_engine(rogue_fork_server, request(deed), tmp_path, observer)
+        run_engine(rogue_fork_server, request(behaviour), tmp_path, observer)
     assert caught.value.reason is reason
     assert engines() == []
 

@@ -1,4 +1,4 @@
-"""No test may hang on the clock: what is waited for is an event, and limits only guard against waiting for ever."""
+"""No test may depend on the clock: tests wait for events, and time limits only end a test that hangs."""
 
 import ast
 from collections.abc import Iterator
@@ -8,9 +8,9 @@ import hypothesis
 import pytest
 
 TESTS = Path(__file__).parent
-# The fault suite strikes by the clock, and its limits are `GUARD_S`; the others say why they look at it.
+# The fault suite injects faults by the clock, and its limits are `GUARD_S`; the others say why they look at it.
 MAY_LOOK_AT_THE_CLOCK = {
-    "waiting.py": "waits for everybody",
+    "waiting.py": "waits for all tests",
     "client/test_watching.py": "its server stays silent",
     "dispatcher/test_lease_reaper.py": "a moment by the clock is what is handed over",
     "dispatcher/test_sending.py": "its server is slow",
