@@ -1,4 +1,4 @@
-"""Files on their way: counted, hashed, resumed, and visible under their name only when they are whole."""
+"""Transfers of files: counted, hashed, resumed, and visible under their name only when they are complete."""
 
 import hashlib
 import os

@@ -1,1 +1,1 @@
-"""Keeps the promise of a 202: whatever the database says is due, one leading dispatcher has done."""
+"""The dispatcher: one leading process does what is due for jobs, webhooks, retention and the scrub."""

@@ -212,7 +212,7 @@ class _Pace:
     def __init__(self, limits: ScrubLimits, pause: Callable[[float], object]) -> None:
         self._limits = limits
         self._pause = pause
-        self._began = time.monotonic()
+        self._started_at = time.monotonic()
         self._n_bytes = 0
 
     @property
@@ -223,7 +223,7 @@ class _Pace:
     def count(self, n_bytes: int) -> None:
         """Count bytes that were read, and wait until so many may be."""
         self._n_bytes += n_bytes
-        ahead_s = self._n_bytes / self._limits.bytes_per_s - (time.monotonic() - self._began)
+        ahead_s = self._n_bytes / self._limits.bytes_per_s - (time.monotonic() - self._started_at)
         if ahead_s > 0:
             self._pause(ahead_s)
 

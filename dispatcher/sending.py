@@ -3,7 +3,7 @@
 The name in the URL is resolved once, all its addresses are checked, and the connection goes to one of them; certificate
 and Host header are those of the name. No redirect is followed, no proxy used, no cookie stored, no connection used
 twice: two names may share an address, and a check of one is not a check of the other. What a receiver
-answers besides its status is read up to a bound and thrown away, so an inner service can't be read through this one.
+answers besides its status is read up to a bound and discarded, so an inner service can't be read through this one.
 """
 
 import asyncio

@@ -152,7 +152,7 @@ def _remove(database: Database, store: ObjectStore, folder: str, keys: list[str]
 def _delete(store: ObjectStore, orphans: Iterable[ListedObject]) -> SweepResult:
     deleted = SweepResult()
     for orphan in orphans:
-        # A file whose name the store itself would not give is left alone.
+        # A file whose name is no key of the store is not deleted.
         with contextlib.suppress(ObjectNotFoundError):
             store.delete(orphan.key)
             deleted += SweepResult(1, orphan.size_bytes)

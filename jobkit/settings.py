@@ -1,7 +1,7 @@
 """Settings from environment variables, all with the prefix QUADPATCH_.
 
 An unknown name with that prefix stops the start: a mistyped limit that is silently ignored is worse than none.
-Names that start with QUADPATCH_CLIENT_ belong to the client and are left alone.
+Names that start with QUADPATCH_CLIENT_ belong to the client and are ignored.
 """
 
 import difflib

@@ -38,7 +38,7 @@ _logger = logging.getLogger("service")
 
 
 class EventStream:
-    """The events of one job on their way to one client; `after` is the number of the last one."""
+    """The stream of events of one job to one client; `after` is the number of the last one."""
 
     def __init__(self, job_id: str, after: int, ping_s: float) -> None:
         self.job_id = job_id

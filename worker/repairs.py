@@ -70,34 +70,34 @@ class _Repaired:
     stages: StageSeconds
 
 
-def repair(context: Context, started: StartedAttempt) -> JobState | None:
+def repair(context: Context, started_attempt: StartedAttempt) -> JobState | None:
     """Work on a started attempt and settle it; return the job's state then, None where the attempt was taken away."""
-    outcome = outcome_of(lambda: _run(context, started), f"job {started.attempt.job_id}")
+    outcome = outcome_of(lambda: _run(context, started_attempt), f"job {started_attempt.attempt.job_id}")
     if not isinstance(outcome, _Repaired):
-        _drop(context, started)
+        _drop(context, started_attempt)
     try:
-        state = _settle_when_available(lambda: _settle(context, started, outcome))
+        state = _settle_when_available(lambda: _settle(context, started_attempt, outcome))
     except StaleAttemptError as error:
         _log.warning("the attempt may write no more: %s", error)
         # The connection may have broken after the commit that published the result: then the files are in use.
-        if _settle_when_available(lambda: _has_published(context, started)):
-            return context.jobs.get(started.attempt.job_id).state
-        _drop(context, started)
+        if _settle_when_available(lambda: _has_published(context, started_attempt)):
+            return context.jobs.get(started_attempt.attempt.job_id).state
+        _drop(context, started_attempt)
         return None
     if isinstance(outcome, _Repaired) and not state.has_result:
-        _drop(context, started)
-    _log.info("job %s, attempt %d: %s", started.attempt.job_id, started.attempt.number, state.value)
+        _drop(context, started_attempt)
+    _log.info("job %s, attempt %d: %s", started_attempt.attempt.job_id, started_attempt.attempt.number, state.value)
     if state == JobState.QUEUED and not (isinstance(outcome, Failure) and outcome.is_outside):
-        _resubmit(context, started)
+        _resubmit(context, started_attempt)
     return state
 
 
-def _has_published(context: Context, started: StartedAttempt) -> bool:
+def _has_published(context: Context, started_attempt: StartedAttempt) -> bool:
     try:
-        job = context.jobs.get(started.attempt.job_id)
+        job = context.jobs.get(started_attempt.attempt.job_id)
     except JobNotFoundError:
         return False
-    return job.attempt == started.attempt.number and job.state.has_result
+    return job.attempt == started_attempt.attempt.number and job.state.has_result
 
 
 def _settle_when_available(settle: Callable[[], T]) -> T:
@@ -113,21 +113,21 @@ def _settle_when_available(settle: Callable[[], T]) -> T:
             time.sleep(_PAUSE_S)
 
 
-def _drop(context: Context, started: StartedAttempt) -> None:
+def _drop(context: Context, started_attempt: StartedAttempt) -> None:
     """Remove the files of an attempt that published nothing; an unavailable store leaves them to the sweep."""
     try:
-        drop_result(started.attempt, context.store)
+        drop_result(started_attempt.attempt, context.store)
     except (StoreUnavailableError, OSError) as error:
-        _log.warning("files of %s are left to the sweep: %s", started.attempt, error)
+        _log.warning("files of %s are left to the sweep: %s", started_attempt.attempt, error)
 
 
-def _run(context: Context, started: StartedAttempt) -> _Repaired:
-    with Heartbeat(_heartbeat_calls(context, started)) as heartbeat:
-        return _work(context, started, heartbeat)
+def _run(context: Context, started_attempt: StartedAttempt) -> _Repaired:
+    with Heartbeat(_heartbeat_calls(context, started_attempt)) as heartbeat:
+        return _work(context, started_attempt, heartbeat)
 
 
-def _work(context: Context, started: StartedAttempt, heartbeat: Heartbeat) -> _Repaired:
-    job, began = started.job, time.monotonic()
+def _work(context: Context, started_attempt: StartedAttempt, heartbeat: Heartbeat) -> _Repaired:
+    job, started_at = started_attempt.job, time.monotonic()
     source = context.meshes.source(job.mesh_id)
     model = model_argument(job.model, context.registry, context.store, context.cache_folder)
     deprecated = deprecation(job.model, context.registry)
@@ -146,7 +146,7 @@ def _work(context: Context, started: StartedAttempt, heartbeat: Heartbeat) -> _R
             log_engine_tail(folder / LOG_NAME)
         if deprecated is not None:
             note_deprecation(folder, f"{job.model.name}@{job.model.version}", deprecated.reason)
-        result = store_result(folder, request, started.attempt, context.store, time.monotonic() - began)
+        result = store_result(folder, request, started_attempt.attempt, context.store, time.monotonic() - started_at)
         return _Repaired(result, stage_seconds(folder, job.spec.method.method))
 
 
@@ -178,8 +178,8 @@ class _StopRule:
         return StopReason.DRAINED if now - self._drained_at > _DRAIN_GRACE_S else None
 
 
-def _heartbeat_calls(context: Context, started: StartedAttempt) -> HeartbeatCalls:
-    attempts, jobs, attempt, settings = context.attempts, context.jobs, started.attempt, context.settings
+def _heartbeat_calls(context: Context, started_attempt: StartedAttempt) -> HeartbeatCalls:
+    attempts, jobs, attempt, settings = context.attempts, context.jobs, started_attempt.attempt, context.settings
     return HeartbeatCalls(
         renew=lambda memory_mb: attempts.heartbeat(attempt, settings.lease_s, memory_mb),
         is_canceled=lambda: _is_canceled(jobs.get(attempt.job_id), attempt),
@@ -198,8 +198,8 @@ def _is_canceled(job: Job, attempt: Attempt) -> bool:
     return job.state is JobState.CANCELING
 
 
-def _settle(context: Context, started: StartedAttempt, outcome: _Repaired | Failure | StopReason) -> JobState:
-    attempts, attempt = context.attempts, started.attempt
+def _settle(context: Context, started_attempt: StartedAttempt, outcome: _Repaired | Failure | StopReason) -> JobState:
+    attempts, attempt = context.attempts, started_attempt.attempt
     if isinstance(outcome, _Repaired):
         return attempts.publish(attempt, outcome.result, outcome.stages)
     if isinstance(outcome, Failure):
@@ -217,8 +217,8 @@ def _settle(context: Context, started: StartedAttempt, outcome: _Repaired | Fail
     return JobState.CANCELED
 
 
-def _resubmit(context: Context, started: StartedAttempt) -> None:
+def _resubmit(context: Context, started_attempt: StartedAttempt) -> None:
     try:
-        submit_job(context.database, context.queue, started.attempt.job_id, started.attempt.number)
+        submit_job(context.database, context.queue, started_attempt.attempt.job_id, started_attempt.attempt.number)
     except QueueUnavailableError:
-        _log.warning("the queue does not answer; job %s is put into it later", started.attempt.job_id)
+        _log.warning("the queue does not answer; job %s is put into it later", started_attempt.attempt.job_id)

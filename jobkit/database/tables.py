@@ -250,7 +250,7 @@ class WebhookRow(Base):
 
 
 class DeliveryRow(Base):
-    """A message on its way to a subscriber, written in the transaction of the change that it tells of."""
+    """A message to a subscriber, written in the transaction of the change that it reports."""
 
     __tablename__ = "deliveries"
     id: Mapped[str] = mapped_column(String(40), primary_key=True)

@@ -18,27 +18,27 @@ class WriteQueue:
 
     def __init__(self) -> None:
         self._changed = threading.Condition()
-        self._waiting: deque[object] = deque()
+        self._tickets: deque[object] = deque()
 
     def __len__(self) -> int:
         """Return how many threads write or wait for it."""
-        return len(self._waiting)
+        return len(self._tickets)
 
     def __enter__(self) -> None:
-        mine = object()
+        ticket = object()
         with self._changed:
-            self._waiting.append(mine)
+            self._tickets.append(ticket)
             is_first = False
             try:
-                is_first = self._changed.wait_for(lambda: self._waiting[0] is mine, BUSY_TIMEOUT_MS / 1000)
+                is_first = self._changed.wait_for(lambda: self._tickets[0] is ticket, BUSY_TIMEOUT_MS / 1000)
             finally:
                 if not is_first:
-                    self._waiting.remove(mine)
+                    self._tickets.remove(ticket)
                     self._changed.notify_all()
         if not is_first:
             raise DatabaseUnavailableError("other threads write to the database")
 
     def __exit__(self, *_: object) -> None:
         with self._changed:
-            self._waiting.popleft()
+            self._tickets.popleft()
             self._changed.notify_all()

@@ -19,7 +19,7 @@ _ONNX_START = b"\x08"
 
 
 def artifact_format(path: Path) -> Literal["safetensors", "onnx"]:
-    """Tell the format of a model file by its first bytes.
+    """Return the format of a model file, from its first bytes.
 
     Raises
     ------

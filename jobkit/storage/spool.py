@@ -73,7 +73,7 @@ class SpoolingWriter:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """Throw away what was not committed."""
+        """Discard what was not committed."""
         with contextlib.suppress(OSError):
             self._path.unlink(missing_ok=True)
         # Closing flushes, which fails again on a full disk; the bytes are not wanted any more.

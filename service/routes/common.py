@@ -160,7 +160,7 @@ def job_etag(job: Job) -> str:
 
 
 def deprecation_header(since: datetime) -> dict[str, str]:
-    """Return the header that tells of a deprecation (RFC 9745)."""
+    """Return the header of a deprecation (RFC 9745)."""
     return {"Deprecation": f"@{int(since.timestamp())}"}
 
 

@@ -41,9 +41,9 @@ def modules_with_onnxruntime() -> list[str]:
 
 
 def left_by(code: str, home: Path) -> list[str]:
-    """Run code in a fresh interpreter that dies of any socket, for a user without files; return the files left."""
+    """Run code in a new interpreter that any socket ends, for a user without files; return the files left."""
     if not has_seccomp():
-        pytest.skip("this kernel can't tell of sockets")
+        pytest.skip("this kernel has no seccomp filters")
     home.mkdir()
     environment = {name: value for name, value in os.environ.items() if not name.startswith(("XDG_", "ORT_"))}
     environment |= {"HOME": str(home), "TMPDIR": str(home)}

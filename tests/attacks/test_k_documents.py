@@ -1,4 +1,4 @@
-"""What documents, examples and messages promise is so."""
+"""Documents, examples and messages agree with the code."""
 
 import inspect
 import json

@@ -76,7 +76,7 @@ def test_files_of_attempts_that_published_nothing_go(
 
 
 def test_a_database_that_was_just_set_up_deletes_nothing(database: Database, store: ObjectStore) -> None:
-    """It may be the wrong one, or its backup may still be on its way."""
+    """It may be the wrong one, or its backup may not be restored yet."""
     put(store, b"of another time")
     aging = AgingStore(store)
     aging.wait(99 * GRACE)

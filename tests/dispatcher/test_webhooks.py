@@ -79,7 +79,7 @@ def test_a_dispatcher_that_dies_between_commit_and_send_loses_nothing(
     with receiving() as receiver:
         subscribe(receiver.url())
         jobs = {fail_job() for _ in range(6)}
-        # The first one claims what it may and dies; its claims run out.
+        # The first one claims what it may and is killed; its claims run out.
         lost = claim_due(database, 100, {}, 60.0)
         assert len(lost) == MAX_PER_WEBHOOK
         deliver_webhooks(database, settings, never)

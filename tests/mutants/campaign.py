@@ -144,7 +144,7 @@ def _peak_mb(pid: int) -> float:
 
 
 def left_behind(data: Path) -> list[str]:
-    """Return what lies in the folders of work and of bytes on their way."""
+    """Return what lies in the folders of work and of incoming bytes."""
     places = [
         *(data / "work").glob("*/request-*"),
         *(data / "scratch").rglob("*"),

@@ -24,7 +24,7 @@ def test_a_killed_worker_starts_again_under_its_process_id(queue: TaskQueue, set
 
 
 def test_a_worker_whose_executor_is_replaced_registers_again(queue: TaskQueue, settings: Settings) -> None:
-    """RQ refuses a name that it takes for alive, as that of an executor that lost its Valkey."""
+    """RQ refuses a name that is still registered, as that of an executor that lost its Valkey."""
     name = worker_name(1)
     first, second = (Executor(queue, settings.queue_name, name, threading.Event()) for _ in range(2))
     first.register_birth()

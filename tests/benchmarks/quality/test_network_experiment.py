@@ -23,7 +23,7 @@ pytestmark = pytest.mark.slow
 BUDGET = Budget(None, 2)
 SMALL = ARCHITECTURES["small_4x"]
 # The same network by another name, so that there are two to compare.
-TWIN = Architecture("twin", SMALL.resolution, SMALL.recipe, SMALL.channels, SMALL.build, SMALL.output)
+COPY = Architecture("copy", SMALL.resolution, SMALL.recipe, SMALL.channels, SMALL.build, SMALL.output)
 
 
 @pytest.fixture(scope="module")
@@ -53,12 +53,12 @@ def test_every_protocol_learns_from_its_own_meshes_and_gives_three_tables_and_a_
 
 
 def test_several_networks_are_drawn_over_their_parameters(networks: Networks, tmp_path: Path) -> None:
-    two = replace(networks, architectures=[SMALL, TWIN])
+    two = replace(networks, architectures=[SMALL, COPY])
     cases = [networks.paper.bench.case(networks.all_shapes[0], "0.1", tmp_path)]
     outcome = networks_experiment(two, cases, NetworkOptions(budget=BUDGET), is_drawing=False)
     (axes,) = outcome.plots["parameters_local_0.1"].axes
-    assert [np.asarray(line.get_xydata()).tolist() for line in axes.lines[:2]] == [[[65_345, 2.0]]] * 2
-    assert [text.get_text() for text in axes.texts] == ["small_4x", "twin"]
+    assert [line.get_xydata().tolist() for line in axes.lines[:2]] == [[[65_345, 2.0]]] * 2
+    assert [text.get_text() for text in axes.texts] == ["small_4x", "copy"]
 
 
 def test_a_network_repairs_by_the_recipe_of_the_paper(networks: Networks, tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""What every store promises, on local files and on a real S3 server."""
+"""What every store guarantees, on local files and on a real S3 server."""
 
 import hashlib
 from collections.abc import Iterator

@@ -25,7 +25,7 @@ def small(settings: Settings) -> Iterator[TestClient]:
 
 @pytest.fixture
 def stored_files(settings: Settings, store: ObjectStore) -> Callable[[], list[str]]:
-    """All that lies in the store, and what is on its way there."""
+    """All files of the store, and incoming ones."""
 
     def listing() -> list[str]:
         folders = (settings.data_dir / "objects" / "incoming", settings.data_dir / "scratch")

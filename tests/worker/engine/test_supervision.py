@@ -32,7 +32,7 @@ def failure_of(fork_server: ForkServer, folder: Path, behaviour: str, limits: En
 
 
 def engines() -> list[psutil.Process]:
-    """Children of the fork server of this process that are alive."""
+    """Children of the fork server of this process that run."""
     return [
         engine
         for fork_server in psutil.Process().children()
