@@ -31,6 +31,12 @@ TEST := $(PYTHON_OF_TESTS) $(PYTEST)
 test: $(READY)            ## the tests, with the real Valkey
 	@$(TEST) --durations 10 -m "not slow" $(ARGS)
 
+# What it measures, and how child processes take part, stands in pyproject.toml under [tool.coverage.run].
+coverage: $(READY)        ## lines and branches that `make test` runs: make coverage ARGS="tests/quadpatch/mesh"
+	@rm -rf build/coverage && mkdir -p build/coverage
+	@$(PYTHON_OF_TESTS) coverage run -m $(PYTEST) -m "not slow" $(ARGS); status=$$?; \
+		$(BIN)/python -m coverage combine --quiet && $(BIN)/python -m coverage report && exit $$status
+
 test-slow: $(READY)       ## the tests that take long: whole campaigns, trainings, local stacks that are killed
 	@$(TEST) --durations 10 -m slow $(ARGS)
 

@@ -3,6 +3,8 @@
 Run ``python -m benchmarks.service``. It starts a queue and the API of a local stack with their default settings in a
 fresh folder, on two cores together with the clients, fills the database with jobs in all states, and keeps some of
 them moving as workers do. Times mean something only on an idle machine.
+
+Tested in `tests/benchmarks/test_commands.py`.
 """
 
 import argparse

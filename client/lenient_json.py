@@ -3,6 +3,8 @@
 What a client sends is checked strictly. What it reads may hold options, states and words that came later: an unknown
 option is left out, an unknown word stays as it is, and an unknown state is replaced by the one that fits the rest of
 the answer.
+
+Tested in `tests/attacks/test_j_client.py`.
 """
 
 import json

@@ -2,6 +2,8 @@
 
 Only files in the folder of the glTF file and below it are taken up. A name that leads elsewhere is refused: the file
 may be untrusted, and the files that it names are sent to the service.
+
+Tested in `tests/attacks/test_j_client.py`.
 """
 
 import base64

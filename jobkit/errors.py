@@ -46,6 +46,8 @@ Beside the tree stand errors that are faults of this code. No handler answers th
 
     DatabaseError                   the database refused a statement, though it works
     └── RowConflictError            a constraint refused a row; callers that expect this try again
+
+Tested in `tests/test_documents.py`.
 """
 
 from shared_rules.text import printable

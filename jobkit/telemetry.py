@@ -27,35 +27,6 @@ Attributes = Mapping[str, str | int | float | bool]
 _log = logging.getLogger("quadpatch.telemetry")
 
 
-class Span:
-    """A span of a trace; no-op where no traces are sent."""
-
-    def __init__(self, span: "OtelSpan | None" = None) -> None:
-        self._span = span
-
-    def note(self, name: str, value: str | int | float | bool) -> None:
-        """Set an attribute."""
-        if self._span is not None:
-            self._span.set_attribute(name, value)
-
-    def rename(self, name: str) -> None:
-        """Give it a name that was not known at its start."""
-        if self._span is not None:
-            self._span.update_name(name)
-
-    def fail(self, reason: str) -> None:
-        """Mark it as failed."""
-        if self._span is not None:
-            from opentelemetry.trace import Status, StatusCode  # noqa: PLC0415 - an extra
-
-            self._span.set_status(Status(StatusCode.ERROR, reason))
-
-    def end(self) -> None:
-        """End it now."""
-        if self._span is not None:
-            self._span.end()
-
-
 class Telemetry:
     """Makes the spans of one process.
 

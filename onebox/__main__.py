@@ -1,4 +1,7 @@
-"""`python -m onebox serve` runs a local stack; `python -m onebox demo` repairs a real scan with one."""
+"""`python -m onebox serve` runs a local stack; `python -m onebox demo` repairs a real scan with one.
+
+Tested in `tests/onebox/test_local_stack.py`.
+"""
 
 import sys
 from pathlib import Path

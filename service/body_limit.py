@@ -1,4 +1,7 @@
-"""A limit on the request bodies that arrive at the same time: each takes memory and a file."""
+"""A limit on the request bodies that arrive at the same time: each takes memory and a file.
+
+Tested in `tests/attacks/test_d_one_client_alone.py`.
+"""
 
 from http import HTTPStatus
 

@@ -3,6 +3,8 @@
 uvicorn has none of these limits. A connection costs a client a packet and the service a descriptor, so a client that
 opens thousands and sends nothing would keep all others out. Where there are too many, the connection that has waited
 longest for its client is closed; where all of them have a request at work, the newest is refused.
+
+Tested in `tests/attacks/test_d_one_client_alone.py`.
 """
 
 import asyncio

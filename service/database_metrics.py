@@ -1,4 +1,7 @@
-"""Metrics that are read from the tables."""
+"""Metrics that are read from the tables.
+
+Tested in `tests/service/test_metrics.py`.
+"""
 
 from collections.abc import Iterator
 from datetime import datetime, timedelta

@@ -17,7 +17,9 @@ def make_plan(spec: JobSpec, facts: MeshFacts, model: ResolvedModel, settings: S
     check_hole_ids(spec.holes, facts)
     choices = choose_holes(facts.holes, spec.holes, facts.diagonal)
     if not (isinstance(spec.method, DictionaryMethod) and spec.method.recipe == "paper"):
-        choices = join_islands(facts.holes, choices)  # the recipe of the paper has no islands
+        choices = join_islands(
+            [hole.lies_in for hole in facts.holes], choices
+        )  # the recipe of the paper has no islands
     holes = [
         PlannedHole(
             **hole.model_dump(),
@@ -44,9 +46,6 @@ def make_plan(spec: JobSpec, facts: MeshFacts, model: ResolvedModel, settings: S
 
 def check_hole_ids(selection: HoleSelection, facts: MeshFacts) -> None:
     """Raise UnknownHoleError if an explicit id names no hole."""
-    listed_ids = {i for ids in (selection.ids, *(rule.ids for rule in selection.rules)) for i in ids or ()}
-    unknown_ids = sorted(listed_ids - {hole.id for hole in facts.holes})
-    if unknown_ids:
-        raise UnknownHoleError(
-            f"no hole has the id {unknown_ids[0]}; this mesh has {len(facts.holes)} holes, counted from 0"
-        )
+    message = unknown_hole(facts.holes, selection)
+    if message is not None:
+        raise UnknownHoleError(message)

@@ -1,6 +1,8 @@
 """Errors of HTTP requests, and the translation of every error into an RFC 9457 problem.
 
 Only this module gives the contract's errors an HTTP status.
+
+Tested in `tests/service/test_handlers.py`.
 """
 
 from collections.abc import Mapping, Sequence

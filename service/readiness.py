@@ -2,6 +2,8 @@
 
 To accept a job needs the database, which holds its row, and the store, which holds the mesh. Without the queue or a
 dispatcher jobs wait and none is lost: the answer is `degraded`, so that an operator acts, and not a refusal.
+
+Tested in `tests/service/routes/test_health.py`.
 """
 
 import logging

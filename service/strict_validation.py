@@ -13,7 +13,6 @@ from fastapi.dependencies.models import Dependant
 from fastapi.routing import APIRoute
 
 from jobkit.errors import TooLargeError
-from jobkit.strict_json import StrictJsonError, read_json
 from service.body_limit import has_body
 from service.content import precondition_failed
 from service.digests import CheckedBody, refuse_coding

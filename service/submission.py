@@ -1,4 +1,7 @@
-"""From a spec to a queued job: everything that is checked before a 202."""
+"""From a spec to a queued job: everything that is checked before a 202.
+
+Tested in `tests/service/routes/test_jobs.py`.
+"""
 
 import logging
 from dataclasses import dataclass

@@ -2,6 +2,8 @@
 
 Python's reader takes NaN, numbers that overflow to infinity, lone surrogates, repeated names and nesting as deep as its
 stack: each of them would fail later, where no client can be told.
+
+Tested in `tests/attacks/test_a_text_is_data.py`.
 """
 
 import json

@@ -16,7 +16,7 @@ LONGEST = (
 )
 
 
-class SharingScheduling(LoadFileScheduling):
+class SharingScheduling(LoadFileScheduling):  # type: ignore[misc]  # xdist carries no types
     """Like `--dist loadfile`, with one local stack: each process would start one of its own, with its workers."""
 
     def _split_scope(self, nodeid: str) -> str:

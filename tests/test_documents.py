@@ -16,8 +16,7 @@ from PIL import Image
 import jobkit.errors
 import quadpatch.errors
 from client.exit_codes import MEANINGS
-from jobkit.schema import JobState
-from jobkit.schema.jobs import STAGES
+from jobkit.schema import STAGES, JobState
 from jobkit.settings import settings_table
 from onebox.demo import find_scan
 from quadpatch.calibration import calibration_set, error_model

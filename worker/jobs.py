@@ -26,9 +26,7 @@ def run_job(job_id: str) -> None:
     """Start an attempt at a job and work on it."""
     context = current_context()
     try:
-        started = _start_when_available(
-            context, lambda: context.attempts.start(job_id, context.name, context.settings.lease_s)
-        )
+        started = _available(context)(lambda: context.attempts.start(job_id, context.name, context.settings.lease_s))
     except (StaleAttemptError, NotFoundError, DatabaseUnavailableError) as error:
         _log.info("nothing to do: %s", error)
         return
@@ -52,8 +50,8 @@ def inspect_mesh(mesh_id: str) -> None:
     """Analyse an uploaded mesh: format, size, boundary loops."""
     context = current_context()
     try:
-        analysis = _start_when_available(
-            context, lambda: context.meshes.start_analysis(mesh_id, context.name, context.settings.lease_s)
+        analysis = _available(context)(
+            lambda: context.meshes.start_analysis(mesh_id, context.name, context.settings.lease_s)
         )
     except (StaleAttemptError, NotFoundError, DatabaseUnavailableError) as error:
         _log.info("nothing to do: %s", error)
@@ -66,9 +64,7 @@ def prove_model(reference: str) -> None:
     """Prove a published version of a model, `name@version`."""
     context = current_context()
     try:
-        proof = _start_when_available(
-            context, lambda: context.proofs.start(reference, context.name, context.settings.lease_s)
-        )
+        proof = _available(context)(lambda: context.proofs.start(reference, context.name, context.settings.lease_s))
     except (StaleAttemptError, NotFoundError, DatabaseUnavailableError) as error:
         _log.info("nothing to do: %s", error)
         return
@@ -76,8 +72,8 @@ def prove_model(reference: str) -> None:
         prove(context, proof)
 
 
-def _start_when_available(context: Context, start: Callable[[], T]) -> T:
-    """Start, and wait while the database is unavailable.
+def _available(context: Context) -> Retrying:
+    """Return what starts a task, and waits while the database is unavailable.
 
     Workers that drop their entries would soon empty the queue. After GRACE_S the dispatcher takes the entry for lost
     and puts it into the queue again, so a longer wait gains nothing.

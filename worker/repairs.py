@@ -50,11 +50,11 @@ _PAUSE_S = 1.0
 _DRAINED = JobError(code="worker_drained", message="the worker was stopped in the middle of the job", retryable=True)
 
 _log = logging.getLogger("quadpatch.worker.repairs")
-# Waits for a database that is away: work that is done is not to be done again for that.
-_patiently = Retrying(
+# Settles an attempt, and waits while the database is unavailable, so that finished work need not be repeated.
+_settle_when_available = Retrying(
     retry=retry_if_exception_type(DatabaseUnavailableError),
-    stop=stop_after_delay(PATIENCE_S),
-    wait=wait_fixed(1.0),
+    stop=stop_after_delay(OUTAGE_TIMEOUT_S),
+    wait=wait_fixed(_PAUSE_S),
     before_sleep=lambda state: _log.warning(
         "the attempt waits to be settled: %s", state.outcome and state.outcome.exception()
     ),
@@ -98,19 +98,6 @@ def _has_published(context: Context, started_attempt: StartedAttempt) -> bool:
     except JobNotFoundError:
         return False
     return job.attempt == started_attempt.attempt.number and job.state.has_result
-
-
-def _settle_when_available(settle: Callable[[], T]) -> T:
-    """Settle, and wait while the database is unavailable, so that finished work need not be repeated."""
-    deadline = time.monotonic() + OUTAGE_TIMEOUT_S
-    while True:
-        try:
-            return settle()
-        except DatabaseUnavailableError as error:
-            if time.monotonic() > deadline:
-                raise
-            _log.warning("the attempt waits to be settled: %s", error)
-            time.sleep(_PAUSE_S)
 
 
 def _drop(context: Context, started_attempt: StartedAttempt) -> None:

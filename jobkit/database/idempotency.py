@@ -2,6 +2,8 @@
 
 One key of one client names one request, whatever it is about. The key of a job goes with the job; others are forgotten
 after `KEEP_FOR`.
+
+Tested in `tests/attacks/test_h_idempotency.py`.
 """
 
 from collections.abc import Callable

@@ -28,7 +28,7 @@ from sqlalchemy.orm import Session
 
 from jobkit.database.write_queue import BUSY_TIMEOUT_MS, WriteQueue
 from jobkit.errors import DatabaseError, DatabaseUnavailableError, RowConflictError, SettingsError
-from jobkit.text import encodable
+from shared_rules.text import encodable
 
 # Any number, the same for all processes of this project.
 _MIGRATION_LOCK = 0x51554144

@@ -2,6 +2,8 @@
 
 The bytes of a deleted version are left to the sweep: they may belong to another one, or be uploaded again. Its
 number is never used again, since finished jobs name it.
+
+Tested in `tests/jobkit/test_races_of_models.py`.
 """
 
 from sqlalchemy import select

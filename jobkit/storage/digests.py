@@ -1,4 +1,7 @@
-"""Checks of bytes against the sha256 that names them, and that sha256 as HTTP writes it (RFC 9530)."""
+"""Checks of bytes against the sha256 that names them, and that sha256 as HTTP writes it (RFC 9530).
+
+Tested in `tests/attacks/test_e_stored.py`.
+"""
 
 import base64
 import hashlib

@@ -8,6 +8,8 @@ row may name it. An object that is written
 - before that last check is young, and the sweep leaves it;
 - between the check and the deletion has a claim or is missing, and the client is asked to send it again;
 - after the deletion stays.
+
+Tested in `tests/dispatcher/test_unreferenced_objects.py`.
 """
 
 import time

@@ -1,4 +1,7 @@
-"""Which objects the scrub reads next: the one checked longest ago first, and damaged ones once an hour."""
+"""Which objects the scrub reads next: the one checked longest ago first, and damaged ones once an hour.
+
+Tested in `tests/dispatcher/test_scrub.py`.
+"""
 
 from collections.abc import Iterator
 from dataclasses import dataclass

@@ -40,7 +40,10 @@ def test_what_cannot_be_proven_is_answered_with_the_check_that_failed(
 ) -> None:
     network = write_network(tmp_path / "copy.onnx", None, 1).read_bytes()
     card = json.dumps({**PAPER, "patch_resolution": 32})
-    files = {"artifact": ("copy.onnx", network), "card": (None, card, "application/json")}
+    files: dict[str, tuple[str, bytes] | tuple[None, str, str]] = {
+        "artifact": ("copy.onnx", network),
+        "card": (None, card, "application/json"),
+    }
     with httpx.Client(base_url=local_stack.url, timeout=GUARD_S) as http:
         refused = http.post("/v1/models/wrong/versions", files=files, headers={"Prefer": "wait=30"})
         assert (refused.status_code, refused.json()["code"]) == (422, "unusable_model")

@@ -170,7 +170,7 @@ class AgingStore:
     @contextlib.contextmanager
     def _killing(self) -> Iterator[None]:
         is_killed = self.kill_countdown == 0
-        self.kill_countdown = None if self.kill_countdown in (None, 0) else self.kill_countdown - 1  # type: ignore[operator]
+        self.kill_countdown = None if self.kill_countdown in (None, 0) else self.kill_countdown - 1
         if is_killed and not self.kills_after:
             raise KilledError
         yield

@@ -9,7 +9,7 @@ def _crash(*_: object) -> None:
     ctypes.string_at(0)
 
 
-main.add_picture = _crash  # type: ignore[assignment]
-main.prove_model = _crash  # type: ignore[assignment]
-main.add_close_up_archive = _crash  # type: ignore[assignment]
+for name in ("add_picture", "prove_model", "add_close_up_archive"):
+    assert hasattr(main, name)
+    setattr(main, name, _crash)
 run_request = main.run_request

@@ -1,4 +1,7 @@
-"""The end of an attempt when the database fails, or another process ends it first."""
+"""The end of an attempt when the database fails, or another process ends it first.
+
+Also tests `worker.outcomes`.
+"""
 
 import io
 import json

@@ -1,4 +1,7 @@
-"""The worker's side of the fork server: start an engine child, and learn how it ended."""
+"""The worker's side of the fork server: start an engine child, and learn how it ended.
+
+Tested in `tests/worker/engine/test_supervision.py`.
+"""
 
 import json
 import os

@@ -7,6 +7,8 @@ cross a fork.
 Requests come over a socket, one at a time: a JSON line with the folder of the request, and the write end of the
 pipe for the child's reports. The answers are `{"ready"}` once the method is loaded, `{"pid"}` when a child runs, and
 `{"pid", "status"}` when it has ended.
+
+Tested in `tests/worker/engine/test_supervision.py`.
 """
 
 import contextlib

@@ -57,7 +57,7 @@ def test_several_networks_are_drawn_over_their_parameters(networks: Networks, tm
     cases = [networks.paper.bench.case(networks.all_shapes[0], "0.1", tmp_path)]
     outcome = networks_experiment(two, cases, NetworkOptions(budget=BUDGET), is_drawing=False)
     (axes,) = outcome.plots["parameters_local_0.1"].axes
-    assert [line.get_xydata().tolist() for line in axes.lines[:2]] == [[[65_345, 2.0]]] * 2
+    assert [np.asarray(line.get_xydata()).tolist() for line in axes.lines[:2]] == [[[65_345, 2.0]]] * 2
     assert [text.get_text() for text in axes.texts] == ["small_4x", "copy"]
 
 

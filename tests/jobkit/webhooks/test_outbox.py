@@ -13,6 +13,7 @@ from jobkit.jobs.attempts import Attempts
 from jobkit.jobs.endings import end_attempt, failure
 from jobkit.jobs.jobs import Jobs, NewJob
 from jobkit.schema import Job, JobError, JobResult, JobState, NewWebhook
+from jobkit.schema.webhooks import WebhookEvent
 from jobkit.webhooks.outbox import OMITTED_FIELDS
 from jobkit.webhooks.subscriptions import Webhooks
 
