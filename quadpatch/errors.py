@@ -16,7 +16,7 @@
     ├── ModelError              unusable_model        a model file that is broken or of the wrong kind
     ├── TorchMissingError       torch_missing         a network is to be fitted, and torch is not installed
     └── StageError              stage_failed          a stage could not do its work on this mesh
-        └── NoQuadsError        no_quads              the outline is too small or too thin for one quad
+        └── NoQuadsError        no_quads              the base surface is too small or too thin for one quad
 
 Tested in `tests/test_documents.py`.
 """

@@ -32,7 +32,7 @@ def verdicts(report: Path) -> list[str]:
 
 def test_fill_writes_the_mesh_the_report_and_the_picture(scan_file: Path, tmp_path: Path) -> None:
     output, report, picture = tmp_path / "out.ply", tmp_path / "out.json", tmp_path / "out.png"
-    files: list[str | Path] = [scan_file, "-o", output, "--report", report, "--picture", picture]
+    files: list[str | Path] = [scan_file, "-o", output, "--report", report, "--preview", picture]
     result = run("fill", *map(str, files), "--model", "smooth")
     assert result.exit_code == 0, result.output
     assert verdicts(report) == ["skipped", "filled_smooth", "filled_smooth", "filled_smooth"]
