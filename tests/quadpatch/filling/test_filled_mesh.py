@@ -41,11 +41,11 @@ def test_without_some_loops_the_others_keep_their_fills(opened: list[int]) -> No
 
 
 @pytest.mark.parametrize("taken", [[], [1], [0, 2], [0, 1, 2]])
-def test_fills_taken_from_another_mesh_come_as_they_are_and_the_rest_stays(existing_edges: list[int]) -> None:
-    mixed = PLATE.with_fills(FLAT, np.array(existing_edges, np.int64))
+def test_fills_taken_from_another_mesh_come_as_they_are_and_the_rest_stays(taken: list[int]) -> None:
+    mixed = PLATE.with_fills(FLAT, np.array(taken, np.int64))
     assert_keeps(mixed, MESH)
     for loop in range(3):
-        assert_same_fill(mixed, FLAT if loop in existing_edges else PLATE, loop)
+        assert_same_fill(mixed, FLAT if loop in taken else PLATE, loop)
     assert (faces_per_edge(mixed.mesh.triangles) == 2).all()
 
 

@@ -64,7 +64,7 @@ def completion(says: Says, blend_factor: float = 1.0, error_model: ErrorModel | 
 
 
 @pytest.mark.parametrize(
-    ("says", "trust"),
+    ("says", "displaced_holes"),
     [
         (Says(), [True, True, True]),
         (Says(coverage=(LEAST_COVERAGE, LEAST_COVERAGE - 0.01, 0.0)), [True, False, False]),
