@@ -87,8 +87,13 @@ def run_check(
 
 def _work_with_heartbeat(context: Context, check: Check, work: Callable[[Observer], T]) -> T:
     settings = context.settings
+
+    def renew(_memory_mb: int) -> bool:
+        check.renew(settings.lease_s)
+        return False  # no client can cancel a check
+
     heartbeat_calls = HeartbeatCalls(
-        renew=lambda memory_mb: check.renew(settings.lease_s),
+        renew=renew,
         is_canceled=lambda: False,
         report=lambda stage, percent: None,
         heartbeat_s=settings.heartbeat_s,

@@ -31,9 +31,10 @@ class HeartbeatCalls:
     Attributes
     ----------
     renew : callable
-        Renews the lease, given the peak memory, in MiB; raises StaleAttemptError.
+        Renews the lease, given the peak memory, in MiB, and returns whether a client asked for the end; raises
+        StaleAttemptError.
     is_canceled : callable
-        Reads whether a client asked for the end.
+        Reads the same between two renewals; raises StaleAttemptError.
     report : callable
         Writes stage and percent; raises StaleAttemptError.
     heartbeat_s : float
@@ -42,7 +43,7 @@ class HeartbeatCalls:
         Seconds for which an unavailable database is waited for: meanwhile no other worker can start the job either.
     """
 
-    renew: Callable[[int], object]
+    renew: Callable[[int], bool]
     is_canceled: Callable[[], bool]
     report: Callable[[str, float], None]
     heartbeat_s: float
@@ -94,9 +95,11 @@ class Heartbeat:
 
     def _beat_once(self) -> None:
         if time.monotonic() - self._renewed_at >= self._heartbeat_calls.heartbeat_s:
-            self._heartbeat_calls.renew(self._peak_mb)
+            is_canceled = self._heartbeat_calls.renew(self._peak_mb)
             self._renewed_at = time.monotonic()
-        if self._heartbeat_calls.is_canceled():
+        else:
+            is_canceled = self._heartbeat_calls.is_canceled()
+        if is_canceled:
             self.stop_reason = StopReason.CANCELED
             return
         progress = (self._progress.stage, self._progress.percent)

@@ -18,11 +18,10 @@ from jobkit.errors import (
     StaleAttemptError,
     StoreUnavailableError,
 )
-from jobkit.jobs.attempts import AT_WORK, StartedAttempt
-from jobkit.jobs.endings import Attempt, stale_error
+from jobkit.jobs.attempts import StartedAttempt
 from jobkit.jobs.stage_seconds import StageSeconds
 from jobkit.requeue import submit_job
-from jobkit.schema import Job, JobError, JobResult, JobState
+from jobkit.schema import JobError, JobResult, JobState
 from jobkit.telemetry import StageSpans
 from quadpatch.stages import failure_of
 from worker.context import Context
@@ -166,23 +165,13 @@ class _StopRule:
 
 
 def _heartbeat_calls(context: Context, started_attempt: StartedAttempt) -> HeartbeatCalls:
-    attempts, jobs, attempt, settings = context.attempts, context.jobs, started_attempt.attempt, context.settings
+    attempts, attempt, settings = context.attempts, started_attempt.attempt, context.settings
     return HeartbeatCalls(
         renew=lambda memory_mb: attempts.heartbeat(attempt, settings.lease_s, memory_mb),
-        is_canceled=lambda: _is_canceled(jobs.get(attempt.job_id), attempt),
+        is_canceled=lambda: attempts.is_canceling(attempt),
         report=lambda stage, percent: attempts.report_progress(attempt, stage, percent),
         heartbeat_s=settings.heartbeat_s,
     )
-
-
-def _is_canceled(job: Job, attempt: Attempt) -> bool:
-    """Tell whether a client asked for the end; raise StaleAttemptError where the attempt has ended without its worker.
-
-    The dispatcher does not wait long for a worker that is slow to acknowledge a cancel.
-    """
-    if job.attempt != attempt.number or job.state.value not in AT_WORK:
-        raise stale_error(attempt)
-    return job.state is JobState.CANCELING
 
 
 def _settle(context: Context, started_attempt: StartedAttempt, outcome: _Repaired | Failure | StopReason) -> JobState:

@@ -37,14 +37,13 @@ AT_WORK = (JobState.RUNNING.value, JobState.CANCELING.value)
 
 @dataclass(frozen=True)
 class StartedAttempt:
-    """An attempt, and the job as it was when it started; `is_last` where a failure of it ends the job.
+    """An attempt, and the job as it was when it started.
 
     `request_id` and `traceparent` name the request that made the job.
     """
 
     attempt: Attempt
     job: Job
-    is_last: bool
     request_id: str | None = None
     traceparent: str | None = None
 
@@ -91,9 +90,7 @@ class Attempts:
                 raise StaleAttemptError(f"job {job_id} is {row.state} and can't be started now")
             session.add(AttemptRow(job_id=job_id, number=number, worker=worker, started_at=now))
             row = existing_job(session, job_id)
-            return StartedAttempt(
-                Attempt(job_id, number), to_job(row), is_last_attempt(row), row.request_id, row.traceparent
-            )
+            return StartedAttempt(Attempt(job_id, number), to_job(row), row.request_id, row.traceparent)
 
     def heartbeat(self, attempt: Attempt, lease_s: float, memory_mb: int = 0) -> bool:
         """Renew the lease and note the most memory seen; return whether the job is to be canceled.
@@ -116,6 +113,21 @@ class Attempts:
                 )
             state = session.scalars(select(JobRow.state).where(JobRow.id == attempt.job_id)).one()
             return state == JobState.CANCELING
+
+    def is_canceling(self, attempt: Attempt) -> bool:
+        """Read whether the job is to be canceled.
+
+        Raises
+        ------
+        StaleAttemptError
+            If the attempt is not the latest any more, or has ended without its worker: the dispatcher does not wait
+            long for a worker that is slow to acknowledge a cancel.
+        """
+        with self._database.read() as session:
+            state = session.scalars(select(JobRow.state).where(JobRow.id == attempt.job_id, *_fences(attempt))).first()
+        if state is None:
+            raise stale_error(attempt)
+        return state == JobState.CANCELING
 
     def report_progress(self, attempt: Attempt, stage: str, percent: float) -> None:
         """Write the stage at work and the percentage done of the whole repair; raise StaleAttemptError."""

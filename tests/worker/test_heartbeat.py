@@ -19,17 +19,18 @@ class FakeAttempt:
         self.reports: list[tuple[str, float]] = []
         self.has_beaten = threading.Event()
 
-    def renew(self, memory_mb: int) -> None:
+    def renew(self, memory_mb: int) -> bool:
         self.renewals += 1
         self.memory_mb = memory_mb
         if self.renewals >= 2:
             self.has_beaten.set()
         if self.renewal is not None:
             raise self.renewal
+        return self.cancel
 
-    def heartbeat_calls(self, outage_timeout_s: float = 30.0) -> HeartbeatCalls:
+    def heartbeat_calls(self, outage_timeout_s: float = 30.0, heartbeat_s: float = 0.0) -> HeartbeatCalls:
         return HeartbeatCalls(
-            self.renew, lambda: self.cancel, lambda *report: self.reports.append(report), 0.0, outage_timeout_s
+            self.renew, lambda: self.cancel, lambda *report: self.reports.append(report), heartbeat_s, outage_timeout_s
         )
 
 
@@ -51,8 +52,9 @@ def test_the_most_memory_that_was_seen_goes_out_with_the_heartbeat() -> None:
     assert attempt.memory_mb == 250
 
 
-def test_a_cancel_flag_is_brought_back() -> None:
-    with Heartbeat(FakeAttempt(is_canceled=True).heartbeat_calls()) as heartbeat:
+@pytest.mark.parametrize("heartbeat_s", [0.0, 3600.0])
+def test_a_cancel_flag_comes_with_a_renewal_and_between_two(heartbeat_s: float) -> None:
+    with Heartbeat(FakeAttempt(is_canceled=True).heartbeat_calls(heartbeat_s=heartbeat_s)) as heartbeat:
         assert wait_until(lambda: heartbeat.stop_reason) is StopReason.CANCELED
 
 

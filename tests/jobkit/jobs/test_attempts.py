@@ -141,12 +141,26 @@ def test_an_attempt_that_is_handed_back_does_not_count(database: Database, job: 
     attempts = Attempts(database)
     for number in range(1, 6):
         started = attempts.start(job.id, "w", 30)
-        assert (started.attempt.number, started.is_last) == (number, False)
+        assert started.attempt.number == number
         assert attempts.hand_back(started.attempt, LOST) == JobState.QUEUED
     assert attempts.requeue(attempts.start(job.id, "w", 30).attempt, LOST) == JobState.QUEUED
-    last = attempts.start(job.id, "w", 30)
-    assert last.is_last
-    assert attempts.requeue(last.attempt, LOST) == JobState.FAILED
+    assert attempts.requeue(attempts.start(job.id, "w", 30).attempt, LOST) == JobState.FAILED
+
+
+def test_a_cancel_is_read_by_the_latest_attempt_alone(database: Database, job: Job) -> None:
+    attempts = Attempts(database)
+    first = attempts.start(job.id, "w", 30).attempt
+    assert not attempts.is_canceling(first)
+    attempts.requeue(first, LOST)
+    second = attempts.start(job.id, "w", 30).attempt
+    with pytest.raises(StaleAttemptError):
+        attempts.is_canceling(first)
+    Jobs(database).request_cancel(job.id)
+    assert attempts.is_canceling(second)
+    assert attempts.heartbeat(second, 30)
+    attempts.acknowledge_cancel(second)
+    with pytest.raises(StaleAttemptError):
+        attempts.is_canceling(second)
 
 
 def test_a_job_that_waits_out_an_outage_is_not_started_before_its_time(database: Database, job: Job) -> None:
