@@ -2,6 +2,8 @@
 
 That is an unknown or repeated query parameter, a body that is not declared as JSON, and a body or a condition that the
 route does not read.
+
+Tested in `tests/attacks/test_h_http_as_written.py`.
 """
 
 from collections.abc import Callable, Coroutine

@@ -70,7 +70,7 @@ BODY = "x = 1\n" * (LONG + 1)
     [
         ("quadpatch/mesh/new.py", f'"""New."""\n{BODY}', "has no tests/quadpatch/mesh/test_new.py"),
         ("quadpatch/new.py", '"""New.\n\nTested in `tests/test_old.py`.\n"""\n', "is not there"),
-        ("quadpatch/new.py", '"""New.\n\nTested in tests/test_patience.py.\n"""\n', "does not name quadpatch/new.py"),
+        ("quadpatch/new.py", '"""New.\n\nTested in tests/test_waits.py.\n"""\n', "does not name quadpatch/new.py"),
     ],
 )
 def test_a_module_without_a_test_is_found(module: str, source: str, message: str) -> None:
