@@ -164,7 +164,7 @@ NUMBERS_OF_THE_METHOD: dict[str, set[float]] = {
     },
     "quadpatch/recipes/assessment.py": {
         100 * assessment.LEAST_COVERAGE,
-        assessment.MOST_DISAGREEMENT,
+        assessment.MOST_INCONSISTENCY,
         assessment.DOUBTFUL_SHARE,
         100 * assessment.DOUBTFUL_SHARE,
         10 * assessment.DOUBTFUL_SHARE,

@@ -94,7 +94,7 @@ def _work_with_heartbeat(context: Context, check: Check, work: Callable[[Observe
 
     heartbeat_calls = HeartbeatCalls(
         renew=renew,
-        is_canceled=lambda: False,
+        is_cancel_requested=lambda: False,
         report=lambda stage, percent: None,
         heartbeat_s=settings.heartbeat_s,
     )

@@ -33,7 +33,7 @@ class HeartbeatCalls:
     renew : callable
         Renews the lease, given the peak memory, in MiB, and returns whether a client asked for the end; raises
         StaleAttemptError.
-    is_canceled : callable
+    is_cancel_requested : callable
         Reads the same between two renewals; raises StaleAttemptError.
     report : callable
         Writes stage and percent; raises StaleAttemptError.
@@ -44,7 +44,7 @@ class HeartbeatCalls:
     """
 
     renew: Callable[[int], bool]
-    is_canceled: Callable[[], bool]
+    is_cancel_requested: Callable[[], bool]
     report: Callable[[str, float], None]
     heartbeat_s: float
     outage_timeout_s: float = OUTAGE_TIMEOUT_S
@@ -95,11 +95,11 @@ class Heartbeat:
 
     def _beat_once(self) -> None:
         if time.monotonic() - self._renewed_at >= self._heartbeat_calls.heartbeat_s:
-            is_canceled = self._heartbeat_calls.renew(self._peak_mb)
+            is_cancel_requested = self._heartbeat_calls.renew(self._peak_mb)
             self._renewed_at = time.monotonic()
         else:
-            is_canceled = self._heartbeat_calls.is_canceled()
-        if is_canceled:
+            is_cancel_requested = self._heartbeat_calls.is_cancel_requested()
+        if is_cancel_requested:
             self.stop_reason = StopReason.CANCELED
             return
         progress = (self._progress.stage, self._progress.percent)

@@ -168,7 +168,7 @@ def _heartbeat_calls(context: Context, started_attempt: StartedAttempt) -> Heart
     attempts, attempt, settings = context.attempts, started_attempt.attempt, context.settings
     return HeartbeatCalls(
         renew=lambda memory_mb: attempts.heartbeat(attempt, settings.lease_s, memory_mb),
-        is_canceled=lambda: attempts.is_canceling(attempt),
+        is_cancel_requested=lambda: attempts.is_canceling(attempt),
         report=lambda stage, percent: attempts.report_progress(attempt, stage, percent),
         heartbeat_s=settings.heartbeat_s,
     )

@@ -123,7 +123,7 @@ def choose_energy(errors: FloatArray, diameter: float, energies: Sequence[Energy
     return default if is_tie else energies[best]
 
 
-def blend_factor(calibration: CalibrationSet, filled: FilledMesh, displacement: FloatArray) -> float:
+def choose_blend_factor(calibration: CalibrationSet, filled: FilledMesh, displacement: FloatArray) -> float:
     """Choose the share of predicted displacements (k, 3) that leaves the smallest mean error; 0 where none helps."""
     new = filled.mesh.vertices[filled.n_measured_vertices :]
     errors = [

@@ -58,7 +58,7 @@ def fit_error_model(filled: FilledMesh, diameters: FloatArray, errors: FloatArra
     diameters, errors : (n_holes,) float64
         In mesh units.
     """
-    # Holes so small that they got no vertex have no gap: they say nothing, and as outliers would say it loudest.
+    # Holes so small that they got no vertex have no disagreement: as outliers they would weigh most.
     telling = filled.disagreement > 0
     log_u = np.log(_uncertainty(filled, diameters))[telling]
     log_error = np.log(np.maximum(errors / diameters, _LEAST))[telling]

@@ -22,11 +22,11 @@ from quadpatch.mesh.distance import distance_to_mesh
 from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Triangles
 
 # How loops of a mesh may be filled: (mesh, loops) -> filled mesh.
-Fill = Callable[[TriangleMesh, list[IntArray]], FilledMesh]
+FillFunction = Callable[[TriangleMesh, list[IntArray]], FilledMesh]
 
 
 # How some of them may be filled again: (filled mesh, all loops, positions of some, obstacles) -> mesh with their fills.
-Refill = Callable[[FilledMesh, list[IntArray], IntArray, Triangles | None], FilledMesh]
+RefillFunction = Callable[[FilledMesh, list[IntArray], IntArray, Triangles | None], FilledMesh]
 
 
 def _fill_by_thin_plate(
@@ -38,7 +38,7 @@ def _fill_by_thin_plate(
 _DOUBLED = ("doubles_surface", "a fill would lie on the back of the very surface whose border it closes")
 
 # From the smoothest to the plainest.
-PLAINER_FILLS: dict[str, Refill] = {"thin_plate": _fill_by_thin_plate, "constrained": fill_constrained}
+PLAINER_FILLS: dict[str, RefillFunction] = {"thin_plate": _fill_by_thin_plate, "constrained": fill_constrained}
 
 
 @dataclass(frozen=True)
@@ -85,7 +85,7 @@ class LoopsToFill:
 
 
 def fill_checked(
-    mesh: TriangleMesh, wanted: LoopsToFill, fill: Fill, obstacles: Triangles | None = None
+    mesh: TriangleMesh, wanted: LoopsToFill, fill: FillFunction, obstacles: Triangles | None = None
 ) -> CheckedFill:
     """Fill loops, look for faults, and fill those that have any in plainer ways.
 
@@ -127,7 +127,7 @@ def fill_checked(
     return CheckedFill(relieved, faults, names, _departure(relieved, first, replaced), refused)
 
 
-def _first_fill(mesh: TriangleMesh, loops: list[IntArray], fill: Fill, flat: BoolArray) -> FilledMesh:
+def _first_fill(mesh: TriangleMesh, loops: list[IntArray], fill: FillFunction, flat: BoolArray) -> FilledMesh:
     curved, plane = np.flatnonzero(~flat), np.flatnonzero(flat)
     if not len(plane):
         return fill(mesh, loops)
@@ -170,18 +170,18 @@ def _without_wrong(filled: FilledMesh, faults: Faults) -> tuple[FilledMesh, dict
 
 
 def _to_open(faults: Faults) -> IntArray:
-    """Choose loops (k,): those that are wrong by themselves; of rivals, the one with most of them, until none is left.
+    """Choose loops (k,) to open: those that are wrong by themselves, and those that cross most others, until none do.
 
     One fill that runs through all others, such as that of an outer border, costs none of those.
     """
     opened = faults.is_wrong_alone.copy()
-    rivals, n_loops = faults.rivals, len(faults.crossings)
+    crossing_fills, n_loops = faults.crossing_fills, len(faults.crossings)
     while True:
-        rivals = rivals[~opened[rivals].any(axis=1)]
-        if not len(rivals):
+        crossing_fills = crossing_fills[~opened[crossing_fills].any(axis=1)]
+        if not len(crossing_fills):
             return np.flatnonzero(opened)
-        n_rivals = np.bincount(rivals.ravel(), minlength=n_loops)
-        opened[np.lexsort((-faults.crossings, -n_rivals))[0]] = True
+        n_crossing_fills = np.bincount(crossing_fills.ravel(), minlength=n_loops)
+        opened[np.lexsort((-faults.crossings, -n_crossing_fills))[0]] = True
 
 
 def _reason(n_crossings: int) -> tuple[str, str]:

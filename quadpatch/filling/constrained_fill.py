@@ -15,7 +15,7 @@ from quadpatch.filling.faults import Faults, find_faults
 from quadpatch.filling.fill import fair_refined
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.filling.refinement import Refined, refine, relax
-from quadpatch.filling.surroundings import Surroundings
+from quadpatch.filling.rim_neighbourhood import RimNeighbourhood
 from quadpatch.filling.triangulation import Forbidden
 from quadpatch.mesh.distance import nearest_points
 from quadpatch.mesh.intersections import heights, touching_boxes
@@ -142,7 +142,7 @@ class _OneHole:
         self, filled: FilledMesh, loop: IntArray, position: int, obstacles: Triangles, first: TriangleMesh
     ) -> None:
         self._filled, self._position, self._obstacles, self._first = filled, position, obstacles, first
-        self._near = Surroundings.of(filled.measured, [loop])
+        self._near = RimNeighbourhood.of(filled.measured, [loop])
         vertices = filled.measured.vertices
         self._is_single = np.array_equal(vertices, vertices.astype(np.float32))
 

@@ -1,4 +1,4 @@
-"""Fills that lie on the back of the surface whose border they close: a sheet becomes a bag without room in it."""
+"""Fills that lie on the back of the surface whose border they close: the sheet would be doubled."""
 
 import numpy as np
 

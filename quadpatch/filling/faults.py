@@ -32,7 +32,7 @@ class Folds:
         Position of the loop that a new one of the two fills.
     is_flat_rim : (n,) bool
         True where the triangle on the measured side has no height, so its normal is noise.
-    is_excused : (n,) bool
+    is_tolerated : (n,) bool
         True there, and where measured surface folds at one of the shared vertices itself.
     is_sliver : (n,) bool
         True where the new triangle is too low to tell.
@@ -42,7 +42,7 @@ class Folds:
     edges: IntArray
     hole: IntArray
     is_flat_rim: BoolArray
-    is_excused: BoolArray
+    is_tolerated: BoolArray
     is_sliver: BoolArray
 
 
@@ -57,32 +57,32 @@ class Faults:
         New triangles that run through measured or new surface.
     crossing_triangles : (n,) int64
         Those, as triangles of the filled mesh.
-    rivals : (n, 2) int64
+    crossing_fills : (n, 2) int64
         Pairs of loops whose fills run through each other, each pair once.
-    is_lost : (n_loops,) bool
+    is_invalid : (n_loops,) bool
         True where a fill runs through measured surface or through itself, whatever becomes of the others.
     """
 
     folds: Folds
     crossings: IntArray
     crossing_triangles: IntArray
-    rivals: IntArray
-    is_lost: BoolArray
+    crossing_fills: IntArray
+    is_invalid: BoolArray
 
     @property
     def n_folds(self) -> IntArray:
-        """Edges (n_loops,) at which the fill folds over, excused ones too."""
+        """Edges (n_loops,) at which the fill folds over, tolerated ones too."""
         return self._count(np.ones(len(self.folds.hole), bool))
 
     @property
     def is_doubtful(self) -> BoolArray:
         """Loops (n_loops,) that another fill may suit better.
 
-        Those with any fault but the folds of the measured surface, and but for running into a fill that is lost itself.
+        Those with any fault but the folds of the measured surface, and but for crossing a fill that is invalid itself.
         """
-        pairs = self.rivals[~self.is_lost[self.rivals].any(axis=1)]
-        has_rival = np.isin(np.arange(len(self.crossings)), pairs)
-        return np.asarray((self._count(~self.folds.is_excused) > 0) | self.is_lost | has_rival)
+        pairs = self.crossing_fills[~self.is_invalid[self.crossing_fills].any(axis=1)]
+        has_crossing_fill = np.isin(np.arange(len(self.crossings)), pairs)
+        return np.asarray((self._count(~self.folds.is_tolerated) > 0) | self.is_invalid | has_crossing_fill)
 
     @property
     def is_wrong(self) -> BoolArray:
@@ -92,18 +92,18 @@ class Faults:
     @property
     def is_wrong_alone(self) -> BoolArray:
         """Loops (n_loops,) whose fill would be wrong without the fills of others too."""
-        return (self._count(~self.folds.is_excused & ~self.folds.is_sliver) > 0) | self.is_lost
+        return (self._count(~self.folds.is_tolerated & ~self.folds.is_sliver) > 0) | self.is_invalid
 
     @property
     def severity(self) -> IntArray:
         """Order (n_loops,) of fills from good to bad: what makes a fill wrong counts before what makes it doubtful."""
-        doubtful = self._count(~self.folds.is_excused) + self.crossings
+        doubtful = self._count(~self.folds.is_tolerated) + self.crossings
         return np.asarray(np.where(self.is_wrong, _WRONG, 0) + doubtful)
 
     @property
     def doubtful_triangles(self) -> IntArray:
         """Triangles (n,) of the filled mesh that cross others or fold, but where the measured surface asks for it."""
-        folding = self.folds.pairs[~self.folds.is_excused].ravel()
+        folding = self.folds.pairs[~self.folds.is_tolerated].ravel()
         return np.unique(np.concatenate([folding, self.crossing_triangles]))
 
     def _count(self, which: BoolArray) -> IntArray:
@@ -145,11 +145,11 @@ def find_folds(filled: FilledMesh, looked_at: BoolArray) -> Folds:
     turns_itself[edges[~is_new.any(axis=1)]] = True
     of_rim = is_new.any(axis=1) & ~is_new.all(axis=1)
     flat_rim = of_rim & (unsure & ~is_new).any(axis=1)
-    excused = flat_rim | (of_rim & turns_itself[edges].any(axis=1))
+    tolerated = flat_rim | (of_rim & turns_itself[edges].any(axis=1))
     owner = hole[pairs].max(axis=1)
     mine = np.asarray((owner >= 0) & looked_at[owner.clip(0)])
     sliver = (unsure & is_new).any(axis=1)
-    return Folds(*(rows[mine] for rows in (pairs, edges, owner, flat_rim, excused, sliver)))
+    return Folds(*(rows[mine] for rows in (pairs, edges, owner, flat_rim, tolerated, sliver)))
 
 
 def _near(filled: FilledMesh, looked_at: BoolArray) -> BoolArray:
@@ -191,11 +191,11 @@ def _crossings(
     # What is near comes behind the fills that are looked at; it has no loop.
     loops = np.concatenate([owner, np.full(len(near), -1)])[pairs]
     loops = np.unique(np.sort(loops, axis=1), axis=0)
-    is_lost = np.zeros(n_loops, bool)
-    is_lost[loops[(loops[:, 0] < 0) & (loops[:, 1] >= 0), 1]] = True
-    is_lost[loops[(loops[:, 0] == loops[:, 1]) & (loops[:, 0] >= 0), 0]] = True
-    rivals = loops[(loops[:, 0] >= 0) & (loops[:, 0] < loops[:, 1])]
-    return crossings, np.flatnonzero(mine)[crossing], rivals, is_lost
+    is_invalid = np.zeros(n_loops, bool)
+    is_invalid[loops[(loops[:, 0] < 0) & (loops[:, 1] >= 0), 1]] = True
+    is_invalid[loops[(loops[:, 0] == loops[:, 1]) & (loops[:, 0] >= 0), 0]] = True
+    crossing_fills = loops[(loops[:, 0] >= 0) & (loops[:, 0] < loops[:, 1])]
+    return crossings, np.flatnonzero(mine)[crossing], crossing_fills, is_invalid
 
 
 def _boxes(filled: FilledMesh, looked_at: BoolArray) -> tuple[FloatArray, FloatArray]:

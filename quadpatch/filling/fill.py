@@ -1,6 +1,6 @@
 """The geometric answer: holes closed, refined and faired.
 
-It is the floor that learning must beat, and the carrier of the new vertices.
+It is the baseline of learned fills, and has the vertices that they displace.
 """
 
 from dataclasses import dataclass, replace
@@ -10,7 +10,7 @@ import numpy as np
 from quadpatch.filling.fairing import THIN_PLATE, Energy, fair
 from quadpatch.filling.filled_mesh import FilledMesh, rim_diagonals
 from quadpatch.filling.refinement import Refined, refine, relax
-from quadpatch.filling.surroundings import Surroundings
+from quadpatch.filling.rim_neighbourhood import RimNeighbourhood
 from quadpatch.mesh.averages import mean_by
 from quadpatch.types import FloatArray, IntArray, TriangleMesh, Triangles
 
@@ -39,7 +39,7 @@ class ClosedMesh:
     unfilled : list of int
     """
 
-    near: Surroundings
+    near: RimNeighbourhood
     plate: Refined
     disagreement: FloatArray
     rim_variation: FloatArray
@@ -65,7 +65,7 @@ def close_holes(mesh: TriangleMesh, loops: list[IntArray]) -> ClosedMesh:
     loops : list of (n_loop,) int64
         Simple loops with the surface on their left, as `boundary_loops` gives them.
     """
-    near = Surroundings.of(mesh, loops)
+    near = RimNeighbourhood.of(mesh, loops)
     patch, unfilled = near.triangulate()
     # A first, crumpled fairing; its bulge makes room for more vertices, and its shape better weights.
     patch = fair_refined(refine(patch, near.edges), near.adjacent_triangles, THIN_PLATE, uniform=True)
@@ -92,7 +92,7 @@ def close_flat(mesh: TriangleMesh, loops: list[IntArray]) -> FilledMesh:
     FilledMesh
         Its disagreement and rim variation are NaN: nothing is known of its error.
     """
-    near = Surroundings.of(mesh, loops)
+    near = RimNeighbourhood.of(mesh, loops)
     patch, unfilled = near.triangulate()
     return near.filled(refine(patch, near.edges), unfilled)
 

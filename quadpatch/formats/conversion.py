@@ -34,12 +34,12 @@ def encode_as_ply(scene: MergedScene) -> bytes:
         columns += _columns("float", "nx ny nz", attributes.normals.astype("<f4"))
     if attributes.colours is not None:
         columns += _columns("uchar", "red green blue alpha", np.rint(attributes.colours).astype("u1"))
-    columns += _marks(scene.vertex_hole, scene.vertex_confidence)
+    columns += _marks(scene.vertex_hole_id, scene.vertex_confidence)
     faces = [_Column("list uchar int vertex_indices", scene.triangles.astype("<i4"))]
     if attributes.texture is not None:
         flat = np.nan_to_num(attributes.texture).reshape(-1, 6)
         faces.append(_Column("list uchar float texcoord", flat.astype("<f4")))
-    faces += _marks(scene.triangle_hole, scene.triangle_confidence)
+    faces += _marks(scene.triangle_hole_id, scene.triangle_confidence)
     lines = ["ply", "format binary_little_endian 1.0", *([f"comment unit {scene.unit}"] if scene.unit else [])]
     for name, element in (("vertex", columns), ("face", faces)):
         lines.append(f"element {name} {len(element[0].values)}")

@@ -23,9 +23,9 @@ class MergedScene:
     triangles : (m, 3) int64
     vertex_attributes : VertexAttributes
         Of all vertices and triangles; colours without NaN.
-    vertex_hole, vertex_confidence : (n,) int64, (n,) float64
+    vertex_hole_id, vertex_confidence : (n,) int64, (n,) float64
         -1 and 1 for measured vertices.
-    triangle_hole, triangle_confidence : (m,) int64, (m,) float64
+    triangle_hole_id, triangle_confidence : (m,) int64, (m,) float64
         -1 and 1 for measured triangles.
     n_measured : int
         Measured triangles; they come first.
@@ -36,9 +36,9 @@ class MergedScene:
     vertices: Vertices
     triangles: Triangles
     vertex_attributes: VertexAttributes
-    vertex_hole: IntArray
+    vertex_hole_id: IntArray
     vertex_confidence: FloatArray
-    triangle_hole: IntArray
+    triangle_hole_id: IntArray
     triangle_confidence: FloatArray
     n_measured: int
     unit: str | None
@@ -82,9 +82,9 @@ def merge_scene(scan: Scan, fill: Fill) -> MergedScene:
         vertices=joined_vertices(scan, fill),
         triangles=np.concatenate([scan.triangles, fill.triangles]),
         vertex_attributes=VertexAttributes(colours, normals, texture),
-        vertex_hole=np.concatenate([np.full(n_vertices, -1), fill.vertex_hole]),
+        vertex_hole_id=np.concatenate([np.full(n_vertices, -1), fill.vertex_hole_id]),
         vertex_confidence=np.concatenate([np.ones(n_vertices), fill.vertex_confidence]),
-        triangle_hole=np.concatenate([np.full(n_triangles, -1), fill.triangle_hole]),
+        triangle_hole_id=np.concatenate([np.full(n_triangles, -1), fill.triangle_hole_id]),
         triangle_confidence=np.concatenate([np.ones(n_triangles), fill.triangle_confidence]),
         n_measured=n_triangles,
         unit=scan.unit,

@@ -80,15 +80,15 @@ class Fill:
         New vertices only.
     triangles : (l, 3) int64
         Into the scan's vertices followed by `vertices`.
-    vertex_hole, vertex_confidence : (k,) int64, (k,) float64
+    vertex_hole_id, vertex_confidence : (k,) int64, (k,) float64
         Hole id and confidence 0..1 of every new vertex.
-    triangle_hole, triangle_confidence : (l,) int64, (l,) float64
+    triangle_hole_id, triangle_confidence : (l,) int64, (l,) float64
         The same of every new triangle.
     """
 
     vertices: Vertices
     triangles: Triangles
-    vertex_hole: IntArray
+    vertex_hole_id: IntArray
     vertex_confidence: FloatArray
-    triangle_hole: IntArray
+    triangle_hole_id: IntArray
     triangle_confidence: FloatArray

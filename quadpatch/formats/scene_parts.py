@@ -91,7 +91,7 @@ def split_by_part(scan: Scan, fill: Fill, parts: list[Part]) -> list[PartFill]:
     """
     firsts = np.array([part.first for part in parts])
     rim = fill.triangles.ravel()
-    hole = np.repeat(fill.triangle_hole, 3)
+    hole = np.repeat(fill.triangle_hole_id, 3)
     is_measured = rim < len(scan.vertices)
     holes, number = np.unique(hole, return_inverse=True)
     votes = np.zeros((len(holes), len(parts)), dtype=np.int64)

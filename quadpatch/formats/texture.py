@@ -35,7 +35,7 @@ def extend_over_corners(scan: Scan, fill: Fill, coordinates: FloatArray) -> Floa
     corner_chart = _charts(corner_vertex, corner_value)
     # A vertex shared by two holes may need another chart in each: nodes are pairs of hole and vertex.
     n_all = len(scan.vertices) + len(fill.vertices)
-    pair = fill.triangle_hole[:, np.newaxis] * n_all + fill.triangles
+    pair = fill.triangle_hole_id[:, np.newaxis] * n_all + fill.triangles
     nodes, node = np.unique(pair, return_inverse=True)
     corner = _corners_in_main_chart(nodes // n_all, nodes % n_all, corner_vertex, corner_chart)
     known = np.asarray(corner >= 0)

@@ -20,7 +20,7 @@ from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh
 LEAST_COVERAGE = 0.6
 
 # Patches of a hole that differ by more than this share of what they say contradict each other.
-MOST_DISAGREEMENT = 1.5
+MOST_INCONSISTENCY = 1.5
 
 # An expected error of this share of the object's diagonal leaves a confidence of 0.37.
 DOUBTFUL_SHARE = 0.003
@@ -42,8 +42,8 @@ def measure_agreement(
 
 def agreeing_holes(agreement: PatchAgreement) -> BoolArray:
     """Say which holes (n_holes,) the model may complete."""
-    disagreement = agreement.deviation / np.maximum(agreement.departure + agreement.rim_misfit, 1e-300)
-    displaced_holes: BoolArray = (agreement.coverage >= LEAST_COVERAGE) & (disagreement <= MOST_DISAGREEMENT)
+    inconsistency = agreement.deviation / np.maximum(agreement.departure + agreement.rim_misfit, 1e-300)
+    displaced_holes: BoolArray = (agreement.coverage >= LEAST_COVERAGE) & (inconsistency <= MOST_INCONSISTENCY)
     return displaced_holes
 
 

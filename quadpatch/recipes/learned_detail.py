@@ -8,7 +8,7 @@ from functools import partial
 
 import numpy as np
 
-from quadpatch.calibration.calibration_set import CalibrationSet, blend_factor, expect
+from quadpatch.calibration.calibration_set import CalibrationSet, choose_blend_factor, expect
 from quadpatch.calibration.energy_selection import EnergyBlend
 from quadpatch.calibration.error_model import ErrorModel
 from quadpatch.calibration.training_pairs import TrainingSurface
@@ -115,7 +115,7 @@ def complete(
         fitted = inpainter.fitted_to(UndamagedSurface(known_patches, everywhere.base_heights, training_surface))
         if fitted is None:
             return None
-        blend_factor, error_model = _calibrate(calibration, _Model(fitted, seeds, scale))
+        blend_factor, error_model = _calibrate_model(calibration, _Model(fitted, seeds, scale))
     with stages.stage("inpaint"):
         # A model with a blend factor of 0 need not be asked.
         predicted = fitted.predict(sampled.patches, sampled.base_heights) if blend_factor else None
@@ -159,7 +159,7 @@ def _some(count: int, rng: np.random.Generator) -> BoolArray:
     return chosen
 
 
-def _calibrate(calibration: Calibration, model: _Model) -> tuple[float, ErrorModel | None]:
+def _calibrate_model(calibration: Calibration, model: _Model) -> tuple[float, ErrorModel | None]:
     """Complete the calibration holes: the blend factor, and the error to expect."""
     filled = calibration.filled
     if calibration.holes is None or filled is None:
@@ -172,8 +172,8 @@ def _calibrate(calibration: Calibration, model: _Model) -> tuple[float, ErrorMod
     predicted = model.inpainter.predict(sampled.patches, sampled.base_heights)
     joined, agreement = _displacements(filled, sampled.patches, predicted)
     joined = np.where(agreeing_holes(agreement)[filled.vertex_hole][:, None], joined, 0.0)
-    share = blend_factor(calibration.holes, filled, joined)
-    return share, expect(calibration.holes, filled.displaced(share * joined))
+    factor = choose_blend_factor(calibration.holes, filled, joined)
+    return factor, expect(calibration.holes, filled.displaced(factor * joined))
 
 
 def _displacements(filled: FilledMesh, patches: Patches, predicted: FloatArray) -> tuple[FloatArray, PatchAgreement]:

@@ -11,9 +11,9 @@ from worker.heartbeat import Heartbeat, HeartbeatCalls
 class FakeAttempt:
     """Stands in for the database; counts what is asked of it, and may fall ill."""
 
-    def __init__(self, renewal: Exception | None = None, is_canceled: bool = False) -> None:
+    def __init__(self, renewal: Exception | None = None, is_cancel_requested: bool = False) -> None:
         self.renewal = renewal
-        self.cancel = is_canceled
+        self.cancel = is_cancel_requested
         self.renewals = 0
         self.memory_mb = 0
         self.reports: list[tuple[str, float]] = []
@@ -54,7 +54,7 @@ def test_the_most_memory_that_was_seen_goes_out_with_the_heartbeat() -> None:
 
 @pytest.mark.parametrize("heartbeat_s", [0.0, 3600.0])
 def test_a_cancel_flag_comes_with_a_renewal_and_between_two(heartbeat_s: float) -> None:
-    with Heartbeat(FakeAttempt(is_canceled=True).heartbeat_calls(heartbeat_s=heartbeat_s)) as heartbeat:
+    with Heartbeat(FakeAttempt(is_cancel_requested=True).heartbeat_calls(heartbeat_s=heartbeat_s)) as heartbeat:
         assert wait_until(lambda: heartbeat.stop_reason) is StopReason.CANCELED
 
 

@@ -178,9 +178,9 @@ def test_an_attempt_that_another_process_ended_is_noticed_before_its_next_heartb
         job = new_job(context)
         started = Attempts(database).start(job.id, "w-1", 30)
         heartbeat_calls = _heartbeat_calls(context, started)
-        assert not heartbeat_calls.is_canceled()
+        assert not heartbeat_calls.is_cancel_requested()
         context.jobs.request_cancel(job.id)
-        assert heartbeat_calls.is_canceled()
+        assert heartbeat_calls.is_cancel_requested()
         Attempts(database).acknowledge_cancel(started.attempt)
         with pytest.raises(StaleAttemptError):
-            heartbeat_calls.is_canceled()
+            heartbeat_calls.is_cancel_requested()

@@ -66,6 +66,6 @@ def _primitive(store: Store, scene: MergedScene, chosen: BoolArray) -> dict[str,
         # glTF counts v downwards.
         attributes["TEXCOORD_0"] = store.add_array(wedges * [1.0, -1.0] + [0.0, 1.0], "f4")
     if scene.invented[chosen].all():
-        attributes["_HOLE_ID"] = store.add_array(scene.vertex_hole[vertex], "f4")
+        attributes["_HOLE_ID"] = store.add_array(scene.vertex_hole_id[vertex], "f4")
         attributes["_CONFIDENCE"] = store.add_array(scene.vertex_confidence[vertex], "f4")
     return {"attributes": attributes, "indices": store.add_array(triangles.ravel(), "u4", is_index=True), "mode": 4}

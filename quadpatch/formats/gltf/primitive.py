@@ -181,7 +181,7 @@ def _marks(
     """Hole and confidence of each vertex; rim vertices, repeated here, have those of a triangle around them."""
     hole = np.zeros(int(triangles.max()) + 1)
     confidence = np.zeros_like(hole)
-    hole[triangles] = corners.fill.triangle_hole[fill_rows][:, np.newaxis]
+    hole[triangles] = corners.fill.triangle_hole_id[fill_rows][:, np.newaxis]
     confidence[triangles] = corners.fill.triangle_confidence[fill_rows][:, np.newaxis]
     new = vertex >= corners.n_measured
     result_confidence = confidence[local]

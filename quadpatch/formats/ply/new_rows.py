@@ -40,7 +40,7 @@ def new_vertex_rows(scan: Scan, file: PlyFile, fill: Fill) -> list[Table]:
     """
     rows = file.element("vertex")
     assert rows is not None  # read_ply refuses a file without vertices
-    marks = _marks(fill.vertex_hole, fill.vertex_confidence)
+    marks = _marks(fill.vertex_hole_id, fill.vertex_confidence)
     given: dict[str, Values] = {name: fill.vertices[:, axis] for axis, name in enumerate("xyz")}
     normals = vertex_normals(scan, fill)
     given |= {name: normals[:, axis] for axis, name in enumerate(_NORMALS)} | marks
@@ -91,8 +91,8 @@ def new_carrier_rows(scan: Scan, file: PlyFile, fill: Fill) -> list[Table]:
     _check_index_type(rows.element.properties[index], len(scan.vertices) + len(fill.vertices))
     name = rows.element.properties[index].name
     if file.carrier == "tristrips":
-        return [_strip_row(rows, name, fill, hole) for hole in np.unique(fill.triangle_hole)]
-    marks = _marks(fill.triangle_hole, fill.triangle_confidence)
+        return [_strip_row(rows, name, fill, hole) for hole in np.unique(fill.triangle_hole_id)]
+    marks = _marks(fill.triangle_hole_id, fill.triangle_confidence)
     normals = triangle_normals(scan, fill)
     given: dict[str, Values] = {axis: normals[:, i] for i, axis in enumerate(_NORMALS)}
     given |= marks | {name: fill.triangles} | _texture(scan, file, rows, fill)
@@ -111,7 +111,7 @@ def _check_index_type(prop: Property, n_vertices: int) -> None:
 
 def _strip_row(rows: Rows, name: str, fill: Fill, hole: int) -> Table:
     """One row of strips with all triangles of a hole, its confidence their mean."""
-    chosen = fill.triangle_hole == hole
+    chosen = fill.triangle_hole_id == hole
     triangles = fill.triangles[chosen]
     strips = np.column_stack([triangles, np.full(len(triangles), -1)]).reshape(1, -1)[:, :-1]
     confidence = np.atleast_1d(fill.triangle_confidence[chosen].mean())

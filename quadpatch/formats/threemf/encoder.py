@@ -65,6 +65,6 @@ def _triangles(scene: MergedScene) -> str:
         material = f' pid="2" p1="{a}" p2="{b}" p3="{c}"' if scene.vertex_attributes.colours is not None else ""
         mark = ""
         if row >= scene.n_measured:
-            mark = f' q:hole="{scene.triangle_hole[row]}" q:confidence="{scene.triangle_confidence[row]:.6g}"'
+            mark = f' q:hole="{scene.triangle_hole_id[row]}" q:confidence="{scene.triangle_confidence[row]:.6g}"'
         text.append(f'<triangle v1="{a}" v2="{b}" v3="{c}"{material}{mark}/>')
     return "".join(text)

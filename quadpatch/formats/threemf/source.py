@@ -153,7 +153,7 @@ def _vertex_text(positions: Vertices, prefix: str) -> str:
 def _triangle_text(corners: Triangles, piece: PartFill, fill: Fill, prefix: str, properties: list[str] | None) -> str:
     text = []
     for (a, b, c), row in zip(corners.tolist(), piece.rows.tolist(), strict=True):
-        mark = f'q:hole="{fill.triangle_hole[row]}" q:confidence="{fill.triangle_confidence[row]:.6g}"'
+        mark = f'q:hole="{fill.triangle_hole_id[row]}" q:confidence="{fill.triangle_confidence[row]:.6g}"'
         material = properties[row] if properties else ""
         text.append(f'<{prefix}triangle v1="{a}" v2="{b}" v3="{c}"{material} xmlns:q="urn:quadpatch" {mark}/>')
     return "".join(text)

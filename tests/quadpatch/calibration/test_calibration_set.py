@@ -7,7 +7,7 @@ from quadpatch.calibration.calibration_set import (
     MAX_HOLES,
     MIN_HOLES,
     CalibrationSet,
-    blend_factor,
+    choose_blend_factor,
     choose_energy,
     cut_calibration_set,
     distance_per_hole,
@@ -185,14 +185,14 @@ def on_relief() -> tuple[CalibrationSet, FilledMesh, FloatArray]:
 
 def test_a_model_that_is_right_is_believed(on_relief: tuple[CalibrationSet, FilledMesh, FloatArray]) -> None:
     calibration, filled, correction = on_relief
-    assert blend_factor(calibration, filled, correction) == 1.0
+    assert choose_blend_factor(calibration, filled, correction) == 1.0
 
 
 def test_a_model_that_says_twice_as_much_is_believed_by_half(
     on_relief: tuple[CalibrationSet, FilledMesh, FloatArray],
 ) -> None:
     calibration, filled, correction = on_relief
-    assert blend_factor(calibration, filled, 2 * correction) == 0.5
+    assert choose_blend_factor(calibration, filled, 2 * correction) == 0.5
 
 
 @pytest.mark.parametrize("kind", ["nothing", "the opposite", "noise"])
@@ -202,4 +202,4 @@ def test_a_model_that_does_not_help_is_not_believed(
     calibration, filled, correction = on_relief
     noise = np.random.default_rng(0).normal(0, np.abs(correction).mean(), correction.shape)
     says = {"nothing": 0 * correction, "the opposite": -correction, "noise": noise}[kind]
-    assert blend_factor(calibration, filled, says) == 0.0
+    assert choose_blend_factor(calibration, filled, says) == 0.0

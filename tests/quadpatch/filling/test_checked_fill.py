@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from quadpatch.filling.checked_fill import CheckedFill, Fill, LoopsToFill, fill_checked
+from quadpatch.filling.checked_fill import CheckedFill, FillFunction, LoopsToFill, fill_checked
 from quadpatch.filling.constrained_fill import fill_constrained
 from quadpatch.filling.fairing import THIN_PLATE, Energy
 from quadpatch.filling.faults import find_faults
@@ -32,7 +32,7 @@ def surface(filled: FilledMesh) -> TriangleMesh:
     return TriangleMesh(filled.mesh.vertices, filled.mesh.triangles[filled.n_measured_triangles :])
 
 
-def blades(mesh: TriangleMesh, through: list[Fill], spared: Fill | None) -> TriangleMesh:
+def blades(mesh: TriangleMesh, through: list[FillFunction], spared: FillFunction | None) -> TriangleMesh:
     """A mesh with small blades, one through each of some fills of its hole and clear of another fill."""
     near: TriangleMesh | None = surface(spared(mesh, HOLE)) if spared else None
     parts = [mesh]
@@ -70,7 +70,7 @@ def constrained(mesh: TriangleMesh, loops: list[IntArray]) -> FilledMesh:
     return fill_constrained(plate(mesh, loops), loops, np.arange(len(loops)))
 
 
-ORDER: list[tuple[str, Fill]] = [("energies", smooth), ("thin_plate", plate), ("constrained", constrained)]
+ORDER: list[tuple[str, FillFunction]] = [("energies", smooth), ("thin_plate", plate), ("constrained", constrained)]
 
 
 def obstacles_of(mesh: TriangleMesh) -> tuple[TriangleMesh, IntArray]:
@@ -177,7 +177,7 @@ def test_plane_patches_are_taken_where_they_are_asked_for() -> None:
     assert np.linalg.svd(vertices - vertices.mean(axis=0), compute_uv=False)[-1] < 1e-12
 
 
-def crumpled(which: int) -> Fill:
+def crumpled(which: int) -> FillFunction:
     """A fill that throws the new vertices of one loop about."""
 
     def fill(mesh: TriangleMesh, loops: list[IntArray]) -> FilledMesh:

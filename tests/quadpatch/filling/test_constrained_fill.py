@@ -9,7 +9,7 @@ from quadpatch.filling.faults import find_faults
 from quadpatch.filling.fill import close_holes, fair_holes
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.filling.refinement import MOST_TURN_DEG, refine
-from quadpatch.filling.surroundings import Surroundings
+from quadpatch.filling.rim_neighbourhood import RimNeighbourhood
 from quadpatch.mesh.distance import distance_to_mesh
 from quadpatch.mesh.intersections import heights
 from quadpatch.mesh.normals import triangle_normals
@@ -89,15 +89,15 @@ def blade(at: FloatArray) -> TriangleMesh:
 @pytest.mark.parametrize("n_blades", [1, 2, 3])
 def test_blades_in_the_hole_are_gone_around(n_blades: int, as_obstacle: bool) -> None:
     hole = [min(all_loops(SADDLE), key=len)]
-    bare, _ = Surroundings.of(SADDLE, hole).triangulate()
-    near = Surroundings.of(SADDLE, hole)
+    bare, _ = RimNeighbourhood.of(SADDLE, hole).triangulate()
+    near = RimNeighbourhood.of(SADDLE, hole)
     centroids = near.vertices[bare.triangles].mean(axis=1) + near.centre
     most_central = centroids[np.argsort(np.linalg.norm(centroids[:, :2], axis=1))[:n_blades]]
     mesh = joined(SADDLE, *(blade(at) for at in most_central))
     n = len(SADDLE.triangles)
     obstacles = mesh.triangles[n:] if as_obstacle else None
     mesh = TriangleMesh(mesh.vertices, mesh.triangles[:n]) if as_obstacle else mesh
-    crossed = Surroundings.of(mesh, hole)
+    crossed = RimNeighbourhood.of(mesh, hole)
     assert find_faults(crossed.filled(*crossed.triangulate()), obstacles=obstacles).crossings[0] > 0
     filled = constrained(mesh, hole, obstacles)
     assert filled.unfilled == []
@@ -144,7 +144,7 @@ def test_what_lies_far_away_changes_nothing() -> None:
 @pytest.mark.parametrize("seed", range(4))
 def test_flips_that_keep_the_rim_in_sight_make_no_sharper_turns(seed: int) -> None:
     mesh = jagged(seed)
-    near = Surroundings.of(mesh, sorted(all_loops(mesh), key=len)[:-1])
+    near = RimNeighbourhood.of(mesh, sorted(all_loops(mesh), key=len)[:-1])
     patch, _ = near.triangulate()
 
     def sharpest_turn(triangles: IntArray, vertices: np.ndarray) -> float:

@@ -55,7 +55,7 @@ def test_an_apex_outside_of_its_rim_turns_triangles_over(angle_deg: float, n_tur
     assert faults.n_folds.tolist() == [n_turned + 2]
     assert faults.crossings[0] > 0
     assert faults.is_wrong.tolist() == [True]
-    assert faults.is_lost.tolist() == [True]
+    assert faults.is_invalid.tolist() == [True]
 
 
 @pytest.mark.parametrize(("angle_deg", "n_folds"), [(0, 0), (90, 0), (FOLD_ANGLE_DEG - 1, 0), (FOLD_ANGLE_DEG + 1, 1)])
@@ -109,7 +109,7 @@ def test_a_rim_that_turns_over_itself_excuses_the_fill_there_and_nowhere_else() 
     at_rim = put_together(folded, (np.array([[0.1, 0.1, 0.02]]), np.array([[1, 3, -1]])))
     faults = find_faults(at_rim)
     assert faults.n_folds.tolist() == [1]
-    assert faults.folds.is_excused.tolist() == [True]
+    assert faults.folds.is_tolerated.tolist() == [True]
     assert not faults.folds.is_flat_rim.any()
     far = joined(folded, moved(hinge(0).mesh, (9.0, 0, 0)))
     elsewhere = put_together(
@@ -137,8 +137,8 @@ def over_pole(height: float) -> FilledMesh:
 def test_a_pole_through_a_tent_is_run_into_by_every_triangle_around_it(height: float, n_crossings: int) -> None:
     faults = find_faults(over_pole(height))
     assert counts(faults) == ([0], [n_crossings])
-    assert faults.is_wrong.tolist() == faults.is_lost.tolist() == [n_crossings > 0]
-    assert len(faults.rivals) == 0
+    assert faults.is_wrong.tolist() == faults.is_invalid.tolist() == [n_crossings > 0]
+    assert len(faults.crossing_fills) == 0
 
 
 @pytest.mark.parametrize("part", [plate_with_disc(12, 2), moved(open_grid(3, 0.5), (0, 0, 0.5))])
@@ -172,8 +172,8 @@ def test_two_fills_that_run_through_each_other_are_rivals_and_neither_is_lost() 
     assert counts(find_faults(two_tents(0.5))) == ([0, 0], [0, 0])
     faults = find_faults(two_tents(2.0))
     assert (faults.crossings > 0).all()
-    assert faults.rivals.tolist() == [[0, 1]]
-    assert faults.is_lost.tolist() == [False, False]
+    assert faults.crossing_fills.tolist() == [[0, 1]]
+    assert faults.is_invalid.tolist() == [False, False]
     assert faults.is_wrong.tolist() == [True, True]
     assert faults.is_wrong_alone.tolist() == [False, False]
 

@@ -49,8 +49,8 @@ def cap_holes(scan: Scan) -> Fill:
     welded = weld(scan.vertices, scan.triangles)
     vertices: list[np.ndarray] = []
     triangles: list[tuple[int, int, int]] = []
-    vertex_hole: list[int] = []
-    triangle_hole: list[int] = []
+    vertex_hole_id: list[int] = []
+    triangle_hole_id: list[int] = []
     for hole, loop in enumerate(boundary_loops(welded.mesh.triangles)):
         rim = [int(i) for i in welded.to_file[loop]]
         ring = [len(scan.vertices) + len(vertices) + i for i in range(len(rim))]
@@ -60,16 +60,16 @@ def cap_holes(scan: Scan) -> Fill:
         for i in range(len(rim)):
             j = (i + 1) % len(rim)
             triangles += [(rim[i], rim[j], ring[i]), (rim[j], ring[j], ring[i]), (ring[i], ring[j], middle)]
-        vertex_hole += [hole] * (len(rim) + 1)
-        triangle_hole += [hole] * (3 * len(rim))
+        vertex_hole_id += [hole] * (len(rim) + 1)
+        triangle_hole_id += [hole] * (3 * len(rim))
     if not triangles:
         return EMPTY
     return Fill(
         np.array(vertices),
         np.array(triangles, dtype=np.int64),
-        np.array(vertex_hole, dtype=np.int64),
+        np.array(vertex_hole_id, dtype=np.int64),
         np.linspace(0.25, 0.75, len(vertices)),
-        np.array(triangle_hole, dtype=np.int64),
+        np.array(triangle_hole_id, dtype=np.int64),
         np.linspace(0.25, 0.75, len(triangles)),
     )
 

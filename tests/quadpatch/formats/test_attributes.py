@@ -26,12 +26,12 @@ def holed_plane() -> Scan:
 def inner_cap(scan: Scan) -> Fill:
     """Close the hole of a plane but not its outer rim, which has more edges."""
     fill = cap_holes(scan)
-    sizes = np.bincount(fill.triangle_hole)
+    sizes = np.bincount(fill.triangle_hole_id)
     hole = int(np.argmin(sizes))
-    vertices = np.flatnonzero(fill.vertex_hole == hole)
+    vertices = np.flatnonzero(fill.vertex_hole_id == hole)
     number = np.full(len(fill.vertices), -1)
     number[vertices] = np.arange(len(vertices))
-    triangles = fill.triangles[fill.triangle_hole == hole]
+    triangles = fill.triangles[fill.triangle_hole_id == hole]
     n = len(scan.vertices)
     triangles = np.where(triangles < n, triangles, n + number[np.maximum(triangles - n, 0)])
     n_vertices, n_triangles = len(vertices), len(triangles)

@@ -14,7 +14,7 @@ from quadpatch.options import HoleOptions
 from quadpatch.patches.scale import PatchScale
 from quadpatch.recipes.assessment import (
     LEAST_COVERAGE,
-    MOST_DISAGREEMENT,
+    MOST_INCONSISTENCY,
     agreeing_holes,
     assess,
     confidence,
@@ -68,7 +68,7 @@ def completion(says: Says, blend_factor: float = 1.0, error_model: ErrorModel | 
     [
         (Says(), [True, True, True]),
         (Says(coverage=(LEAST_COVERAGE, LEAST_COVERAGE - 0.01, 0.0)), [True, False, False]),
-        (Says(deviation=(0.01 * MOST_DISAGREEMENT, 0.0101 * MOST_DISAGREEMENT, 1.0)), [True, False, False]),
+        (Says(deviation=(0.01 * MOST_INCONSISTENCY, 0.0101 * MOST_INCONSISTENCY, 1.0)), [True, False, False]),
         (Says(deviation=(0.02, 0.02, 0.02), rim_misfit=(0.0, 0.01, 1.0)), [False, True, True]),
         (Says(departure=(0.0, 0.0, 0.0)), [True, True, True]),
     ],

@@ -21,7 +21,7 @@ _RINGS = 2
 
 
 @dataclass(frozen=True)
-class Surroundings:
+class RimNeighbourhood:
     """The measured surface next to holes, in vertices and coordinates of its own.
 
     Attributes
@@ -50,7 +50,7 @@ class Surroundings:
     edges: EdgeSet
 
     @classmethod
-    def of(cls, mesh: TriangleMesh, loops: list[IntArray]) -> "Surroundings":
+    def of(cls, mesh: TriangleMesh, loops: list[IntArray]) -> "RimNeighbourhood":
         """Cut out what the filling reads: nothing in it looks further than two rings from a rim."""
         rim = np.unique(np.concatenate([np.zeros(0, np.int64), *loops]))
         near = triangles_around(mesh.triangles, rim, len(mesh.vertices), _RINGS)
