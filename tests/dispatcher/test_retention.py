@@ -44,7 +44,7 @@ def test_a_sweep_tells_what_it_found_in_either_direction(database: Database, sto
     aging.wait(GRACE + timedelta(minutes=1))
     age_rows(database, GRACE + timedelta(minutes=1))
     assert sweeper.sweep(never) == (
-        "deleted 1 objects without a row, 8 bytes; 1 meshes are gone from the store and were marked; "
+        "deleted 1 objects without a row, 13 bytes; 1 meshes are gone from the store and were marked; "
         "1 finished jobs lack files of their result"
     )
     upload(database, aging, b"lost")
