@@ -35,7 +35,12 @@ class PartData:
     data: bytearray
 
 
-PartEvent = PartStart | PartData
+@dataclass(frozen=True)
+class PartEnd:
+    """The part is whole: its digests can be checked."""
+
+
+PartEvent = PartStart | PartData | PartEnd
 
 
 async def read_parts(content_type: str, chunks: AsyncIterator[bytes]) -> AsyncIterator[PartEvent]:
@@ -114,6 +119,7 @@ class _Collector:
             "on_header_end": self._on_header_end,
             "on_headers_finished": self._on_headers_finished,
             "on_part_data": self._on_part_data,
+            "on_part_end": self._on_part_end,
             "on_end": self._on_end,
         }
 
@@ -150,6 +156,9 @@ class _Collector:
             last.data.extend(data[start:end])
         else:
             self._events.append(PartData(bytearray(data[start:end])))
+
+    def _on_part_end(self) -> None:
+        self._events.append(PartEnd())
 
     def _on_end(self) -> None:
         self.is_whole = True

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from service.multipart import PartStart, read_parts
+from service.multipart import PartData, PartEnd, PartStart, read_parts
 from service.problems import ProblemError
 
 TYPE = "multipart/form-data; boundary=XX"
@@ -25,12 +25,16 @@ def parts_of(body: bytes, cuts: list[int], content_type: str = TYPE) -> list[tup
 
     async def collect() -> list[tuple[str, str | None, bytes]]:
         found: list[tuple[str, str | None, bytes]] = []
+        n_ended = 0
         async for event in read_parts(content_type, chunks()):
             if isinstance(event, PartStart):
                 found.append((event.name, event.filename, b""))
-            else:
+            elif isinstance(event, PartData):
                 name, filename, data = found.pop()
                 found.append((name, filename, data + event.data))
+            elif isinstance(event, PartEnd):
+                n_ended += 1
+        assert n_ended == len(found)
         return found
 
     return anyio.run(collect)
