@@ -144,6 +144,8 @@ def model_card(path: str | Path) -> Card:
         return read_dictionary_card(path)
     except DictionaryFileError as error:
         raise ModelError(f"{path.name}: {error}") from error
+    except OSError as error:
+        raise ModelError(f"{path.name} can't be read: {error.strerror}") from error
 
 
 def shipped_model(name: str) -> Path:

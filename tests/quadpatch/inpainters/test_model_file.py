@@ -1,3 +1,4 @@
+import errno
 import hashlib
 import json
 import struct
@@ -164,6 +165,19 @@ def test_a_missing_file_and_a_foreign_suffix_are_refused(tmp_path: Path) -> None
         load_model(foreign)
     with pytest.raises(ModelError, match="safetensors"):
         save_dictionary(tmp_path / "a.npz", Dictionary(some_atoms(), 4, 3), {})
+
+
+def test_a_file_that_the_system_does_not_hand_out_is_a_fault_of_the_model(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = write(tmp_path / "waves.safetensors")
+
+    def refuse(_: Path) -> None:
+        raise PermissionError(errno.EACCES, "Permission denied", str(path))
+
+    monkeypatch.setattr(model_file, "read_dictionary_card", refuse)
+    with pytest.raises(ModelError, match=r"waves.safetensors can't be read: Permission denied"):
+        load_model(path)
 
 
 @pytest.mark.parametrize("card", [{"x": float("nan")}, {"x": object()}, {"x": "long" * 100_000}])
