@@ -5,6 +5,7 @@ The service plans by it, on the hole list of an analysis; a repair chooses by it
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import chain
 from math import inf, sqrt
 from typing import Literal, Protocol
 
@@ -28,55 +29,55 @@ class Hole(Protocol):
     """A boundary loop; lengths in mesh units, the area in square mesh units."""
 
     @property
-    def id(self) -> int: ...  # noqa: D102
+    def id(self) -> int: ...
     @property
-    def n_edges(self) -> int: ...  # noqa: D102
+    def n_edges(self) -> int: ...
     @property
-    def perimeter(self) -> float: ...  # noqa: D102
+    def perimeter(self) -> float: ...
     @property
-    def diameter(self) -> float: ...  # noqa: D102
+    def diameter(self) -> float: ...
     @property
-    def area(self) -> float: ...  # noqa: D102
+    def area(self) -> float: ...
     @property
-    def kind(self) -> HoleKind: ...  # noqa: D102
+    def kind(self) -> HoleKind: ...
     @property
-    def is_manifold(self) -> bool: ...  # noqa: D102
+    def is_manifold(self) -> bool: ...
 
 
 class HoleRule(Protocol):
     """What to do with the holes that meet all of some conditions."""
 
     @property
-    def action(self) -> RuleAction: ...  # noqa: D102
+    def action(self) -> RuleAction: ...
     @property
-    def ids(self) -> Sequence[int] | None: ...  # noqa: D102
+    def ids(self) -> Sequence[int] | None: ...
     @property
-    def kind(self) -> HoleKind | None: ...  # noqa: D102
+    def kind(self) -> HoleKind | None: ...
     @property
-    def min_diameter(self) -> float | None: ...  # noqa: D102
+    def min_diameter(self) -> float | None: ...
     @property
-    def max_diameter(self) -> float | None: ...  # noqa: D102
+    def max_diameter(self) -> float | None: ...
     @property
-    def max_perimeter(self) -> float | None: ...  # noqa: D102
+    def max_perimeter(self) -> float | None: ...
 
 
 class HoleSelection(Protocol):
     """Which holes to fill, and how."""
 
     @property
-    def max_diameter(self) -> float | None: ...  # noqa: D102
+    def max_diameter(self) -> float | None: ...
     @property
-    def max_perimeter(self) -> float | None: ...  # noqa: D102
+    def max_perimeter(self) -> float | None: ...
     @property
-    def all_but_largest(self) -> bool: ...  # noqa: D102
+    def all_but_largest(self) -> bool: ...
     @property
-    def ids(self) -> Sequence[int] | None: ...  # noqa: D102
+    def ids(self) -> Sequence[int] | None: ...
     @property
-    def include_borders(self) -> bool: ...  # noqa: D102
+    def include_borders(self) -> bool: ...
     @property
-    def cap(self) -> Cap | None: ...  # noqa: D102
+    def cap(self) -> Cap | None: ...
     @property
-    def rules(self) -> Sequence[HoleRule]: ...  # noqa: D102
+    def rules(self) -> Sequence[HoleRule]: ...
 
 
 @dataclass(frozen=True)
@@ -116,17 +117,10 @@ def choose_holes(holes: Sequence[Hole], selection: HoleSelection, diagonal: floa
     for hole in holes:
         number, rule = next(((n, rule) for n, rule, ids in rules if _meets(hole, rule, ids, selection)), (0, None))
         is_listed = chosen_ids is None or hole.id in chosen_ids
-        reasons = (
-            (
-                not hole.is_manifold,
-                "non_manifold_rim",
-                "its rim touches faces of opposite direction, or three at one edge",
-            ),
-            (not is_listed, "not_chosen", "not among the chosen ids"),
-            *_reasons_to_skip(hole, selection, rule, number),
-            *_limits(hole, selection, rule, diagonal),
+        reasons = chain(
+            _reasons_to_skip(hole, selection, rule, number, is_listed), _limits(hole, selection, rule, diagonal)
         )
-        code, reason = next(((code, text) for applies, code, text in reasons if applies), (None, None))
+        code, reason = next(reasons, (None, None))
         choices.append(Choice(None, code, reason) if code else Choice(_action(hole, selection, rule)))
     return choices
 
@@ -199,33 +193,38 @@ def _action(hole: Hole, selection: HoleSelection, rule: HoleRule | None) -> Hole
 
 
 def _reasons_to_skip(
-    hole: Hole, selection: HoleSelection, rule: HoleRule | None, number: int
-) -> Iterator[tuple[bool, str, str]]:
-    """Yield what may keep a hole open, in order, each with its code and sentence: the first that applies counts."""
+    hole: Hole, selection: HoleSelection, rule: HoleRule | None, number: int, is_listed: bool
+) -> Iterator[tuple[str, str]]:
+    """Yield what keeps a hole open, each with its code and a sentence: the first one counts."""
     is_left_out = rule is None and not _is_asked_for(hole, selection)
-    is_largest = selection.all_but_largest and hole.id == 0
+    if not hole.is_manifold:
+        yield "non_manifold_rim", "its rim touches faces of opposite direction, or three at one edge"
+    if not is_listed:
+        yield "not_chosen", "not among the chosen ids"
+    if selection.all_but_largest and hole.id == 0:
+        yield "largest", "the largest loop is taken for the border of the scan"
+    if rule is not None and rule.action == "skip":
+        yield "rule", f"rule {number} leaves it open"
+    if is_left_out and hole.kind == "border":
+        yield "border", "outer border of a piece of the scan"
+    if is_left_out:
+        yield "open_end", "open end of a piece of the scan, like that of a tube"
     n_vertices = expected_vertices(hole)
-    yield is_largest, "largest", "the largest loop is taken for the border of the scan"
-    yield rule is not None and rule.action == "skip", "rule", f"rule {number} leaves it open"
-    yield is_left_out and hole.kind == "border", "border", "outer border of a piece of the scan"
-    yield is_left_out, "open_end", "open end of a piece of the scan, like that of a tube"
-    yield (
-        n_vertices > MAX_NEW_VERTICES,
-        "too_many_vertices",
-        f"a fill as dense as its rim takes about {n_vertices} new vertices, over {MAX_NEW_VERTICES}",
-    )
+    if n_vertices > MAX_NEW_VERTICES:
+        dense = f"a fill as dense as its rim takes about {n_vertices} new vertices"
+        yield "too_many_vertices", f"{dense}, over {MAX_NEW_VERTICES}"
 
 
-def _limits(
-    hole: Hole, selection: HoleSelection, rule: HoleRule | None, diagonal: float
-) -> Iterator[tuple[bool, str, str]]:
+def _limits(hole: Hole, selection: HoleSelection, rule: HoleRule | None, diagonal: float) -> Iterator[tuple[str, str]]:
     """Compare a hole's sizes with the limits of the user, or its diameter with the automatic one."""
     widest, longest = selection.max_diameter or inf, selection.max_perimeter or inf
     said_by = "the given maximum"
     if _has_automatic_limit(hole, selection, rule):
         widest, said_by = AUTO_DIAMETER_SHARE * diagonal, "a quarter of the scan's diagonal"
-    yield hole.diameter > widest, "too_wide", f"diameter {hole.diameter:.6g} is over {widest:.6g}, {said_by}"
-    yield hole.perimeter > longest, "too_long", f"perimeter {hole.perimeter:.6g} is over {longest:.6g}, {said_by}"
+    if hole.diameter > widest:
+        yield "too_wide", f"diameter {hole.diameter:.6g} is over {widest:.6g}, {said_by}"
+    if hole.perimeter > longest:
+        yield "too_long", f"perimeter {hole.perimeter:.6g} is over {longest:.6g}, {said_by}"
 
 
 def _has_automatic_limit(hole: Hole, selection: HoleSelection, rule: HoleRule | None) -> bool:
