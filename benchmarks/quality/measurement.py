@@ -17,8 +17,9 @@ from benchmarks.quality.bench import Bench, Case, file_sha256
 from benchmarks.quality.results import REPAIRS, Results
 from quadpatch.inpainters.model_file import shipped_model
 from quadpatch.mesh.distance import distance_to_mesh
+from quadpatch.model_choice import BASE_NETWORK, SELF, SELF_NETWORK, SMOOTH
 from quadpatch.options import RepairOptions
-from quadpatch.repair import BASE_NETWORK, SELF, SELF_NETWORK, SMOOTH, repair_file
+from quadpatch.repair import repair_file
 from quadpatch.types import IntArray, Vertices
 
 

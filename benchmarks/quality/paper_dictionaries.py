@@ -18,11 +18,11 @@ from benchmarks.quality.results import CODINGS, MODELS, Key, Results
 from quadpatch.inpainters.model_file import load_model, save_dictionary
 from quadpatch.inpainters.paper_dictionary import GLOBAL_ATOMS, LOCAL_ATOMS, learn_heights
 from quadpatch.mesh.measures import mean_edge_length
+from quadpatch.model_choice import SELF
 from quadpatch.options import DictionaryOptions, PatchOptions
 from quadpatch.patches.normalisation import HEIGHTS, mean_free
 from quadpatch.patches.scale import PatchScale
 from quadpatch.recipes.paper import cut_heights, paper_scale
-from quadpatch.repair import SELF
 from quadpatch.sparse.dictionary import Dictionary
 from quadpatch.sparse.omp import masked_omp
 from quadpatch.types import BoolArray, FloatArray

@@ -30,7 +30,7 @@ from benchmarks.quality.peers import with_peers
 from benchmarks.quality.pictures import draw_extremes
 from benchmarks.quality.repair_experiment import repair_experiment
 from benchmarks.quality.results import Results
-from quadpatch.repair import SELF
+from quadpatch.model_choice import SELF
 
 REPAIR = "repair"
 # Tables are wide; into a file they go as they are.

@@ -16,7 +16,7 @@ from client.exit_codes import ExitCode
 from client.sdk import Client
 from jobkit.schema import Job, JobSpec, JobState
 from quadpatch.formats.reading import read_scan
-from quadpatch.repair import BASE_NETWORK
+from quadpatch.model_choice import BASE_NETWORK
 from tests.waiting import GUARD_S
 
 FITTED = {"method": "cnn", "model": "self", "fitting": {"steps": 12, "seconds": 500.0}, "patches": {"overlap": 0}}

@@ -16,8 +16,9 @@ from quadpatch.errors import ModelError, OptionError
 from quadpatch.formats.reading import read_scan
 from quadpatch.inpainters import model_file
 from quadpatch.mesh.distance import distance_to_mesh
+from quadpatch.model_choice import BASE_NETWORK, SELF_NETWORK, SELF_NETWORK_KIND
 from quadpatch.options import NetworkOptions, PatchOptions, RepairOptions
-from quadpatch.repair import BASE_NETWORK, SELF_NETWORK, SELF_NETWORK_KIND, repair_file
+from quadpatch.repair import repair_file
 from tests.quadpatch.shapes import punched, relief, write_ply
 
 pytestmark = pytest.mark.slow

@@ -1,0 +1,129 @@
+"""Which inpainter a model's name, a shipped model or a model file stands for, and which options go with it.
+
+Tested in `tests/quadpatch/test_repair_by_fitting.py`.
+"""
+
+import hashlib
+from pathlib import Path
+from typing import Any
+
+from quadpatch.errors import OptionError, TorchMissingError
+from quadpatch.inpainters.dictionary import DictionaryInpainter, SelfDictionary
+from quadpatch.inpainters.inpainter import Inpainter
+from quadpatch.inpainters.model_file import Model, load_model, shipped_model
+from quadpatch.inpainters.paper_dictionary import HeightsInpainter, SelfHeights
+from quadpatch.options import DictionaryOptions, NetworkOptions, RepairOptions
+from quadpatch.types import Progress
+
+SMOOTH = "smooth"
+SELF = "self"
+SELF_NETWORK = "self-network"
+# The same, as a job names the kind of its model.
+SELF_NETWORK_KIND = "self_network"
+
+# The network that is fitted to a mesh where `SELF_NETWORK` is asked for.
+BASE_NETWORK = "general-residual"
+
+NOTHING_TO_DO = (
+    "the recipe paper is a way to use a learned model; with smooth there is none: drop the recipe or take self"
+)
+
+
+def choose_model(
+    model: str | Path, options: RepairOptions, progress: Progress, network_card: dict[str, Any] | None
+) -> tuple[Inpainter | None, dict[str, Any]]:
+    """Turn a model's name or path into its inpainter.
+
+    Parameters
+    ----------
+    model : str or Path
+        `smooth` (no learning), `self` (learn a dictionary from the mesh itself), `self-network` (fit the shipped
+        network to the mesh itself), the name of a shipped model (`name` or `name@version`), or a model file.
+    options : RepairOptions
+    progress : callable
+    network_card : dict or None
+        Of a network that was published without a card in its file.
+
+    Returns
+    -------
+    inpainter : Inpainter or None
+        None fills by geometry alone.
+    facts : dict
+        What the report says of the model.
+
+    Raises
+    ------
+    OptionError
+        If the options do not go with the model.
+    ModelError
+        If there is no such model, or its file is none.
+    """
+    if model == SMOOTH and options.recipe == "paper":
+        raise OptionError(NOTHING_TO_DO)
+    if model in (SELF_NETWORK, SELF_NETWORK_KIND):
+        return _network_to_fit(options, progress)
+    if options.network != NetworkOptions():
+        raise OptionError(f"network.steps and network.seconds go with the model {SELF_NETWORK} only")
+    if model == SMOOTH:
+        return None, {"name": SMOOTH}
+    if model == SELF:
+        is_paper = options.recipe == "paper"
+        learned = SelfHeights(options.dictionary, options.seed, progress) if is_paper else SelfDictionary()
+        return learned, {"name": SELF}
+    path = Path(model)
+    if not path.is_file():
+        path = shipped_model(str(model))
+    loaded = load_model(path)
+    facts = {"name": loaded.card.get("name", path.stem), "version": loaded.card.get("version"), "kind": loaded.kind}
+    facts["sha256"] = hashlib.sha256(path.read_bytes()).hexdigest()
+    if loaded.dictionary is None:
+        return _network(path, options, network_card), facts
+    _check_recipe(loaded, options)
+    inpainter = HeightsInpainter if loaded.recipe == "paper" else DictionaryInpainter
+    return inpainter(loaded.dictionary), facts
+
+
+def _network(path: Path, options: RepairOptions, card: dict[str, Any] | None) -> Inpainter:
+    """Open a network. Those of the paper are used by either recipe, others by our own alone."""
+    from quadpatch.inpainters.onnx_network import AutoencoderInpainter  # noqa: PLC0415  onnxruntime is slow to load
+
+    network = AutoencoderInpainter.load(path, card)
+    if options.recipe == "paper" and network.recipe != "paper":
+        raise OptionError(
+            f"{path.name} is a network for the recipe {network.recipe}, which corrects a faired fill; "
+            "the recipe paper has none: drop it, or take one of the paper's networks"
+        )
+    if options.dictionary != DictionaryOptions():
+        raise OptionError(f"dictionary.atoms and dictionary.nonzero go with the model self; {path.name} is a network")
+    return network
+
+
+def _network_to_fit(options: RepairOptions, progress: Progress) -> tuple[Inpainter, dict[str, Any]]:
+    """Open the shipped network for training."""
+    if options.recipe == "paper":
+        raise OptionError(f"the recipe paper goes with dictionaries; {SELF_NETWORK} has a recipe of its own")
+    path = shipped_model(BASE_NETWORK)
+    try:
+        from quadpatch.networks.fitting import FittingInpainter  # noqa: PLC0415  an extra, and slow to load
+        from quadpatch.networks.weights import load_residual  # noqa: PLC0415
+    except ModuleNotFoundError as error:
+        raise TorchMissingError(
+            f"fitting a network to a mesh needs {error.name}, which is not installed here: "
+            f"install the extra 'networks', or take a model that is ready, such as {BASE_NETWORK}"
+        ) from error
+    return FittingInpainter(load_residual(path), options.network, options.seed, progress), {
+        "name": SELF_NETWORK,
+        "fitted_from": path.stem,
+    }
+
+
+def _check_recipe(model: Model, options: RepairOptions) -> None:
+    """Refuse a dictionary that was learned for the other recipe, and a size for one that has a size."""
+    name = model.path.name
+    if model.recipe != options.recipe:
+        raise OptionError(
+            f"{name} was learned for the recipe {model.recipe}, not for {options.recipe}: "
+            f"ask for the recipe {model.recipe}, or take the model self"
+        )
+    if options.dictionary != DictionaryOptions():
+        raise OptionError(f"dictionary.atoms and dictionary.nonzero go with the model self; {name} has its own")
