@@ -94,12 +94,11 @@ def inpaint(
     with stages.stage("judge"):
         if completion and not by_model.all():
             completion = replace(completion.limited_to(by_model, checked.filled), left_out=~by_model)
-        completion, faults = without_faults(completion, checked, obstacles)
+        completion, filled, faults = without_faults(completion, checked, obstacles)
         of_model = completion.error_model if completion else None
         error_model = of_model or calibration.error_model
         results = assess(holes, _filled_ones(selection, rims), checked.filled, completion, error_model)
         results = verified_results(results, rims, checked, calibration.blend, faults, diagonal(mesh))
-    filled = completion.apply(checked.filled) if completion else checked.filled
     return Repair(filled, rims.chosen, results, calibration.blend, completion, warnings)
 
 

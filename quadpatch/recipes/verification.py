@@ -8,6 +8,7 @@ from quadpatch.calibration.energy_selection import EnergyBlend
 from quadpatch.filling.checked_fill import CheckedFill
 from quadpatch.filling.fairing import Energy
 from quadpatch.filling.faults import Faults, find_faults
+from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.filling.islands import JoinedRims
 from quadpatch.mesh.holes import Hole
 from quadpatch.recipes.assessment import confidence
@@ -22,7 +23,7 @@ _NO_PLANE_PATCH = "no_plane_patch", "in its plane the rim crosses itself, or enc
 
 def without_faults(
     completion: Completion | None, checked: CheckedFill, obstacles: Triangles | None
-) -> tuple[Completion | None, Faults]:
+) -> tuple[Completion | None, FilledMesh, Faults]:
     """Take the displacement back in holes where it brought in folds or crossings.
 
     Parameters
@@ -36,21 +37,25 @@ def without_faults(
     Returns
     -------
     completion : Completion or None
+    filled : FilledMesh
+        The fill, displaced by the completion.
     faults : Faults
         Those that are left.
     """
     if completion is None or not completion.displaced_holes.any():
-        return completion, checked.faults
-    faults = find_faults(completion.apply(checked.filled), obstacles=obstacles)
+        return completion, checked.filled, checked.faults
+    filled = completion.apply(checked.filled)
+    faults = find_faults(filled, obstacles=obstacles)
     undone = np.zeros(len(completion.displaced_holes), bool)
     worse = completion.displaced_holes & (faults.severity > checked.faults.severity)
     # Taking one hole back may make it cross the displaced fill of another.
     while worse.any():
         undone |= worse
         completion = replace(completion.limited_to(~undone, checked.filled), undone=undone)
-        faults = find_faults(completion.apply(checked.filled), obstacles=obstacles)
+        filled = completion.apply(checked.filled)
+        faults = find_faults(filled, obstacles=obstacles)
         worse = completion.displaced_holes & (faults.severity > checked.faults.severity)
-    return completion, faults
+    return completion, filled, faults
 
 
 def verified_results(

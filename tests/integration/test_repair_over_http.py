@@ -74,6 +74,9 @@ def test_facets_that_share_no_vertex_have_their_picture(
     job = client.wait(client.create_job(JobSpec.model_validate({"mesh_id": mesh.id, **output})).id, timeout_s=240)
     client.download(job, "result", tmp_path / "out.stl")
     client.download(job, "preview", tmp_path / "out.png")
+    client.download(job, "report", tmp_path / "report.json")
+    holes = json.loads((tmp_path / "report.json").read_text())["holes"]
+    assert {bool(hole["energies"]) for hole in holes if hole["new_triangles"]} == {True}
     assert job.state == JobState.SUCCEEDED
     assert len(read_scan(tmp_path / "out.stl").triangles) > len(triangles)
     assert (tmp_path / "out.png").read_bytes().startswith(b"\x89PNG")

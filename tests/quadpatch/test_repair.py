@@ -117,6 +117,11 @@ def test_every_hole_is_measured_judged_and_explained(repaired: tuple[str, Path, 
             assert 0 <= hole["confidence"] <= 1
             assert hole["confidence"] == pytest.approx(math.exp(-hole["expected_error"] / (0.003 * size)))
             assert hole["measures"]["gap"] >= 0
+        if hole["fill"] == "energies":
+            assert sum(energy["share"] for energy in hole["energies"]) == pytest.approx(1.0, abs=0.03)
+            assert all(energy.keys() == {"membrane", "plate", "variation", "share"} for energy in hole["energies"])
+        else:
+            assert hole["energies"] is None
 
 
 def test_facts_of_the_file_are_those_of_the_mesh(scan_file: Path) -> None:

@@ -63,8 +63,9 @@ def new_of(filled: FilledMesh, hole: int) -> bytes:
 
 def test_a_displacement_without_faults_is_left_as_it_is() -> None:
     completion = displaced(ripple(0.002))
-    done, faults = without_faults(completion, CHECKED, None)
+    done, mesh, faults = without_faults(completion, CHECKED, None)
     assert done is completion
+    np.testing.assert_array_equal(mesh.mesh.vertices, completion.apply(CHECKED.filled).mesh.vertices)
     assert faults.severity.tolist() == [0, 0, 0]
 
 
@@ -75,12 +76,11 @@ def test_a_displacement_that_crumples_its_fill_is_taken_back_there_alone(
     completion = displaced(noise(0.05, *crumpled))
     crumpled_mesh = completion.apply(CHECKED.filled)
     assert (find_faults(crumpled_mesh).severity > 0).tolist() == [i in crumpled for i in range(3)]
-    done, faults = without_faults(completion, CHECKED, None)
+    done, mesh, faults = without_faults(completion, CHECKED, None)
     assert done is not None
     assert done.undone is not None
     assert done.undone.tolist() == [i in crumpled for i in range(3)]
     assert done.displaced_holes.tolist() == [i not in crumpled for i in range(3)]
-    mesh = done.apply(CHECKED.filled)
     assert_keeps(mesh, MESH)
     assert faults.severity.tolist() == [0, 0, 0]
     for hole in range(3):
@@ -100,7 +100,7 @@ def test_a_displacement_into_an_obstacle_is_taken_back() -> None:
     lift = np.where(checked.filled.vertex_hole == 0, 0.1, 0.001)[:, None] * [0.0, 0, 1]
     completion = replace(displaced(ripple(0.0)), displacement=lift)
     assert without_faults(completion, checked, None)[0] is completion
-    done, _ = without_faults(completion, checked, obstacle)
+    done, _, _ = without_faults(completion, checked, obstacle)
     assert done is not None
     assert done.displaced_holes.tolist() == [False, True, True]
 
@@ -116,8 +116,9 @@ def test_faults_that_the_fill_had_before_are_no_reason_to_take_a_displacement_ba
 
 @pytest.mark.parametrize("completion", [None, displaced(noise(0.05, 0, 1, 2), (False, False, False))])
 def test_where_no_hole_was_displaced_the_check_of_the_fill_holds(completion: Completion | None) -> None:
-    done, faults = without_faults(completion, CHECKED, None)
+    done, mesh, faults = without_faults(completion, CHECKED, None)
     assert done is completion
+    assert mesh is CHECKED.filled
     assert faults is CHECKED.faults
 
 
@@ -148,7 +149,7 @@ def test_a_refused_hole_says_why_and_claims_nothing() -> None:
 
 
 def test_a_displacement_that_was_undone_is_told_by_the_verdict() -> None:
-    done, _ = without_faults(displaced(noise(0.05, 1)), CHECKED, None)
+    done, _, _ = without_faults(displaced(noise(0.05, 1)), CHECKED, None)
     assert [(r.verdict, r.code) for r in judged(completion=done)[1:]] == [
         ("filled", ""),
         ("filled_smooth", "model_faulty"),
