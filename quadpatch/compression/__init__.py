@@ -1,0 +1,1 @@
+"""Compression: a surface as a quad mesh and sparse codes."""

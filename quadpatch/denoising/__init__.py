@@ -1,0 +1,1 @@
+"""Denoising: moving vertices back onto the surface that was scanned."""

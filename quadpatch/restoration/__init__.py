@@ -1,0 +1,1 @@
+"""Restoring vertices whose positions are missing."""
