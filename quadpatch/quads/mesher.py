@@ -40,6 +40,8 @@ _SUBDIVISION = 4.0
 _SMALLEST_AREA = 0.01
 # Instant Meshes needs a handful of vertices to lay its field on.
 _FEWEST_VERTICES = 4
+# Counts of vertices to ask for, in turn, as multiples of the wanted one.
+_OTHER_COUNTS = (1.0, 1.05, 0.95)
 # Triangles around a quad that say which side of it is out.
 _NEIGHBOURS = 8
 
@@ -75,7 +77,7 @@ def quadrangulate(mesh: TriangleMesh, edge_length: float) -> QuadMesh:
     thin = cluster_vertices(unit, side / _CELLS_PER_SIDE)
     if n_quads < 1 or len(thin.vertices) < _FEWEST_VERTICES:
         raise NoQuadsError(f"the surface is too small or too thin for quads of side {edge_length:.4g}")
-    quad_mesh = _instant_meshes(thin, max(round(n_quads / _SUBDIVISION), _FEWEST_VERTICES))
+    quad_mesh = _first_that_works(thin, [factor * n_quads / _SUBDIVISION for factor in _OTHER_COUNTS])
     quads = quad_mesh.quads[_is_proper(quad_mesh, side)]
     if len(quads) == 0:
         raise NoQuadsError(f"no quad of side {edge_length:.4g} fits the surface")
@@ -100,6 +102,16 @@ def _to_unit(mesh: TriangleMesh) -> tuple[FloatArray, float, TriangleMesh]:
 def _area(mesh: TriangleMesh) -> float:
     a, b, c = (mesh.vertices[mesh.triangles[:, corner]] for corner in range(3))
     return float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum()) / 2
+
+
+def _first_that_works(mesh: TriangleMesh, counts: list[float]) -> QuadMesh:
+    """Ask for quads with one count of vertices after the other: the extraction fails for some, and says so."""
+    for count in counts:
+        try:
+            return _instant_meshes(mesh, max(round(count), _FEWEST_VERTICES))
+        except RuntimeError as error:
+            last = error
+    raise NoQuadsError(f"Instant Meshes finds no quads on the surface: {last}") from last
 
 
 def _instant_meshes(mesh: TriangleMesh, n_vertices: int) -> QuadMesh:
