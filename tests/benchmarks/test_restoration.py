@@ -15,8 +15,9 @@ def test_a_score_tells_sliding_from_leaving_the_surface() -> None:
     slid, lifted = plane.vertices.copy(), plane.vertices.copy()
     slid[40, 0] += 0.003
     lifted[40, 2] += 0.003
-    assert Score.of(plane, slid, missing) == Score(pytest.approx(np.sqrt(3)), pytest.approx(0))
-    assert Score.of(plane, lifted, missing) == Score(pytest.approx(np.sqrt(3)), pytest.approx(3))
+    sliding, leaving = Score.of(plane, slid, missing), Score.of(plane, lifted, missing)
+    assert (sliding.coordinate, sliding.distance) == pytest.approx((np.sqrt(3), 0), abs=1e-9)
+    assert (leaving.coordinate, leaving.distance) == pytest.approx((np.sqrt(3), 3), abs=1e-9)
 
 
 def test_the_longest_side_becomes_one() -> None:
