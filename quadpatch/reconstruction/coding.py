@@ -29,10 +29,13 @@ class PatchDictionary:
     dictionary : Dictionary
     normalisation : str
         A key of `quadpatch.patches.normalisation.NORMALISATIONS`.
+    length_share : float or None
+        Side of the patches that it was learned from, as a share of the longest side of their meshes, where it has one.
     """
 
     dictionary: Dictionary
     normalisation: str = HEIGHTS
+    length_share: float | None = None
 
     @property
     def codes_heights(self) -> bool:

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from quadpatch.errors import OptionError
-from quadpatch.mesh.measures import mean_edge_length
+from quadpatch.mesh.measures import longest_side, mean_edge_length
 from quadpatch.mesh.normals import vertex_normals
 from quadpatch.mesh.raycast import RayScene
 from quadpatch.mesh.smoothing import laplacian_smooth
@@ -22,7 +22,7 @@ from quadpatch.patches.folding import is_unfolded
 from quadpatch.patches.gaps import gap_seeds
 from quadpatch.patches.height_map import sample_height_maps
 from quadpatch.patches.layout import Sampled, pick, sample_over_base, together
-from quadpatch.patches.scale import EDGES_PER_BIN, OVERLAP, PatchScale, base_surface_iterations
+from quadpatch.patches.scale import EDGES_PER_BIN, OVERLAP, PatchScale, base_surface_iterations, preset_scale
 from quadpatch.patches.seeds import Seeds, seed_points
 from quadpatch.quads.frames import quad_frames
 from quadpatch.quads.mesher import quadrangulate
@@ -56,18 +56,24 @@ class SurfaceLayout:
 
 
 def surface_scale(mesh: TriangleMesh, options: PatchOptions, dictionary: PatchDictionary | None = None) -> PatchScale:
-    """Choose the scale of patches over a whole mesh: bins a little finer than its edges, unless a length is given.
+    """Choose the scale of patches over a whole mesh.
+
+    A length or a preset that is given is taken, then the length that the dictionary was learned with; else bins get a
+    little finer than the edges of the mesh.
 
     Raises
     ------
     OptionError
         If the options ask for another resolution than the dictionary has.
     """
+    options = preset_scale(options, longest_side(mesh))
     own = None if dictionary is None else dictionary.dictionary.resolution
     if own and options.resolution and options.resolution != own:
         raise OptionError(f"patches.resolution is {options.resolution}; the model's patches have {own} bins a side")
     resolution = own or options.resolution or RESOLUTION
-    length = options.length or EDGES_PER_BIN * mean_edge_length(mesh) * resolution
+    share = None if dictionary is None else dictionary.length_share
+    learned = share * longest_side(mesh) if share else EDGES_PER_BIN * mean_edge_length(mesh) * resolution
+    length = options.length or learned
     return PatchScale(float(length), resolution, OVERLAP if options.overlap is None else options.overlap)
 
 

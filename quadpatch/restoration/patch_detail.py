@@ -18,13 +18,13 @@ import numpy as np
 from quadpatch.calibration.training_pairs import TrainingSurface
 from quadpatch.errors import OptionError
 from quadpatch.inpainters.inpainter import Inpainter, UndamagedSurface
-from quadpatch.mesh.measures import mean_edge_length
+from quadpatch.mesh.measures import longest_side, mean_edge_length
 from quadpatch.mesh.normals import vertex_normals
 from quadpatch.options import PatchOptions
 from quadpatch.patches.connectivity import bilinear
 from quadpatch.patches.height_map import bin_centres
 from quadpatch.patches.layout import Sampled
-from quadpatch.patches.scale import PatchScale, choose_scale
+from quadpatch.patches.scale import PatchScale, choose_scale, preset_scale
 from quadpatch.reconstruction.displacement import mean_displacement
 from quadpatch.reconstruction.surface_layout import lay_out_surface, patches_with_vertices
 from quadpatch.restoration.least_squares import extend_smoothly
@@ -114,6 +114,7 @@ def nearest_corners(mesh: TriangleMesh, sampled: Sampled) -> IntArray:
 
 
 def _scale(mesh: TriangleMesh, inpainter: Inpainter, options: PatchOptions) -> PatchScale:
+    options = preset_scale(options, longest_side(mesh))
     if inpainter.resolution is None and options.resolution is None:
         options = replace(options, resolution=RESOLUTION)
     return choose_scale([], mean_edge_length(mesh), options, inpainter.resolution)

@@ -1,6 +1,5 @@
 """Rebuilds a mesh file from the codes of its patches: file in, file out."""
 
-import hashlib
 import json
 from dataclasses import asdict
 from pathlib import Path
@@ -14,9 +13,10 @@ from quadpatch.formats.reading import read_scan
 from quadpatch.formats.scan import Moved
 from quadpatch.formats.writing import check_suffix
 from quadpatch.inpainters.model_file import load_model, shipped_model
+from quadpatch.inpainters.paper_dictionary import HeightsInpainter
 from quadpatch.mesh.weld import weld
-from quadpatch.model_choice import SELF
-from quadpatch.options import DictionaryOptions
+from quadpatch.model_choice import SELF, choose_model
+from quadpatch.options import DictionaryOptions, RepairOptions
 from quadpatch.patches.normalisation import HEIGHTS, NORMALISATION
 from quadpatch.reconstruction.coding import PatchDictionary
 from quadpatch.reconstruction.whole_surface import Reconstruction, ReconstructOptions, reconstruct
@@ -104,9 +104,10 @@ def _dictionary(model: str | Path, options: ReconstructOptions) -> tuple[PatchDi
         raise OptionError(f"{path.name} is a network; meshes are rebuilt from dictionaries")
     if options.dictionary != DictionaryOptions():
         raise OptionError(f"dictionary.atoms and dictionary.nonzero go with the model self; {path.name} has its own")
-    facts = {"name": loaded.card.get("name", path.stem), "version": loaded.card.get("version"), "kind": loaded.kind}
-    facts["sha256"] = hashlib.sha256(path.read_bytes()).hexdigest()
-    return PatchDictionary(loaded.dictionary, HEIGHTS if loaded.recipe == "paper" else NORMALISATION), facts
+    inpainter, facts = choose_model(path, RepairOptions(recipe=loaded.recipe), no_progress, None)
+    if isinstance(inpainter, HeightsInpainter):
+        return PatchDictionary(loaded.dictionary, HEIGHTS, inpainter.length_share), facts
+    return PatchDictionary(loaded.dictionary, NORMALISATION), facts
 
 
 def _measures(result: Reconstruction) -> dict[str, Any]:
