@@ -182,8 +182,9 @@ def _moves(content: QpzContent, atoms: FloatArray, target: Target, border: Verti
     is_beyond = distance_to_mesh(decoded.vertices[where], target.surface) > _BEYOND * limit
     where = where[is_beyond | is_near_far_points[where]]
     edge = np.linalg.norm(decoded.vertices[triangles[:, 0]] - decoded.vertices[triangles[:, 1]], axis=1).mean()
-    distance, nearest = cKDTree(border).query(decoded.vertices[where])
-    near = distance < _LONGEST_MOVE * edge
+    found_distance, found_nearest = cKDTree(border).query(decoded.vertices[where])
+    nearest: IntArray = np.asarray(found_nearest, np.int64)
+    near = np.flatnonzero(np.asarray(found_distance) < _LONGEST_MOVE * edge)
     way = border[nearest[near]] - decoded.vertices[where[near]]
     moves[where[near]] = np.rint(way / (MOVE_STEP * limit)).astype(np.int64)
     return moves
