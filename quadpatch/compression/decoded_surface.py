@@ -2,6 +2,8 @@
 
 The order is that of the encoder: the quads' grid, raised by the codes; corrections along the normals; cells left out;
 border vertices moved; pieces that are no height map appended.
+
+Tested in `tests/quadpatch/compression/test_encode.py`.
 """
 
 from dataclasses import dataclass
@@ -15,8 +17,8 @@ from quadpatch.compression.patch_dictionary import cosine_atoms
 from quadpatch.compression.sparse_codes import decoded_heights
 from quadpatch.types import BoolArray, FloatArray, IntArray, QuadMesh, TriangleMesh, Triangles, Vertices
 
-# Steps in parts of the promised error. A correction leaves half a step of height, a lattice sqrt(3) / 2 steps.
-CORRECTION_STEP = 0.9
+# Steps in parts of the promised error. A correction leaves half a step of height, a lattice sqrt(3) / 2.
+CORRECTION_STEP = 0.5
 MOVE_STEP = 0.6
 PIECE_STEP = 1.0
 
