@@ -32,6 +32,9 @@ __all__ = ["Box", "DenoiseOptions", "Denoised", "PatchModel", "denoise"]
 SHIFT_PER_NOISE = 4.0
 # Bins along a patch of 7 mean edges: wider patches have fewer like them.
 RESOLUTION = 11
+# Patches with a smaller share are left out: their risk is a little underestimated, since it leaves out that atoms and
+# pilot follow the noise too.
+_LEAST_SHARE = 0.2
 # A float32 file rounds coordinates by at most this share of the largest, in all three together.
 _ROUNDING = 1.1e-7
 
@@ -277,7 +280,8 @@ def _with_patches(
         normals = vertex_normals(surface.vertices, surface.triangles)
         response = np.where(coded.is_shown, coded.response - noisy.probe, pilot.response)
         by_patches = _Estimate(pilot.moves + coded.shift[:, None] * normals, response, {})
-        return noisy.weigh(["smoothed", "patches"], [pilot, by_patches], normals), len(patches)
+        weighed = noisy.weigh(["smoothed", "patches"], [pilot, by_patches], normals)
+        return (weighed if weighed.shares["patches"] >= _LEAST_SHARE else pilot), len(patches)
 
 
 def _bounded(mesh: TriangleMesh, moves: FloatArray, max_shift: float) -> tuple[FloatArray, BoolArray]:
