@@ -238,7 +238,7 @@ def test_a_picture_of_what_was_restored_is_drawn(holey: dict[str, Path], tmp_pat
 def test_a_list_of_missing_vertices_is_not_overwritten(holey: dict[str, Path]) -> None:
     listed = holey["list.txt"].read_bytes()
     for flag in ("-o", "--report"):
-        outputs = ["-o", holey["list.txt"].parent / "out.ply", flag, holey["list.txt"]]
+        outputs: list[str | Path] = ["-o", holey["list.txt"].parent / "out.ply", flag, holey["list.txt"]]
         refused = call("restore", holey["whole.ply"], "--missing", holey["list.txt"], *outputs)
         assert refused.stderr.startswith("invalid_option: ")
     assert holey["list.txt"].read_bytes() == listed
