@@ -60,8 +60,8 @@ def run_task(
     with clear_errors(), progress_bars(quiet) as progress:
         others = [path for path in (files.report, files.preview) if path]
         check_outputs(files.source, files.output, others, may_overwrite=files.may_overwrite, inputs=files.inputs)
-        result = task(progress)
         logging.getLogger("quadpatch").addHandler(logging.NullHandler())  # what people read is in the warnings
+        result = task(progress)
         if files.report and not is_stream(files.report):  # drawing may take the process down
             write_report(result.report, files.report)
         if files.preview:

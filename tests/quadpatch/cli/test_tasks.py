@@ -5,6 +5,8 @@ Also tests `quadpatch.cli.restore`, `quadpatch.cli.denoise`, `quadpatch.cli.enco
 
 import json
 import re
+import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +23,7 @@ from quadpatch.formats.vertex_properties import vertex_property
 from quadpatch.tasks.result import TaskResult
 from quadpatch.types import Progress, TriangleMesh
 from tests.quadpatch.shapes import bumpy_plate, sphere, write_ply
+from tests.waiting import GUARD_S
 
 
 def lift(files: Files, progress: Progress) -> TaskResult:
@@ -95,6 +98,21 @@ def test_a_task_that_fails_is_one_line(ball: Path, tmp_path: Path, capsys: pytes
     with pytest.raises(SystemExit, match="1"):
         run_task(Files(ball, tmp_path / "out.ply", None, None), fail, lambda *_: "", False)
     assert capsys.readouterr().err == "stage_failed: there is no way\n"
+
+
+def test_a_step_that_fails_is_a_warning_and_no_traceback(tmp_path: Path) -> None:
+    """Integers can't hold vertices that move by less than one: the file is written anew."""
+    plate = bumpy_plate(30, 200.0)
+    lines = ["ply", "format ascii 1.0", f"element vertex {len(plate.vertices)}"]
+    lines += [f"property short {axis}" for axis in "xyz"]
+    lines += [f"element face {len(plate.triangles)}", "property list uchar int vertex_indices", "end_header"]
+    lines += [" ".join(map(str, row)) for row in np.rint(plate.vertices).astype(int).tolist()]
+    lines += [" ".join(map(str, (3, *row))) for row in plate.triangles.tolist()]
+    (tmp_path / "in.ply").write_text("\n".join([*lines, ""]))
+    command = [sys.executable, "-m", "quadpatch", "denoise", str(tmp_path / "in.ply"), "-o", str(tmp_path / "out.ply")]
+    done = subprocess.run([*command, "--model", "smooth"], capture_output=True, text=True, check=True, timeout=GUARD_S)
+    assert "Warning: the mesh is written anew" in " ".join(done.stderr.split())
+    assert "Traceback" not in done.stderr
 
 
 def test_options_that_were_not_given_are_left_out() -> None:
