@@ -69,7 +69,7 @@ def fit_to_normals(mesh: TriangleMesh, missing: BoolArray, sharpness: Sharpness)
     if not missing.any():
         return vertices
     moving = np.flatnonzero(missing)
-    touched = missing[mesh.triangles].any(axis=1)
+    touched = np.asarray(missing[mesh.triangles].any(axis=1))
     pairs = _across_edges(mesh.triangles, touched)
     corners = _corner_matrix(mesh)[:, np.flatnonzero(touched)]
     around, centroid = sparse.csr_array(corners[moving]), sparse.csr_array(corners.T / 3.0)
@@ -78,10 +78,10 @@ def fit_to_normals(mesh: TriangleMesh, missing: BoolArray, sharpness: Sharpness)
     for _ in range(sharpness.n_rounds):
         normals = _filtered_normals(TriangleMesh(vertices, mesh.triangles), touched, pairs, sharpness.width)[touched]
         outer = (normals[:, :, None] * normals[:, None, :]).reshape(-1, 9)
-        projections = (around @ outer).reshape(-1, 3, 3)
+        projections = np.asarray(around @ outer).reshape(-1, 3, 3)
         for _ in range(_UPDATE_PASSES):
-            offset = np.einsum("ij,ij->i", normals, centroid @ vertices)
-            towards = around @ (normals * offset[:, None])
+            offset = np.einsum("ij,ij->i", normals, np.asarray(centroid @ vertices))
+            towards = np.asarray(around @ (normals * offset[:, None]))
             towards -= np.einsum("nij,nj->ni", projections, vertices[moving])
             vertices[moving] += towards / count[:, None]
     return vertices

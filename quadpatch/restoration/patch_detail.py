@@ -26,7 +26,7 @@ from quadpatch.patches.height_map import bin_centres
 from quadpatch.patches.layout import Sampled
 from quadpatch.patches.scale import PatchScale, choose_scale
 from quadpatch.reconstruction.displacement import mean_displacement
-from quadpatch.reconstruction.whole_surface import lay_out_surface, patches_with_vertices
+from quadpatch.reconstruction.surface_layout import lay_out_surface, patches_with_vertices
 from quadpatch.restoration.least_squares import extend_smoothly
 from quadpatch.stages import Stages
 from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh

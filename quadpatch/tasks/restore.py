@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from quadpatch.errors import EmptyMeshError, OptionError
 from quadpatch.formats.moving import write_moved
@@ -129,7 +130,10 @@ def _moved(scan: Scan, is_missing: BoolArray, welded: Weld, result: Restoration)
     restored = is_missing & result.restored[welded.from_file]
     vertices = np.where(restored[:, None], result.vertices[welded.from_file], scan.vertices)
     expected = np.where(restored, result.expected_error[welded.from_file], 0.0)
-    properties = {RESTORED: restored.astype(np.uint8), EXPECTED_ERROR: expected.astype(np.float32)}
+    properties: dict[str, NDArray[Any]] = {
+        RESTORED: restored.astype(np.uint8),
+        EXPECTED_ERROR: expected.astype(np.float32),
+    }
     return Moved(vertices, properties), restored
 
 
