@@ -18,7 +18,18 @@ from jobkit.jobs.jobs import NewJob
 from jobkit.logs import current_request_id
 from jobkit.models.resolution import resolve_method
 from jobkit.requeue import submit_analysis, submit_job, submit_proof
-from jobkit.schema import Job, JobSpec, Limits, Mesh, MeshFacts, MeshState, Plan, ResolvedModel, conflict_of
+from jobkit.schema import (
+    Job,
+    JobSpec,
+    Limits,
+    Mesh,
+    MeshFacts,
+    MeshState,
+    Plan,
+    ResolvedModel,
+    conflict_of,
+    identity_of,
+)
 from jobkit.settings import Settings
 from jobkit.telemetry import current_traceparent
 from service.formats import clean_filename
@@ -41,7 +52,7 @@ class Submission:
     @property
     def idempotency(self) -> Idempotency | None:
         """The key with a digest of the request, None where none was sent."""
-        return idempotency_of(self.principal, self.key, self.rerun_of or "", self.spec.model_dump_json())
+        return idempotency_of(self.principal, self.key, self.rerun_of or "", identity_of(self.spec))
 
 
 def submit(services: Services, submission: Submission) -> tuple[Job, bool]:
