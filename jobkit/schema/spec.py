@@ -183,6 +183,11 @@ class JobSpec(RepairSpec):
         examples=["face000.ply"],
     )
 
+    @property
+    def reference_id(self) -> str | None:
+        """Id of the mesh that the job learns from, None where it needs none."""
+        return None if self.denoise is None else self.denoise.reference
+
 
 # Fields that came after the first release of the contract.
 _LATER_FIELDS = {"task", "restore", "denoise", "encode"}
