@@ -1,7 +1,4 @@
-"""What a job does with its mesh besides filling holes: options by task. Lengths are in mesh units.
-
-Tested in `tests/jobkit/schema/test_tasks.py`.
-"""
+"""What a job does with its mesh besides filling holes: options by task. Lengths are in mesh units."""
 
 from typing import Annotated, Literal, Self
 

@@ -1,5 +1,5 @@
-"""Also tests `jobkit/migrations/versions/0001_first_tables.py`, `jobkit/migrations/versions/0002_leases_and_webhooks.py`
-and `jobkit/migrations/versions/0007_tasks_of_jobs.py`."""
+"""Also tests `jobkit/migrations/versions/0001_first_tables.py`,
+`jobkit/migrations/versions/0002_leases_and_webhooks.py` and `jobkit/migrations/versions/0007_tasks_of_jobs.py`."""
 
 import multiprocessing
 import signal

@@ -1,4 +1,4 @@
-"""Also tests `jobkit.schema.methods` and `jobkit.schema.conflicts`."""
+"""Also tests `jobkit.schema.conflicts`."""
 
 import json
 from typing import Any
