@@ -182,7 +182,7 @@ class Jobs:
             row = _new_row(new, mesh.filename)
             session.add(row)
             session.flush()
-            append_event(session, row.id, "queued", row.created_at, {"state": row.state})
+            append_event(session, row.id, "queued", row.created_at, {"state": row.state, "task": row.task})
             remember(session, idempotency, job_id=row.id)
             return self._show(row), True
 
