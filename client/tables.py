@@ -70,13 +70,14 @@ def _standing(version: ModelVersion) -> str:
 def print_jobs(console: Console, jobs: Iterable[Job]) -> None:
     """Print jobs, one a line."""
     table = _table(None)
-    for name in ("job", "state", "done", "created (UTC)"):
+    for name in ("job", "task", "state", "done", "created (UTC)"):
         table.add_column(name, no_wrap=True)
     table.add_column("label", overflow="fold")
     for job in jobs:
         detail = job.error.code if job.error else job.stage
         table.add_row(
             job.id,
+            job.spec.task,
             f"{job.state.value}: {detail}" if detail else job.state.value,
             f"{job.percent:.0f} %",
             f"{job.created_at.astimezone(UTC):%m-%d %H:%M:%S}",

@@ -28,7 +28,13 @@ def settle(services: Services) -> Settle:
             services.meshes.reject(analysis, MeshProblem(code=problem, message="bad"))
             return
         box = BoundingBox(min=[0, 0, 0], max=[1, 1, 1])
-        facts = {"format": file_format, "vertices": 3, "triangles": 1, "diagonal": 1.7, "mean_edge_length": 0.1}
+        facts: dict[str, Any] = {
+            "format": file_format,
+            "vertices": 3,
+            "triangles": 1,
+            "diagonal": 1.7,
+            "mean_edge_length": 0.1,
+        }
         services.meshes.publish(analysis, MeshFacts.model_validate(facts | {"bounding_box": box, "holes": []}))
 
     return run
