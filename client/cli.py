@@ -206,8 +206,8 @@ def jobs(
         print_jobs(_stdout(), listed)
 
 
-for command in (restore, denoise, encode, decode):
-    app.command(epilog=f"Exit codes:\n\n{exit_codes_text()}")(command)
+for task_command in (restore, denoise, encode, decode):
+    app.command(epilog=f"Exit codes:\n\n{exit_codes_text()}")(task_command)
 for command in (wait, fetch, cancel, delete, pin):
     app.command()(command)
 

@@ -12,9 +12,8 @@ from jobkit.schema import Job, MeshFacts, ModelList, ModelVersion, Plan, Planned
 def print_holes(console: Console, facts: MeshFacts, plan: Plan) -> None:
     """Print every hole of a mesh, and whether a job would fill it."""
     unit = facts.unit or "mesh units"
-    table = _table(
-        f"{facts.vertices:,} vertices, {facts.triangles:,} triangles, {len(plan.holes):,} holes; lengths in {unit}"
-    )
+    counts = f"{facts.vertices or 0:,} vertices, {facts.triangles or 0:,} triangles, {len(plan.holes):,} holes"
+    table = _table(f"{counts}; lengths in {unit}")
     for name in ("id", "diameter", "perimeter", "edges", "area"):
         table.add_column(name, justify="right")
     for name in ("kind", "centre"):

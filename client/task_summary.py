@@ -21,8 +21,7 @@ def task_sentence(name: str, task: Task, result: JobResult, unit: str) -> str:
     unit : str
         Of lengths.
     """
-    sentence = _SENTENCES.get(task, lambda *_: "done")  # a newer service may know more tasks
-    return f"{name}: {sentence(result, unit)}."
+    return f"{name}: {_SENTENCES.get(task, _done)(result, unit)}."
 
 
 def counted(number: int, noun: str) -> str:
@@ -52,6 +51,11 @@ def _encoded(result: JobResult, unit: str) -> str:
     size = "encoded" if file is None else f"encoded in {file.size_bytes:,} bytes"
     error = "" if result.max_error is None else f", no farther than {result.max_error:.3g} {unit} from the scan"
     return f"{size}{error}"
+
+
+def _done(_result: JobResult, _unit: str) -> str:
+    """Say little of a task that only a newer service knows."""
+    return "done"
 
 
 _SENTENCES: Mapping[str, Callable[[JobResult, str], str]] = {

@@ -16,7 +16,7 @@ def make_plan(spec: JobSpec, facts: MeshFacts, model: ResolvedModel, settings: S
         If an explicit id names no hole.
     """
     check_hole_ids(spec.holes, facts)
-    choices = choose_holes(facts.holes, spec.holes, facts.diagonal)
+    choices = choose_holes(facts.holes, spec.holes, facts.diagonal or 0.0)
     if not (isinstance(spec.method, DictionaryMethod) and spec.method.recipe == "paper"):
         choices = join_islands(
             [hole.lies_in for hole in facts.holes], choices

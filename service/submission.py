@@ -15,9 +15,10 @@ from jobkit.errors import (
 )
 from jobkit.jobs.jobs import NewJob
 from jobkit.logs import current_request_id
-from jobkit.models.resolution import resolve_method
+from jobkit.models.resolution import resolve_decoding, resolve_method
 from jobkit.requeue import submit_analysis, submit_job, submit_proof
 from jobkit.schema import (
+    DictionaryMethod,
     Job,
     JobSpec,
     Limits,
@@ -135,6 +136,9 @@ def _check(services: Services, spec: JobSpec) -> ResolvedModel:
         check_reference(services.meshes.get(spec.reference_id))
     if mesh.facts is not None:
         check_hole_ids(spec.holes, mesh.facts)
+    encoded = None if mesh.facts is None else mesh.facts.encoded
+    if encoded is not None and isinstance(spec.method, DictionaryMethod):
+        return resolve_decoding(services.registry, spec.method, encoded)
     return resolve_method(services.registry, spec.method)
 
 

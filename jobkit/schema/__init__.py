@@ -19,8 +19,9 @@ from jobkit.schema.jobs import (
     Plan,
     PlannedHole,
     ResultFile,
+    ResultFormat,
 )
-from jobkit.schema.meshes import BoundingBox, Hole, Mesh, MeshFacts, MeshLinks, MeshProblem
+from jobkit.schema.meshes import BoundingBox, EncodedFacts, Hole, Mesh, MeshFacts, MeshLinks, MeshProblem
 from jobkit.schema.methods import (
     DEFAULT_MODEL,
     DEFAULT_NETWORK,
@@ -113,6 +114,7 @@ __all__ = [
     "Deprecation",
     "DeprecationReason",
     "DictionaryMethod",
+    "EncodedFacts",
     "Encoding",
     "Event",
     "EventPage",
@@ -170,6 +172,7 @@ __all__ = [
     "Response",
     "Restoring",
     "ResultFile",
+    "ResultFormat",
     "SmoothMethod",
     "Task",
     "Webhook",

@@ -69,8 +69,8 @@ def _conflict_of_method(spec: RepairSpec) -> str | None:
         return f"the task {spec.task} goes by a dictionary; the method {spec.method.method} goes with the task fill"
     if spec.method.recipe != "default":
         return f"recipes go with the task fill; the task of this job is {spec.task}"
-    if spec.task == "decode" and spec.method.model == SELF:
-        return "a file is decoded with the dictionary that it was encoded with: name that model, not self"
+    if spec.task == "encode" and spec.method.patches.overlap is not None:
+        return "patches of the task encode share their borders: leave method.patches.overlap out"
     has_reference = spec.denoise is not None and spec.denoise.reference is not None
     if has_reference and spec.method.model != SELF:
         return "denoise.reference takes the place of a model: leave method.model out, or say self"

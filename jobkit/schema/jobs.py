@@ -71,7 +71,8 @@ class JobResult(Response):
     max_error: float | None = Field(
         default=None,
         ge=0,
-        description="Of `encode`: how far the decoded surface lies from the scan at most, in mesh units, as measured.",
+        description="How far the decoded surface lies from the scan at most, in mesh units: as measured by `encode`, "
+        "as promised in the file that `decode` read.",
         examples=[0.0098],
     )
     seconds: float = Field(default=0.0, ge=0, description="Wall-clock seconds of the job.", examples=[14.2])

@@ -5,7 +5,7 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import Field, model_validator
 
 from jobkit.schema.base import TEXT_PATTERN, WHOLE, MeshId, Request
-from jobkit.schema.methods import SELF, DictionaryMethod, Method
+from jobkit.schema.methods import DEFAULT_MODEL, SELF, DictionaryMethod, Method
 from jobkit.schema.tasks import Denoising, Encoding, Restoring
 from shared_rules.hole_selection import Cap, HoleKind, RuleAction
 from shared_rules.tasks import FILL, Task
@@ -122,10 +122,9 @@ class Limits(Request):
 
 
 def _default_method(fields: dict[str, Any]) -> DictionaryMethod:
-    """Return the method of a job that names none: scans are restored and denoised by what is learned from them."""
-    if fields.get("task") in ("restore", "denoise"):
-        return DictionaryMethod(method="dictionary", model=SELF)
-    return DictionaryMethod(method="dictionary")
+    """Return the method of a job that names none: tasks other than `fill` go by what the mesh itself teaches."""
+    model = DEFAULT_MODEL if fields.get("task") == FILL else SELF
+    return DictionaryMethod(method="dictionary", model=model)
 
 
 class RepairSpec(Request):
@@ -140,7 +139,8 @@ class RepairSpec(Request):
     method: Method = Field(
         default_factory=_default_method,
         description="How patches are completed or coded. All tasks but `fill` go by a dictionary. Left out, it is a "
-        "dictionary: the model `self` where the task is `restore` or `denoise`, else `default`.",
+        "dictionary: the model `default` where the task is `fill`, else `self`. For `decode`, `self` means the "
+        "dictionary that the file holds or names.",
     )
     restore: Restoring | None = Field(default=None, description="Options of the task `restore`, which needs them.")
     denoise: Denoising | None = Field(default=None, description="Options of the task `denoise`.")

@@ -31,7 +31,7 @@ def test_a_spec_of_before_there_were_tasks_fills() -> None:
 
 @pytest.mark.parametrize("task", TASKS)
 def test_a_task_without_a_method_has_its_own_default(task: str) -> None:
-    model = SELF if task in ("restore", "denoise") else "default"
+    model = "default" if task == "fill" else SELF
     assert spec(task).method == DictionaryMethod(method="dictionary", model=model)
     assert "method" not in RepairSpec.model_validate({"task": task, **WHOLE[task]}).model_fields_set
 
@@ -77,7 +77,7 @@ def test_what_is_not_in_the_contract_is_refused(change: dict[str, Any]) -> None:
         ("denoise", {"method": {"method": "smooth"}}, "the method smooth goes with the task fill"),
         ("encode", {"method": {"method": "cnn"}}, "the method cnn goes with the task fill"),
         ("restore", {"method": {"method": "dictionary", "recipe": "paper"}}, "recipes go with the task fill"),
-        ("decode", {"method": {"method": "dictionary", "model": "self"}}, "name that model, not self"),
+        ("encode", {"method": {"method": "dictionary", "patches": {"overlap": 1}}}, "leave method.patches.overlap out"),
         (
             "denoise",
             {"denoise": {"reference": "b" * 64}, "method": {"method": "dictionary"}},

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 from starlette.testclient import TestClient
 
-from jobkit.schema import TASKS, BoundingBox, MeshFacts, MeshProblem, ModelVersion
+from jobkit.schema import TASKS, MeshFacts, MeshProblem, ModelVersion
 from service.services import Services
 
 Publish = Callable[..., ModelVersion]
@@ -15,6 +15,8 @@ Settle = Callable[..., None]
 NAN = {"task": "restore", "restore": {"missing": {"kind": "nan"}}}
 DENOISE = {"task": "denoise"}
 SELF = {"method": "dictionary", "model": "self"}
+DECODE = {"task": "decode"}
+NAMED = {"model": "mine@3"}
 ENCODE = {"task": "encode", "encode": {"max_error": 0.01}, "method": SELF}
 
 
@@ -22,20 +24,15 @@ ENCODE = {"task": "encode", "encode": {"max_error": 0.01}, "method": SELF}
 def settle(services: Services) -> Settle:
     """Do what a worker does with the analysis of a mesh: facts of a format, or the code of a problem."""
 
-    def run(mesh_id: str, file_format: str = "ply", problem: str | None = None) -> None:
+    def run(
+        mesh_id: str, file_format: str = "ply", problem: str | None = None, encoded: dict[str, Any] | None = None
+    ) -> None:
         analysis = services.meshes.start_analysis(mesh_id, "test", 30)
         if problem is not None:
             services.meshes.reject(analysis, MeshProblem(code=problem, message="bad"))
             return
-        box = BoundingBox(min=[0, 0, 0], max=[1, 1, 1])
-        facts: dict[str, Any] = {
-            "format": file_format,
-            "vertices": 3,
-            "triangles": 1,
-            "diagonal": 1.7,
-            "mean_edge_length": 0.1,
-        }
-        services.meshes.publish(analysis, MeshFacts.model_validate(facts | {"bounding_box": box, "holes": []}))
+        facts = MeshFacts.model_validate({"format": file_format, "holes": [], "diagonal": 1.7, "encoded": encoded})
+        services.meshes.publish(analysis, facts)
 
     return run
 
@@ -55,12 +52,12 @@ def dictionary(client: TestClient, dictionary_bytes: Callable[[int], bytes], pub
 
 @pytest.mark.usefixtures("dictionary")
 def test_each_task_is_accepted_and_shown_with_its_defaults(client: TestClient, mesh_id: str) -> None:
-    wholes = [{"task": "fill"}, NAN, DENOISE, {**ENCODE, "method": {"method": "dictionary"}}, {"task": "decode"}]
+    wholes = [{"task": "fill"}, NAN, DENOISE, {**ENCODE, "method": {"method": "dictionary"}}, DECODE]
     answers = [client.post("/v1/jobs", json={"mesh_id": mesh_id, **whole}) for whole in wholes]
     assert [answer.status_code for answer in answers] == 5 * [202]
     jobs = [answer.json() for answer in answers]
     assert [job["spec"]["task"] for job in jobs] == list(TASKS)
-    assert [job["model"]["requested"] for job in jobs] == ["default", "self", "self", "default", "default"]
+    assert [job["model"]["requested"] for job in jobs] == ["default", "self", "self", "default", "self"]
     again = client.post(f"/v1/jobs/{jobs[2]['id']}/rerun").json()
     assert (again["spec"], again["rerun_of"]) == (jobs[2]["spec"], jobs[2]["id"])
 
@@ -96,7 +93,6 @@ def test_a_task_with_options_of_another_one_or_without_its_own_is_refused_wherev
     assert [job["id"] for job in client.get("/v1/jobs").json()["items"]] == [first]
 
 
-@pytest.mark.usefixtures("dictionary")
 def test_a_qpz_file_can_be_decoded_and_nothing_else(client: TestClient, mesh_id: str, settle: Settle) -> None:
     settle(mesh_id, "qpz")
     for spec in ({"method": {"method": "smooth"}}, NAN, DENOISE, ENCODE):
@@ -106,7 +102,6 @@ def test_a_qpz_file_can_be_decoded_and_nothing_else(client: TestClient, mesh_id:
     assert client.post("/v1/jobs", json={"mesh_id": mesh_id, "task": "decode"}).status_code == 202
 
 
-@pytest.mark.usefixtures("dictionary")
 def test_only_a_qpz_file_can_be_decoded(client: TestClient, mesh_id: str, settle: Settle) -> None:
     assert client.post("/v1/jobs", json={"mesh_id": mesh_id, "task": "decode"}).status_code == 202
     settle(mesh_id)
@@ -166,7 +161,6 @@ def test_a_reference_can_be_deleted_only_after_its_job(
     assert client.delete(f"/v1/meshes/{reference_id}").status_code == 204
 
 
-@pytest.mark.usefixtures("dictionary")
 @pytest.mark.parametrize(
     ("spec", "summary"),
     [
@@ -212,3 +206,35 @@ def test_a_request_of_before_there_were_tasks_is_the_same_when_it_comes_again(cl
     assert again.json()["id"] == first.json()["id"]
     other = client.post("/v1/jobs", json={"mesh_id": mesh_id, **DENOISE}, headers=headers)
     assert (other.status_code, other.json()["code"]) == (409, "idempotency_conflict")
+
+
+@pytest.mark.usefixtures("dictionary")
+def test_a_file_is_decoded_with_the_dictionary_whose_bytes_it_names(
+    client: TestClient, services: Services, mesh_id: str, settle: Settle, publish: Publish, dictionary_bytes: Any
+) -> None:
+    """Whatever that is called by now."""
+    publish("others", dictionary_bytes(2))
+    sha256 = services.registry.resolve("reliefs@1").sha256
+    settle(mesh_id, "qpz", encoded={"max_error": 0.1, "keeps_connectivity": False, **NAMED, "model_sha256": sha256})
+    job = client.post("/v1/jobs", json={"mesh_id": mesh_id, **DECODE}).json()
+    assert (job["model"]["requested"], job["model"]["name"], job["model"]["version"]) == ("self", "reliefs", 1)
+    named = {"mesh_id": mesh_id, **DECODE, "method": {"method": "dictionary", "model": "reliefs"}}
+    assert client.post("/v1/jobs", json=named).json()["model"]["name"] == "reliefs"
+    other = {"mesh_id": mesh_id, **DECODE, "method": {"method": "dictionary", "model": "others"}}
+    refused = client.post("/v1/jobs", json=other)
+    assert (refused.status_code, refused.json()["code"]) == (409, "model_kind_mismatch")
+    assert "was encoded with mine@3; others@1 is another dictionary" in refused.json()["detail"]
+
+
+def test_a_file_whose_dictionary_is_not_registered_is_refused(client: TestClient, mesh_id: str, settle: Settle) -> None:
+    encoded = {"max_error": 0.1, "keeps_connectivity": False, **NAMED, "model_sha256": "e" * 64}
+    settle(mesh_id, "qpz", encoded=encoded)
+    answer = client.post("/v1/jobs", json={"mesh_id": mesh_id, **DECODE})
+    assert (answer.status_code, answer.json()["code"]) == (404, "model_not_found")
+    assert "mine@3" in answer.json()["detail"]
+
+
+def test_a_file_that_holds_its_dictionary_needs_no_model(client: TestClient, mesh_id: str, settle: Settle) -> None:
+    settle(mesh_id, "qpz", encoded={"max_error": 0.1, "keeps_connectivity": False})
+    answer = client.post("/v1/jobs", json={"mesh_id": mesh_id, **DECODE})
+    assert (answer.status_code, answer.json()["model"]["kind"]) == (202, "self")
