@@ -231,7 +231,7 @@ def test_commands_that_are_named_exist() -> None:
             file = ROOT / module.replace(".", "/")
             is_there = (file / "__main__.py").is_file() or file.with_suffix(".py").is_file()
             assert is_there or module == "venv", f"{path.name}: {module}"
-            apps = {"quadpatch": "quadpatch.cli", "client": "client.cli", "training": "training.__main__"}
+            apps = {"quadpatch": "quadpatch.cli.app", "client": "client.cli", "training": "training.__main__"}
             apps["onebox"] = "onebox.__main__"
             if command and module in apps:
                 app = importlib.import_module(apps[module]).app

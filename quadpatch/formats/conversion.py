@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from quadpatch.formats.merged_scene import MergedScene
 from quadpatch.formats.obj_source import GROUP, face_lines
+from quadpatch.formats.ply.moved_rows import property_word
 from quadpatch.formats.stl import encode_stl
 from quadpatch.formats.text import to_lines
 from quadpatch.mesh.weld import first_of_equal
@@ -25,7 +26,7 @@ class _Column(NamedTuple):
 
 
 def encode_as_ply(scene: MergedScene) -> bytes:
-    """Encode as binary little-endian PLY with the marks `filled`, `hole_id` and `confidence`."""
+    """Encode as binary little-endian PLY with the marks `filled`, `hole_id` and `confidence`, if there are any."""
     attributes = scene.vertex_attributes
     single = scene.vertices.astype("<f4")
     exact = bool((single == scene.vertices).all())
@@ -34,17 +35,26 @@ def encode_as_ply(scene: MergedScene) -> bytes:
         columns += _columns("float", "nx ny nz", attributes.normals.astype("<f4"))
     if attributes.colours is not None:
         columns += _columns("uchar", "red green blue alpha", np.rint(attributes.colours).astype("u1"))
-    columns += _marks(scene.vertex_hole_id, scene.vertex_confidence)
+    columns += [
+        _Column(f"{property_word(values)} {name}", _plain(values)) for name, values in scene.vertex_properties.items()
+    ]
+    columns += _marks(scene.vertex_hole_id, scene.vertex_confidence) if scene.is_marked else []
     faces = [_Column("list uchar int vertex_indices", scene.triangles.astype("<i4"))]
     if attributes.texture is not None:
         flat = np.nan_to_num(attributes.texture).reshape(-1, 6)
         faces.append(_Column("list uchar float texcoord", flat.astype("<f4")))
-    faces += _marks(scene.triangle_hole_id, scene.triangle_confidence)
+    faces += _marks(scene.triangle_hole_id, scene.triangle_confidence) if scene.is_marked else []
     lines = ["ply", "format binary_little_endian 1.0", *([f"comment unit {scene.unit}"] if scene.unit else [])]
     for name, element in (("vertex", columns), ("face", faces)):
         lines.append(f"element {name} {len(element[0].values)}")
         lines += [f"property {column.words}" for column in element]
     return "\n".join([*lines, "end_header", ""]).encode() + _rows(columns) + _rows(faces)
+
+
+def _plain(values: NDArray[Any]) -> NDArray[Any]:
+    """Numbers as little-endian PLY stores them; truth values are bytes."""
+    plain = values.astype("u1") if values.dtype == np.bool_ else values
+    return plain.astype("<" + plain.dtype.str[1:])
 
 
 def _columns(word: str, names: str, table: NDArray[Any]) -> list[_Column]:
@@ -97,7 +107,8 @@ def encode_as_obj(scene: MergedScene) -> bytes:
         normal = scene.triangles + 1
         text.append(to_lines("vn", attributes.normals, "\n"))
     lines = face_lines(scene.triangles + 1, texture, normal, "\n")
-    text += [*lines[: scene.n_measured], f"g {GROUP}\n", *lines[scene.n_measured :]]
+    group = [f"g {GROUP}\n"] if scene.is_marked else []
+    text += [*lines[: scene.n_measured], *group, *lines[scene.n_measured :]]
     return "".join(text).encode()
 
 

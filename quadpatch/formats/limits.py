@@ -38,11 +38,14 @@ class ReadLimits:
         Size of the file; for zip containers also the sum of the unpacked sizes.
     max_vertices, max_triangles : int
         Counts, polygons and strips counted as the triangles they become.
+    allow_missing : bool
+        Whether vertices whose three coordinates are NaN pass, as missing ones; infinite ones never do.
     """
 
     max_bytes: int = 2 * 1024**3
     max_vertices: int = 20_000_000
     max_triangles: int = 40_000_000
+    allow_missing: bool = False
 
     def check_bytes(self, n_bytes: int) -> None:
         """Raise TooLargeError for more bytes than allowed."""
@@ -68,7 +71,7 @@ def to_float64(values: NDArray[Any]) -> FloatArray:
         return np.asarray(values.astype(np.float64))
 
 
-def check_vertices(vertices: Vertices) -> None:
+def check_vertices(vertices: Vertices, allow_missing: bool = False) -> None:
     """Refuse a mesh without vertices or with coordinates that can't be computed with.
 
     A bad coordinate is refused even where no face uses its vertex: it would spoil bounding boxes and search trees.
@@ -76,6 +79,8 @@ def check_vertices(vertices: Vertices) -> None:
     Parameters
     ----------
     vertices : (n, 3) float64
+    allow_missing : bool
+        Whether vertices whose three coordinates are NaN pass, as long as there are others.
 
     Raises
     ------
@@ -83,6 +88,8 @@ def check_vertices(vertices: Vertices) -> None:
     """
     if len(vertices) == 0:
         raise EmptyMeshError("the file has no vertex")
+    if allow_missing:
+        vertices = _without_missing(vertices)
     size = np.abs(vertices)
     # One pass: a NaN fails the comparison as an infinity does.
     bad = np.asarray(~(size <= LARGEST_COORDINATE).all(axis=1))
@@ -94,6 +101,16 @@ def check_vertices(vertices: Vertices) -> None:
             f"{n_too_small:,} of {size.size:,} coordinates are smaller than {SMALLEST_COORDINATE:.3g} and not zero: "
             "the file does not hold what its format says"
         )
+
+
+def _without_missing(vertices: Vertices) -> Vertices:
+    """Put the first vertex that is there in the place of those that are missing, so that others keep their number."""
+    is_missing = np.asarray(np.isnan(vertices).all(axis=1))
+    if is_missing.all():
+        raise EmptyMeshError(f"all {len(vertices):,} vertices of the file are missing: their coordinates are NaN")
+    if not is_missing.any():
+        return vertices
+    return np.where(is_missing[:, np.newaxis], vertices[np.argmin(is_missing)], vertices)
 
 
 def _refuse_large(vertices: Vertices, bad: BoolArray) -> None:

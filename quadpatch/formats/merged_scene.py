@@ -1,14 +1,17 @@
-"""A scan and its fill as one mesh, for writing it in another format than its own.
+"""A scan and its fill, or a scan that moved, as one mesh, for writing it in another format than its own.
 
 Tested in `tests/quadpatch/formats/test_conversion.py`.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from quadpatch.formats.attributes import extend_over_vertices, joined_vertices, triangle_normals, vertex_normals
-from quadpatch.formats.scan import Fill, Scan, VertexAttributes
+from quadpatch.formats.moved_normals import moved_vertex_normals
+from quadpatch.formats.scan import Fill, Moved, Scan, VertexAttributes
 from quadpatch.formats.texture import extend_over_corners
 from quadpatch.types import BoolArray, FloatArray, IntArray, Triangles, Vertices
 
@@ -31,6 +34,10 @@ class MergedScene:
         Measured triangles; they come first.
     unit : str or None
         Length unit, where the scan's file states one.
+    is_marked : bool
+        Whether formats that can mark what is invented do so, even where nothing is.
+    vertex_properties : dict of (n,) arrays
+        Further numbers of the vertices, by name; PLY has a place for them.
     """
 
     vertices: Vertices
@@ -42,6 +49,8 @@ class MergedScene:
     triangle_confidence: FloatArray
     n_measured: int
     unit: str | None
+    is_marked: bool = True
+    vertex_properties: dict[str, NDArray[Any]] = field(default_factory=dict)
 
     @property
     def invented(self) -> BoolArray:
@@ -88,4 +97,26 @@ def merge_scene(scan: Scan, fill: Fill) -> MergedScene:
         triangle_confidence=np.concatenate([np.ones(n_triangles), fill.triangle_confidence]),
         n_measured=n_triangles,
         unit=scan.unit,
+    )
+
+
+def moved_scene(scan: Scan, moved: Moved) -> MergedScene:
+    """Take a scan with its vertices at other positions, and the normals of those that moved anew.
+
+    Parameters
+    ----------
+    scan : Scan
+    moved : Moved
+    """
+    scene = merge_scene(scan, _as_fill(scan.vertices, np.zeros((0, 3), dtype=np.int64)))
+    attributes = scene.vertex_attributes
+    if attributes.normals is not None:
+        normals = moved_vertex_normals(scan, np.nan_to_num(attributes.normals), moved)
+        attributes = replace(attributes, normals=normals)
+    return replace(
+        scene,
+        vertices=moved.vertices,
+        vertex_attributes=attributes,
+        is_marked=False,
+        vertex_properties=moved.properties,
     )

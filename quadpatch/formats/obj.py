@@ -12,32 +12,23 @@ import numpy as np
 
 from quadpatch.errors import EmptyMeshError, IndexRangeError, ReadError
 from quadpatch.formats.limits import ReadLimits, check_indices, check_triangles, check_vertices
-from quadpatch.formats.lines import Lines, split_lines
+from quadpatch.formats.lines import Lines
 from quadpatch.formats.obj_source import ObjSource
+from quadpatch.formats.obj_statements import (
+    FACE,
+    MATERIAL,
+    NORMAL,
+    TEXTURE,
+    VERTEX,
+    ObjStatements,
+    split_statements,
+)
 from quadpatch.formats.polygons import triangulate_polygons
 from quadpatch.formats.scan import Scan
 from quadpatch.formats.text import decode_text, parse_integers, word_starts
 from quadpatch.types import FloatArray, IntArray, Triangles, Vertices
 
-_VERTEX, _TEXTURE, _NORMAL, _FACE, _MATERIAL = 1, 2, 3, 4, 5
-_KEYWORDS = {_VERTEX: b"v", _TEXTURE: b"vt", _NORMAL: b"vn", _FACE: b"f", _MATERIAL: b"usemtl"}
 _SLASH = 47
-
-
-@dataclass(frozen=True)
-class _Statements:
-    """Lines of an OBJ file, and which keyword each has (0 for all others)."""
-
-    lines: Lines
-    kinds: IntArray
-
-    def of(self, kind: int) -> Lines:
-        """Return what stands behind the keyword in the lines of one kind."""
-        return self.lines.select(self.kinds == kind).behind(len(_KEYWORDS[kind]))
-
-    def count_before(self, kind: int) -> IntArray:
-        """How many lines of one kind stand before each face, (n_faces,)."""
-        return np.asarray(np.cumsum(self.kinds == kind)[self.kinds == _FACE], dtype=np.int64)
 
 
 @dataclass(frozen=True)
@@ -65,16 +56,16 @@ def read_obj(data: bytes, limits: ReadLimits) -> Scan:
         ReadError, EmptyMeshError, NotFiniteError, IndexRangeError or TooLargeError.
     """
     text, codec = decode_text(data)
-    statements = _split(text)
-    limits.check_vertices(int((statements.kinds == _VERTEX).sum()))
-    vertices, colours = _parse_vertices(statements.of(_VERTEX))
-    check_vertices(vertices)
-    texture = _parse_table(statements.of(_TEXTURE), "vt", 1, 2)
-    normals = _parse_table(statements.of(_NORMAL), "vn", 3, 3)
+    statements = split_statements(text)
+    limits.check_vertices(int((statements.kinds == VERTEX).sum()))
+    vertices, colours = _parse_vertices(statements.of(VERTEX))
+    check_vertices(vertices, limits.allow_missing)
+    texture = _parse_table(statements.of(TEXTURE), "vt", 1, 2)
+    normals = _parse_table(statements.of(NORMAL), "vn", 3, 3)
     corners = _parse_faces(statements, (len(vertices), len(texture), len(normals)))
     triangles, places, face = _cut(vertices, corners)
     check_triangles(triangles, limits)
-    materials = statements.of(_MATERIAL)
+    materials = statements.of(MATERIAL)
     source = ObjSource(
         data=data,
         codec=codec,
@@ -84,19 +75,9 @@ def read_obj(data: bytes, limits: ReadLimits) -> Scan:
         corner_texture=corners.texture[places],
         corner_normal=corners.normal[places],
         materials=[materials.text(line).strip() for line in range(len(materials.starts))],
-        triangle_material=(statements.count_before(_MATERIAL) - 1)[face],
+        triangle_material=(statements.count_before(MATERIAL) - 1)[face],
     )
     return Scan(vertices, triangles, "obj", source=source)
-
-
-def _split(text: bytes) -> _Statements:
-    if b"\\" in text:
-        text = re.sub(rb"\\[ \t]*(\r\n|\n|\r)", b" ", text)
-    lines = split_lines(text, keep_comments_of=(b"usemtl",))
-    kinds = np.zeros(len(lines.starts), dtype=np.int64)
-    for kind, keyword in _KEYWORDS.items():
-        kinds[lines.begin_with(keyword)] = kind
-    return _Statements(lines, kinds)
 
 
 def _parse_vertices(lines: Lines) -> tuple[Vertices, FloatArray | None]:
@@ -123,8 +104,8 @@ def _parse_table(lines: Lines, keyword: str, least: int, width: int) -> FloatArr
     return table
 
 
-def _parse_faces(statements: _Statements, counts: tuple[int, int, int]) -> _Corners:
-    lines = statements.of(_FACE)
+def _parse_faces(statements: ObjStatements, counts: tuple[int, int, int]) -> _Corners:
+    lines = statements.of(FACE)
     sizes = lines.word_counts()
     if sizes.sum() == 0:
         raise EmptyMeshError("the OBJ file has no face: points and lines are no surface")
@@ -140,7 +121,7 @@ def _parse_faces(statements: _Statements, counts: tuple[int, int, int]) -> _Corn
     if len(numbers) != len(slashes) + slashes.sum():
         raise ReadError("an OBJ face has a corner without a vertex")
     columns = []
-    for column, kind in enumerate((_VERTEX, _TEXTURE, _NORMAL)):
+    for column, kind in enumerate((VERTEX, TEXTURE, NORMAL)):
         has = slashes >= column
         raw = np.zeros(len(starts), dtype=np.int64)
         raw[has] = numbers[starts[has] + column]

@@ -1,8 +1,11 @@
-"""An OBJ file as it was read, and its way back with lines appended.
+"""An OBJ file as it was read, and its way back with lines appended, or with vertices at other positions.
 
 All lines stay. Behind them come the new `v`, `vt` and `vn` lines and a group `quadpatch_filled` with the new faces,
 which use the material of the nearest measured face. New vertices have colours where the measured ones do; new faces
 have texture coordinates and normals where the faces around their hole do.
+
+Where vertices move, the numbers of their `v` lines change, and those of the `vn` lines that a corner at one of them
+names: they become the mean normal of all faces whose corners name them.
 
 Tested in `tests/quadpatch/formats/test_obj.py`.
 """
@@ -12,10 +15,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from quadpatch.formats.attributes import extend_over_vertices, nearest_rim_triangle, normals_at
-from quadpatch.formats.scan import Fill, Scan, VertexAttributes
-from quadpatch.formats.text import decode_text, line_end_of, to_lines
+from quadpatch.formats.moved_normals import normals_of_groups
+from quadpatch.formats.obj_statements import NORMAL, VERTEX, split_statements
+from quadpatch.formats.scan import Fill, Moved, Scan, VertexAttributes
+from quadpatch.formats.text import decode_text, encode_like, line_end_of, to_lines
 from quadpatch.formats.texture import extend_over_corners
-from quadpatch.types import FloatArray, IntArray
+from quadpatch.formats.words import replace_numbers, words_from
+from quadpatch.types import BoolArray, FloatArray, IntArray
 
 GROUP = "quadpatch_filled"
 
@@ -78,6 +84,32 @@ class ObjSource:
         vertex, normal = scan.triangles.ravel()[::-1], self.corner_normal.ravel()[::-1]
         first[vertex[normal >= 0]] = normal[normal >= 0]
         return first
+
+    def move(self, scan: Scan, moved: Moved) -> bytes:
+        """Replace the numbers of vertices that moved, and those of their normals."""
+        text, codec = decode_text(self.data)
+        statements = split_statements(text)
+        is_moved = moved.is_moved(scan)
+        normals, is_stale = self._moved_normals(scan, moved, is_moved)
+        spans = [words_from(lines.raw, lines.starts, 3) for lines in map(statements.of, (VERTEX, NORMAL))]
+        new = replace_numbers(
+            text,
+            (np.concatenate([span[0] for span in spans]), np.concatenate([span[1] for span in spans])),
+            np.concatenate([scan.vertices, self.normals]),
+            np.concatenate([moved.vertices, normals]),
+            np.concatenate([is_moved, is_stale]),
+        )
+        return encode_like(self.data, new, codec)
+
+    def _moved_normals(self, scan: Scan, moved: Moved, is_moved: BoolArray) -> tuple[FloatArray, BoolArray]:
+        """Return the normals (n_vn, 3) at the new positions, and which of them a corner at a moved vertex names."""
+        is_stale = np.zeros(len(self.normals), dtype=bool)
+        named = is_moved[scan.triangles] & (self.corner_normal >= 0)
+        if not named.any():
+            return self.normals, is_stale
+        fresh = normals_of_groups(scan, self.corner_normal, self.normals, moved)
+        is_stale[self.corner_normal[named]] = True
+        return fresh, is_stale & fresh.any(axis=1)
 
     def append(self, scan: Scan, fill: Fill) -> bytes:
         """Append lines to the file."""

@@ -1,9 +1,10 @@
-"""OFF: reading, and handing back with lines appended.
+"""OFF: reading, and handing back with lines appended or with vertices at other positions.
 
 Read are OFF, COFF, NOFF, CNOFF and STOFF text files, with or without the keyword, with comments, and with colours
 behind vertices and faces whether the keyword announces them or not. Every line of the file comes back as it was but
 the counts. Invented vertices and faces are those behind the measured ones; the format has no place for another mark.
 New vertices get extended colours, normals and texture coordinates, new faces the colour of the nearest measured face.
+Where vertices move, their coordinates change, and their normals are computed anew.
 """
 
 import re
@@ -15,9 +16,11 @@ from quadpatch.errors import EmptyMeshError, FormatError, ReadError
 from quadpatch.formats.attributes import extend_over_vertices, nearest_rim_triangle, vertex_normals
 from quadpatch.formats.limits import ReadLimits, check_indices, check_triangles, check_vertices
 from quadpatch.formats.lines import Lines, split_lines
+from quadpatch.formats.moved_normals import moved_vertex_normals
 from quadpatch.formats.polygons import list_range, triangulate_polygons
-from quadpatch.formats.scan import Fill, Scan, VertexAttributes
-from quadpatch.formats.text import decode_text, line_end_of, to_integers, to_lines, to_words
+from quadpatch.formats.scan import Fill, Moved, Scan, VertexAttributes
+from quadpatch.formats.text import decode_text, encode_like, line_end_of, to_integers, to_lines, to_words
+from quadpatch.formats.words import replace_numbers, words_from
 from quadpatch.types import FloatArray, IntArray
 
 _KEYWORD = re.compile(rb"(ST)?(C)?(N)?(4)?(n)?OFF(?![^\s])[ \t]*(BINARY)?")
@@ -35,6 +38,8 @@ class OffSource:
         The file, decoded.
     codec : str
         Encoding that it had.
+    start : bytes
+        First bytes of the file, with its byte order mark.
     counts_at : int
         Byte at which the line of the counts begins.
     vertices_end, faces_end : int
@@ -45,12 +50,13 @@ class OffSource:
         What stands behind the coordinates of a vertex.
     n_normal, n_texture : int
         How many of the first and the last columns of `extras` are a normal and texture coordinates.
-    face_lines : Lines
+    vertex_lines, face_lines : Lines
     triangle_face : (m,) int64
     """
 
     text: bytes
     codec: str
+    start: bytes
     counts_at: int
     vertices_end: int
     faces_end: int
@@ -58,6 +64,7 @@ class OffSource:
     extras: FloatArray
     n_normal: int
     n_texture: int
+    vertex_lines: Lines
     face_lines: Lines
     triangle_face: IntArray
 
@@ -76,8 +83,19 @@ class OffSource:
         ]
         if not self.text[: self.faces_end].endswith((b"\n", b"\r")):
             pieces.insert(3, line_end.encode())
-        text = b"".join(pieces)
-        return text if self.codec == "utf-8" else ("\ufeff" + text.decode()).encode(self.codec)
+        return encode_like(self.start, b"".join(pieces), self.codec)
+
+    def move(self, scan: Scan, moved: Moved) -> bytes:
+        """Replace the numbers of vertices that moved, and those of their normals."""
+        before, after = scan.vertices, moved.vertices
+        if self.n_normal:
+            stored = self.extras[:, : self.n_normal]
+            fresh = moved_vertex_normals(scan, stored, moved)
+            before, after = np.concatenate([before, stored], axis=1), np.concatenate([after, fresh], axis=1)
+        spans = words_from(self.vertex_lines.raw, self.vertex_lines.starts, before.shape[1])
+        return encode_like(
+            self.start, replace_numbers(self.text, spans, before, after, moved.is_moved(scan)), self.codec
+        )
 
     def _vertex_lines(self, scan: Scan, fill: Fill, line_end: str) -> str:
         extras = extend_over_vertices(fill, self.extras)
@@ -152,7 +170,7 @@ def read_off(data: bytes, limits: ReadLimits) -> Scan:
     face_lines = lines.select(slice(first + n_vertices, first + n_vertices + n_faces))
     table = _parse_vertices(vertex_lines)
     vertices = np.ascontiguousarray(table[:, :3])
-    check_vertices(vertices)
+    check_vertices(vertices, limits.allow_missing)
     counts, corners = _parse_faces(face_lines)
     check_indices(corners, n_vertices)
     triangles, triangle_face = triangulate_polygons(vertices, counts, corners)
@@ -161,6 +179,7 @@ def read_off(data: bytes, limits: ReadLimits) -> Scan:
     source = OffSource(
         text=text,
         codec=codec,
+        start=data[:4],
         counts_at=int(lines.starts[counts_line]),
         vertices_end=_behind_line(text, int(vertex_lines.stops[-1])),
         faces_end=_behind_line(text, int(face_lines.stops[-1])),
@@ -168,6 +187,7 @@ def read_off(data: bytes, limits: ReadLimits) -> Scan:
         extras=table[:, 3:],
         n_normal=n_normal,
         n_texture=2 if keyword and keyword.group(1) and table.shape[1] >= 5 + n_normal else 0,
+        vertex_lines=vertex_lines,
         face_lines=face_lines,
         triangle_face=triangle_face,
     )

@@ -4,6 +4,7 @@ The format is told from the content, and from the suffix of the name only where 
 called `.stl` is a PLY. Whatever a file holds, reading it gives a `Scan` or a `MeshError`.
 """
 
+from dataclasses import replace
 from pathlib import Path
 
 from quadpatch.errors import ReadError
@@ -17,23 +18,25 @@ from quadpatch.formats.scan import Scan
 from quadpatch.formats.stl import read_stl
 from quadpatch.formats.threemf.reader import read_threemf
 
-__all__ = ["ReadLimits", "read_scan"]
+__all__ = ["ReadLimits", "read_bytes", "read_scan"]
 
 _READERS = {"ply": read_ply, "stl": read_stl, "obj": read_obj, "off": read_off, "3mf": read_threemf}
 
 
-def read_scan(path: Path, limits: ReadLimits | None = None) -> Scan:
+def read_scan(path: Path, limits: ReadLimits | None = None, *, allow_missing: bool = False) -> Scan:
     """Read a mesh file.
 
     Parameters
     ----------
     path : Path
     limits : ReadLimits, optional
+    allow_missing : bool
+        Let vertices pass whose three coordinates are NaN: they are missing, and are to be restored.
 
     Returns
     -------
     Scan
-        Not empty, with finite coordinates and faces that name vertices that are there.
+        Not empty, with finite coordinates, but for missing vertices, and faces that name vertices that are there.
 
     Raises
     ------
@@ -42,13 +45,34 @@ def read_scan(path: Path, limits: ReadLimits | None = None) -> Scan:
         TooLargeError; nothing else, whatever the file holds.
     """
     limits = limits or ReadLimits()
+    if allow_missing:
+        limits = replace(limits, allow_missing=True)
     try:
         limits.check_bytes(path.stat().st_size)
         data = path.read_bytes()
     except OSError as error:
         raise ReadError(f"{path.name} can't be read: {error.strerror}") from error
-    kind = detect_format(data, path.suffix.lower().lstrip("."))
+    # Buffers of glTF in files of their own may lie beside the mesh.
+    return read_bytes(data, detect_format(data, path.suffix.lower().lstrip(".")), limits, path.parent)
+
+
+def read_bytes(data: bytes, kind: str, limits: ReadLimits, folder: Path | None = None) -> Scan:
+    """Read a mesh out of the bytes of a file in a known format.
+
+    Parameters
+    ----------
+    data : bytes
+    kind : str
+        As `detect_format` tells it.
+    limits : ReadLimits
+    folder : Path, optional
+        Where further files of the mesh may lie; None allows none.
+
+    Raises
+    ------
+    MeshError
+        As `read_scan`.
+    """
     if kind in ("glb", "gltf"):
-        # Buffers in files of their own may lie beside the mesh.
-        return read_gltf(data, limits, path.parent)
+        return read_gltf(data, limits, folder)
     return _READERS[kind](data, limits)

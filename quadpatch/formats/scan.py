@@ -1,16 +1,19 @@
-"""What a file held, and what a repair adds to it.
+"""What a file held, what a repair adds to it, and where other tasks move it.
 
 A `Scan` keeps the file's own vertices and faces in the file's order, together with whatever the writer of that
 format needs to hand them back bit for bit. A `Fill` only ever adds: it names measured vertices by their index in
-the file and new vertices by the indices after them.
+the file and new vertices by the indices after them. `Moved` adds and removes nothing.
 
 Tested in `tests/quadpatch/formats/test_reading.py`.
 """
 
 from dataclasses import dataclass, field
-from typing import Protocol
+from typing import Any, Protocol
 
-from quadpatch.types import FloatArray, IntArray, Triangles, Vertices
+import numpy as np
+from numpy.typing import NDArray
+
+from quadpatch.types import BoolArray, FloatArray, IntArray, Triangles, Vertices
 
 
 @dataclass(frozen=True)
@@ -38,6 +41,9 @@ class Source(Protocol):
     def append(self, scan: "Scan", fill: "Fill") -> bytes:
         """Hand the file back with a fill appended."""
 
+    def move(self, scan: "Scan", moved: "Moved") -> bytes:
+        """Hand the file back with some vertices at other positions."""
+
     def vertex_attributes(self, scan: "Scan") -> VertexAttributes:
         """Say how the surface looks, for writing it in another format."""
 
@@ -49,7 +55,8 @@ class Scan:
     Attributes
     ----------
     vertices : (n, 3) float64
-        As in the file, in the file's order and unit, not welded.
+        As in the file, in the file's order and unit, not welded. Finite, or NaN in all three coordinates where the
+        reader was told to allow missing vertices.
     triangles : (m, 3) int64
         The file's faces, polygons and strips cut into triangles.
     format : str
@@ -92,3 +99,24 @@ class Fill:
     vertex_confidence: FloatArray
     triangle_hole_id: IntArray
     triangle_confidence: FloatArray
+
+
+@dataclass(frozen=True)
+class Moved:
+    """New positions of a scan's vertices, and what is told about each.
+
+    Attributes
+    ----------
+    vertices : (n, 3) float64
+        In the scan's order. A vertex that stays has the scan's own three numbers, or three NaN as there.
+    properties : dict of (n,) arrays
+        Of type float32, uint8, int32 or another one that PLY knows; by name, without white space.
+    """
+
+    vertices: Vertices
+    properties: dict[str, NDArray[Any]] = field(default_factory=dict)
+
+    def is_moved(self, scan: Scan) -> BoolArray:
+        """Whether each vertex of the scan is at another position, (n,) bool; -0.0 and 0.0 are one number."""
+        differs = (self.vertices != scan.vertices) & ~(np.isnan(self.vertices) & np.isnan(scan.vertices))
+        return np.asarray(differs.any(axis=1))

@@ -1,19 +1,23 @@
-"""Scenes: meshes placed by transforms, read as one mesh, and fills put back into the part they belong to.
+"""Scenes: meshes placed by transforms, read as one mesh, and what a task changes put back into the parts.
 
 The analysis sees all parts in the coordinates of the scene. A fill goes back into the coordinates of the part that
 has most of its hole's rim, so that the rim's vertices are the part's own numbers again, bit for bit.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
+from quadpatch.errors import StageError
 from quadpatch.formats.attributes import joined_vertices
-from quadpatch.formats.scan import Fill, Scan
+from quadpatch.formats.scan import Fill, Moved, Scan
 from quadpatch.types import BoolArray, FloatArray, IntArray, Triangles, Vertices
 
 # Condition number beyond which a transform counts as flat.
 _FLATTEST = 1e12
+# Roundings on the way through a transform and its inverse.
+_STEPS = 16
 
 
 @dataclass(frozen=True)
@@ -123,3 +127,63 @@ def _fill_of(number: int, part: Part, fill: Fill, joined: Vertices, chosen: Bool
     own = (vertex >= part.first) & (vertex < part.first + len(part.vertices))
     positions[own] = part.vertices[vertex[own] - part.first]
     return PartFill(number, vertex, positions, triangles, np.flatnonzero(chosen))
+
+
+@dataclass(frozen=True)
+class MovedPart:
+    """One part with its vertices at other positions.
+
+    Attributes
+    ----------
+    part : Part
+        As it was.
+    positions : (k, 3) float64
+        In the part's coordinates; the part's own numbers for vertices that stay.
+    is_moved : (k,) bool
+    is_used : (k,) bool
+        Vertices that a triangle of the scan names, or that moved: whose positions matter.
+    rounding : float
+        How far the way to the scene and back may have shifted positions, in the part's coordinates.
+    """
+
+    part: Part
+    positions: Vertices
+    is_moved: BoolArray
+    is_used: BoolArray
+    rounding: float = 0.0
+
+
+def moved_parts(parts: list[Part], scan: Scan, moved: Moved) -> Iterator[MovedPart]:
+    """Take the vertices of every part back into its own coordinates, part by part.
+
+    Parameters
+    ----------
+    parts : list of Part
+    scan : Scan
+    moved : Moved
+
+    Raises
+    ------
+    StageError
+        If a transform flattens a part that moved, so that there is no way back.
+    """
+    is_moved, is_used = moved.is_moved(scan), used_vertices(scan, moved)
+    for part in parts:
+        rows = slice(part.first, part.first + len(part.vertices))
+        positions, rounding = part.vertices, 0.0
+        if is_moved[rows].any():
+            if not is_invertible(part.matrix):
+                raise StageError("a transform flattens a part of the scene, whose vertices moved")
+            is_plain = bool((part.matrix == np.eye(4)).all())
+            inverse: FloatArray = part.matrix if is_plain else np.asarray(np.linalg.inv(part.matrix), np.float64)
+            positions = np.where(is_moved[rows, np.newaxis], place(moved.vertices[rows], inverse), positions)
+            largest = float(np.nanmax(np.abs(moved.vertices[rows])))
+            rounding = _STEPS * np.finfo(np.float64).eps * largest * float(np.abs(inverse).max())
+        yield MovedPart(part, positions, is_moved[rows], is_used[rows], rounding)
+
+
+def used_vertices(scan: Scan, moved: Moved) -> BoolArray:
+    """Find the vertices that a triangle names or that moved, (n,) bool: whose positions matter."""
+    is_used = moved.is_moved(scan)
+    is_used[scan.triangles] = True
+    return is_used

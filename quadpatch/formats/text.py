@@ -49,6 +49,22 @@ def decode_text(data: bytes) -> tuple[bytes, str]:
     return data, "utf-8"
 
 
+def encode_like(data: bytes, text: bytes, codec: str) -> bytes:
+    """Bring text back to the encoding of the file that `decode_text` took it from, with the mark that it had.
+
+    Parameters
+    ----------
+    data : bytes
+        The file as it was, or its beginning.
+    text : bytes
+        What it is to hold.
+    codec : str
+        As `decode_text` named it.
+    """
+    mark = next((mark for mark, _ in _MARKS if data.startswith(mark)), b"")
+    return mark + (text if codec == "utf-8" else text.decode().encode(codec))
+
+
 def line_end_of(text: bytes) -> str:
     """Line end that a text uses, seen from its first line."""
     first = text.find(b"\n")

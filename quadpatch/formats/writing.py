@@ -12,7 +12,7 @@ from quadpatch.formats.scan import Fill, Scan
 from quadpatch.formats.threemf.encoder import encode_as_threemf
 from quadpatch.stages import failure_of
 
-_ENCODERS = {
+ENCODERS = {
     "ply": encode_as_ply,
     "stl": encode_as_stl,
     "obj": encode_as_obj,
@@ -27,8 +27,8 @@ def check_suffix(path: Path) -> None:
     """Raise FormatError where the suffix of a file is that of no format that is written; a stream needs none."""
     if is_stream(path) and not path.suffix:
         return
-    if path.suffix.lower().lstrip(".") not in _ENCODERS:
-        raise FormatError(f"files with the suffix {path.suffix!r} are not written, only {', '.join(_ENCODERS)}")
+    if path.suffix.lower().lstrip(".") not in ENCODERS:
+        raise FormatError(f"files with the suffix {path.suffix!r} are not written, only {', '.join(ENCODERS)}")
 
 
 def written_as(path: Path, scan: Scan) -> Path:
@@ -74,11 +74,11 @@ def _encode(suffix: str, scan: Scan, fill: Fill) -> tuple[bytes, list[str]]:
         if suffix == scan.format and scan.source is not None:
             encoded.append(scan.source.append(scan, fill))
         else:
-            encoded.append(_ENCODERS[suffix](merge_scene(scan, fill)))
+            encoded.append(ENCODERS[suffix](merge_scene(scan, fill)))
 
     failure = failure_of(with_attributes, passing=(FormatError,))
     if failure is None:
         return encoded[0], []
     bare = replace(scan, source=None)
     warning = f"colours, normals and the like are left out of the repaired mesh, which holds the shape alone: {failure}"
-    return _ENCODERS[suffix](merge_scene(bare, fill)), [warning]
+    return ENCODERS[suffix](merge_scene(bare, fill)), [warning]

@@ -1,4 +1,4 @@
-"""Pictures of a finished repair, drawn from its meshes in memory.
+"""Pictures of a finished repair or another task, drawn from its meshes in memory.
 
 They are optional: the repaired mesh has been written when this runs, and what goes wrong here is a warning in the
 report.
@@ -14,11 +14,13 @@ from typing import Any
 
 from quadpatch.formats.output_files import write_whole
 from quadpatch.mesh.holes import Hole
+from quadpatch.preview.comparison import render_comparison
 from quadpatch.preview.hole_pictures import NumberedHole, draw_hole
 from quadpatch.preview.pair import Pair, prepare
 from quadpatch.preview.sheet import render_before_after
 from quadpatch.repair import RepairedFile
 from quadpatch.stages import failure_of
+from quadpatch.tasks.result import TaskResult
 from quadpatch.types import Progress, no_progress
 
 # Of an archive of close-ups. One takes about a second of a busy core and a hundred kilobytes.
@@ -47,6 +49,22 @@ def add_picture(repaired: RepairedFile, picture: Path) -> None:
         )
     if failure is not None:
         repaired.report["warnings"].append(f"there is no picture: {failure}")
+
+
+def add_comparison(result: TaskResult, picture: Path) -> None:
+    """Draw the mesh before and after a task, side by side, as a PNG file.
+
+    Parameters
+    ----------
+    result : TaskResult
+        Its report gets the seconds of the stage `preview`, and a warning where there is no picture.
+    picture : Path
+    """
+    change = result.changed if result.shift is None else result.shift
+    with _stage(result.report, "preview"):
+        failure = failure_of(lambda: render_comparison(result.before, result.after, change, picture))
+    if failure is not None:
+        result.report["warnings"].append(f"there is no picture: {failure}")
 
 
 def add_close_ups(repaired: RepairedFile, folder: Path) -> None:

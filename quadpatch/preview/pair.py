@@ -13,7 +13,7 @@ from quadpatch.mesh.raycast import RayScene
 from quadpatch.preview.parts import main_pieces, part_of
 from quadpatch.preview.shading import CLAY, Clay
 from quadpatch.preview.viewpoints import is_inside_out
-from quadpatch.types import BoolArray, TriangleMesh
+from quadpatch.types import BoolArray, FloatArray, TriangleMesh
 
 # Of invented surface.
 TINT = np.array([0.98, 0.74, 0.42])
@@ -42,14 +42,15 @@ class Pair:
     new: Clay
 
 
-def prepare(before: TriangleMesh, after: TriangleMesh, invented: BoolArray) -> Pair:
-    """Make a mesh before and after its repair ready to be drawn.
+def prepare(before: TriangleMesh, after: TriangleMesh, invented: BoolArray | FloatArray) -> Pair:
+    """Make a mesh before and after its repair, or another task, ready to be drawn.
 
     Parameters
     ----------
     before, after : TriangleMesh
         In the same place.
-    invented : (n_triangles of `after`,) bool
+    invented : (n_triangles of `after`,) bool or float64
+        What is tinted; 0..1 for how strongly.
 
     Raises
     ------
@@ -63,7 +64,8 @@ def prepare(before: TriangleMesh, after: TriangleMesh, invented: BoolArray) -> P
     if is_flipped:
         before, after = _flipped(before), _flipped(after)
     old = Clay(before, RayScene(before), np.tile(CLAY, (len(before.triangles), 1)))
-    return Pair(scene, after, is_flipped, old, Clay(after, scene, np.where(invented[:, None], TINT, CLAY)))
+    share = invented.astype(np.float64)[:, None]
+    return Pair(scene, after, is_flipped, old, Clay(after, scene, (1 - share) * CLAY + share * TINT))
 
 
 def _flipped(mesh: TriangleMesh) -> TriangleMesh:

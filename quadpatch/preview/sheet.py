@@ -24,18 +24,18 @@ _GROUP_GAP = 24
 _WIDTH = 2 * _MARGIN + 2 * _PANEL[0] + _GAP
 _CAPTION_HEIGHT = 28
 _LEGEND_HEIGHT = 30
-_SWATCH = (120, 16)
+SWATCH = (120, 16)
 
-_N_CLOSE_UPS = 3
+N_CLOSE_UPS = 3
 # Holes looked at to find three that can be seen.
-_N_CANDIDATES = 8
+N_CANDIDATES = 8
 _INK = (42, 46, 54)
 _GREY = (110, 116, 126)
 _PAPER = (255, 255, 255)
 
 
 @dataclass
-class _Sheet:
+class Sheet:
     """A white sheet that grows downwards: `top` is where the next row begins."""
 
     image: Image.Image
@@ -68,31 +68,34 @@ def render_before_after(before: TriangleMesh, after: TriangleMesh, invented: Boo
         If `after` has no triangle of any area.
     """
     pair = prepare(before, after, invented)
-    holes = [part_of(pair.after, hole) for hole in filled_holes(pair.after, invented, _N_CANDIDATES)]
-    camera = _overview_camera(pair, invented)
-    cameras = close_ups(pair.scene, holes, camera, _N_CLOSE_UPS)
-    sheet = _blank_sheet(has_close_ups=bool(cameras))
-    _draw_overview(sheet, pair, camera)
+    holes = [part_of(pair.after, hole) for hole in filled_holes(pair.after, invented, N_CANDIDATES)]
+    camera = overview_camera(pair, invented)
+    cameras = close_ups(pair.scene, holes, camera, N_CLOSE_UPS)
+    sheet = blank_sheet(has_close_ups=bool(cameras))
+    draw_overview(sheet, pair, camera)
     if cameras:
-        _draw_close_ups(sheet, pair, cameras)
-    _draw_legend(sheet)
+        draw_close_ups(sheet, pair, cameras)
+    draw_legend(sheet, "invented surface", "measured surface", np.tile(TINT, (SWATCH[0], 1)))
     write_png(path, sheet.image)
 
 
-def _blank_sheet(*, has_close_ups: bool) -> _Sheet:
+def blank_sheet(*, has_close_ups: bool) -> Sheet:
+    """Make a sheet with room for two panels, a legend, and close-ups if there are any."""
     height = 2 * _MARGIN + _CAPTION_HEIGHT + _PANEL[1] + _GAP + _LEGEND_HEIGHT
     height += _CAPTION_HEIGHT + _TILE[1] + _GAP if has_close_ups else 0
     image = Image.new("RGB", (_WIDTH, height), _PAPER)
-    return _Sheet(image, ImageDraw.Draw(image), _MARGIN)
+    return Sheet(image, ImageDraw.Draw(image), _MARGIN)
 
 
-def _overview_camera(pair: Pair, invented: BoolArray) -> Camera:
+def overview_camera(pair: Pair, invented: BoolArray) -> Camera:
+    """Look at the whole mesh from where most of some of its triangles show."""
     whole = part_of(pair.after, main_pieces(pair.after))
     filled = part_of(pair.after, np.flatnonzero(invented)) if invented.any() else None
     return overview(pair.scene, whole, filled, _PANEL[0] / _PANEL[1])
 
 
-def _draw_overview(sheet: _Sheet, pair: Pair, camera: Camera) -> None:
+def draw_overview(sheet: Sheet, pair: Pair, camera: Camera) -> None:
+    """Draw the mesh before and after in two panels."""
     left, right = _MARGIN, _MARGIN + _PANEL[0] + _GAP
     sheet.write("before", left, 17, _INK)
     sheet.write("after", right, 17, _INK)
@@ -102,7 +105,8 @@ def _draw_overview(sheet: _Sheet, pair: Pair, camera: Camera) -> None:
     sheet.top += _PANEL[1] + _GAP
 
 
-def _draw_close_ups(sheet: _Sheet, pair: Pair, cameras: list[Camera]) -> None:
+def draw_close_ups(sheet: Sheet, pair: Pair, cameras: list[Camera]) -> None:
+    """Draw a row of close-ups, each before and after."""
     group_width = 2 * _TILE[0] + _PAIR_GAP + _GROUP_GAP
     for k, _ in enumerate(cameras):
         sheet.write(f"close-up {k + 1}: before, after", _MARGIN + k * group_width, 15, _GREY)
@@ -114,15 +118,21 @@ def _draw_close_ups(sheet: _Sheet, pair: Pair, cameras: list[Camera]) -> None:
     sheet.top += _TILE[1] + _GAP
 
 
-def _draw_legend(sheet: _Sheet) -> None:
-    """Draw a swatch for each kind of surface."""
+def draw_legend(sheet: Sheet, changed: str, unchanged: str, swatch: FloatArray) -> None:
+    """Draw a swatch for each kind of surface.
+
+    Parameters
+    ----------
+    sheet : Sheet
+    changed, unchanged : str
+        What the tinted and the plain surface is.
+    swatch : (n, 3) float64
+        Colours of the tinted one.
+    """
     left = _MARGIN
-    for colours, label in (
-        (np.tile(TINT, (_SWATCH[0], 1)), "invented surface"),
-        (np.tile(CLAY, (40, 1)), "measured surface"),
-        (np.tile(BACK, (40, 1)), "inside"),
-    ):
-        sheet.paste(np.tile(colours, (_SWATCH[1], 1, 1)), left)
+    plain = np.tile(CLAY, (40, 1))
+    for colours, label in ((swatch, changed), (plain, unchanged), (np.tile(BACK, (40, 1)), "inside")):
+        sheet.paste(np.tile(colours, (SWATCH[1], 1, 1)), left)
         left += len(colours) + 8
         sheet.write(label, left, 15, _GREY)
         left += round(ImageFont.load_default(15).getlength(label)) + 32

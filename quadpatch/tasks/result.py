@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Any
 
-from quadpatch.types import BoolArray, TriangleMesh
+from quadpatch.types import BoolArray, FloatArray, TriangleMesh
 
 
 @dataclass(frozen=True)
@@ -18,9 +18,12 @@ class TaskResult:
         What pictures are drawn from.
     changed : (n_triangles of `after`,) bool
         Triangles that the task placed anew; pictures tint them.
+    shift : (n_triangles of `after`,) float64, optional
+        How far each of them moved, 0..1 of what counts as far; pictures tint by it instead.
     """
 
     report: dict[str, Any]
     before: TriangleMesh
     after: TriangleMesh
     changed: BoolArray
+    shift: FloatArray | None = None

@@ -14,7 +14,7 @@ from typing import Any
 import pytest
 from typer.testing import CliRunner
 
-from quadpatch.cli import app
+from quadpatch.cli.app import app
 
 FOLDER = Path(__file__).resolve().parents[3] / "shared" / "cases"
 MANIFEST = FOLDER / "manifest.json"

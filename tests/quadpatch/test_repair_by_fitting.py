@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from quadpatch.cli import app
+from quadpatch.cli.app import app
 from quadpatch.errors import ModelError, OptionError
 from quadpatch.formats.reading import read_scan
 from quadpatch.inpainters import model_file
@@ -141,7 +141,7 @@ def run_without(package: str, models: Path, *arguments: str | Path) -> subproces
     program = (
         f"import sys; sys.modules[{package!r}] = None; from pathlib import Path; "
         f"from quadpatch.inpainters import model_file; model_file.SHIPPED_MODELS = Path({str(models)!r}); "
-        "from quadpatch.cli import app; app(sys.argv[1:])"
+        "from quadpatch.cli.app import app; app(sys.argv[1:])"
     )
     command = [sys.executable, "-c", program, *map(str, arguments)]
     return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)

@@ -36,12 +36,21 @@ class GltfFile:
         Chunks of a `.glb` behind JSON and BIN, kept as they are.
     is_binary : bool
         Whether it is a `.glb`.
+    data : bytes
+        The file as it was read.
     """
 
     document: dict[str, Any]
     buffers: list[bytes]
     chunks: list[tuple[int, bytes]]
     is_binary: bool
+    data: bytes = b""
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether no buffer lies in a file of its own."""
+        listed = self.document.get("buffers", [])
+        return all(str(buffer.get("uri", "data:")).startswith("data:") for buffer in listed)
 
 
 def load_gltf(data: bytes, folder: Path | None, limits: ReadLimits) -> GltfFile:
@@ -73,7 +82,7 @@ def load_gltf(data: bytes, folder: Path | None, limits: ReadLimits) -> GltfFile:
         if isinstance(used, list) and extension in used:
             raise FormatError(f"glTF compressed by {extension} is not read: send it uncompressed")
     buffers = _load_buffers(document, binary, folder, limits)
-    return GltfFile(document, buffers, chunks, is_binary)
+    return GltfFile(document, buffers, chunks, is_binary, data)
 
 
 def _split_chunks(data: bytes) -> tuple[bytes, bytes | None, list[tuple[int, bytes]]]:

@@ -14,6 +14,7 @@ import numpy as np
 from quadpatch.errors import EmptyMeshError, FormatError, IndexRangeError, MeshError, ReadError
 from quadpatch.formats.gltf.accessors import get_count, get_entry, get_list, get_object, read_accessor
 from quadpatch.formats.gltf.container import GltfFile, load_gltf
+from quadpatch.formats.gltf.moved_scene import SURFACE_MODES
 from quadpatch.formats.gltf.scene import placed_nodes
 from quadpatch.formats.gltf.source import GltfSource, Primitive
 from quadpatch.formats.limits import ReadLimits, check_triangles, check_vertices, to_float64
@@ -23,7 +24,7 @@ from quadpatch.formats.scan import Scan
 from quadpatch.formats.scene_parts import Part, place
 from quadpatch.types import FloatArray, IntArray, Triangles
 
-_TRIANGLES, _STRIP, _FAN = 4, 5, 6
+_TRIANGLES, _STRIP, _FAN = SURFACE_MODES
 
 
 @dataclass(frozen=True)
@@ -76,7 +77,7 @@ def read_gltf(data: bytes, limits: ReadLimits, folder: Path | None = None) -> Sc
     if not parts:
         raise EmptyMeshError("the glTF scene has no triangle")
     all_vertices, all_triangles = np.concatenate(vertices), np.concatenate(triangles)
-    check_vertices(all_vertices)
+    check_vertices(all_vertices, limits.allow_missing)
     check_triangles(all_triangles, limits)
     kind = "glb" if file.is_binary else "gltf"
     source = GltfSource(file, parts, nodes, primitives)
@@ -102,7 +103,7 @@ def _read_mesh(file: GltfFile, index: object, limits: ReadLimits) -> _Mesh:
         if not isinstance(primitive, dict):
             raise ReadError("a glTF primitive is no object")
         mode = get_count(primitive, "mode", _TRIANGLES)
-        if mode not in (_TRIANGLES, _STRIP, _FAN):
+        if mode not in SURFACE_MODES:
             continue
         points, corners = _read_primitive(file, primitive, mode, limits)
         attributes = _read_attributes(file, primitive, len(points), limits)

@@ -13,8 +13,9 @@ import numpy as np
 
 from quadpatch.formats.attributes import extend_over_vertices, nearest_rim_triangle
 from quadpatch.formats.gltf.container import GltfFile, dump_gltf
+from quadpatch.formats.gltf.moved_scene import move_in_gltf
 from quadpatch.formats.gltf.primitive import Corners, Store, build_primitive
-from quadpatch.formats.scan import Fill, Scan, VertexAttributes
+from quadpatch.formats.scan import Fill, Moved, Scan, VertexAttributes
 from quadpatch.formats.scene_parts import Part, is_invertible, split_by_part
 from quadpatch.formats.texture import extend_over_corners
 from quadpatch.mesh.weld import weld
@@ -77,7 +78,7 @@ class GltfSource:
         """Colours, normals in the scene, and texture coordinates with v upwards."""
         colours = self._gather(scan, "COLOR_0", 4)
         texture = self._gather(scan, "TEXCOORD_0", 2)
-        normals = self._gather(scan, "NORMAL", 3, in_scene=True)
+        normals = self.scene_normals(scan)
         if texture is not None:
             texture = texture * np.array([1.0, -1.0]) + np.array([0.0, 1.0])
         return VertexAttributes(
@@ -85,6 +86,14 @@ class GltfSource:
             None if normals is None else np.nan_to_num(normals),
             None if texture is None else texture[scan.triangles],
         )
+
+    def scene_normals(self, scan: Scan) -> FloatArray | None:
+        """Return the normals (n, 3) in the scene, NaN where a primitive lacks them; None where all do."""
+        return self._gather(scan, "NORMAL", 3, in_scene=True)
+
+    def move(self, scan: Scan, moved: Moved) -> bytes:
+        """Hand the file back with vertices at other positions."""
+        return move_in_gltf(self, scan, moved)
 
     def _gather(self, scan: Scan, name: str, width: int, in_scene: bool = False) -> FloatArray | None:
         """Join an attribute of all primitives, NaN where one lacks it; None where all do."""

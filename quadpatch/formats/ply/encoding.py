@@ -104,10 +104,24 @@ def insert_behind(data: memoryview, ends: Values, suffix: bytes) -> bytes:
         table[:, : int(ends[0])] = old.reshape(n_rows, -1)
         table[:, int(ends[0]) :] = added
         return table.tobytes()
-    result = np.zeros(len(old) + n_rows * size, np.uint8)
+    return insert_rows(old, ends, np.broadcast_to(added, (n_rows, size)))
+
+
+def insert_rows(data: Values, ends: Values, pieces: Values) -> bytes:
+    """Insert bytes of its own behind every row.
+
+    Parameters
+    ----------
+    data : (n_bytes,) uint8
+    ends : (n,) int64
+        Where each row ends in `data`, ascending.
+    pieces : (n, size) uint8
+    """
+    n_rows, size = pieces.shape
+    result = np.zeros(len(data) + n_rows * size, np.uint8)
     is_old = np.ones(len(result), dtype=bool)
     places = (ends + size * np.arange(n_rows))[:, np.newaxis] + np.arange(size)
     is_old[places] = False
-    result[is_old] = old
-    result[places] = added
+    result[is_old] = data
+    result[places] = pieces
     return result.tobytes()

@@ -177,6 +177,16 @@ def _parse_property(words: list[str], number: int) -> Property:
     return Property(words[-1], codes[-1], codes[0] if is_list else None)
 
 
+def without_properties(header: Header, element: Element, names: set[str]) -> Header:
+    """Leave the lines of some properties out of a header, for one that is written again; sizes stay as they were."""
+    lines = list(header.lines)
+    declared = [i for i in range(element.line + 1, element.last_line + 1) if lines[i].split()[:1] == [b"property"]]
+    for number, prop in zip(declared, element.properties, strict=True):
+        if prop.name in names:
+            lines[number] = b""
+    return replace(header, lines=tuple(lines))
+
+
 def rewrite_header(header: Header, counts: dict[str, int], added: dict[str, list[tuple[str, str]]]) -> bytes:
     """Write a header again with other counts and further properties.
 

@@ -15,11 +15,12 @@ from quadpatch.formats.ply.ascii import read_ascii_body
 from quadpatch.formats.ply.binary import read_binary_body
 from quadpatch.formats.ply.file import INDEX_NAMES, PlyFile
 from quadpatch.formats.ply.header import Element, parse_header
+from quadpatch.formats.ply.moved_rows import move_in_ply
 from quadpatch.formats.ply.rows import Rows
 from quadpatch.formats.ply.vertex_attributes import ply_vertex_attributes
 from quadpatch.formats.ply.writer import append_to_ply
 from quadpatch.formats.polygons import triangulate_polygons, triangulate_strips
-from quadpatch.formats.scan import Fill, Scan, VertexAttributes
+from quadpatch.formats.scan import Fill, Moved, Scan, VertexAttributes
 from quadpatch.types import IntArray, Triangles, Vertices
 
 
@@ -32,6 +33,10 @@ class PlySource:
     def append(self, scan: Scan, fill: Fill) -> bytes:
         """Hand the file back with rows appended."""
         return append_to_ply(scan, self.file, fill)
+
+    def move(self, scan: Scan, moved: Moved) -> bytes:
+        """Hand the file back with vertices at other positions."""
+        return move_in_ply(scan, self.file, moved)
 
     def vertex_attributes(self, scan: Scan) -> VertexAttributes:
         """Say what colours, normals and texture coordinates the file has."""
@@ -58,7 +63,7 @@ def read_ply(data: bytes, limits: ReadLimits) -> Scan:
     rows = read_ascii_body(data, header) if header.is_ascii else read_binary_body(data, header)
     by_name = {read.element.name: read for read in rows}
     vertices = _vertices(by_name.get("vertex"))
-    check_vertices(vertices)
+    check_vertices(vertices, limits.allow_missing)
     triangles, triangle_row, carrier = _triangles(by_name, vertices)
     check_triangles(triangles, limits)
     file = PlyFile(data, header, rows, carrier, triangle_row)

@@ -60,6 +60,21 @@ class Rows:
         stride = (self.stop - self.start) // max(self.element.count, 1)
         return self.start + stride * np.arange(1, self.element.count + 1, dtype=np.int64)
 
+    def places(self, index: int, *, in_words: bool) -> IntArray:
+        """First byte of a property's value in each row, or its word in an ascii body, (n,) int64.
+
+        The count of a list stands in front of its values, and is where the list begins.
+        """
+        ends = self.row_ends()
+        at = np.append(self.start, ends[:-1]) if len(ends) else ends
+        for prop, column in zip(self.element.properties[:index], self.columns, strict=False):
+            size = 1 if in_words else int(prop.code[1])
+            if isinstance(column, ListColumn):
+                at = at + (1 if in_words else int((prop.count_code or "u1")[1])) + column.counts * size
+            else:
+                at = at + size
+        return np.asarray(at, dtype=np.int64)
+
     def scalar(self, name: str) -> Values | None:
         """Column of a property that is no list, None where there is none of that name."""
         index = self.element.find(name)

@@ -101,7 +101,7 @@ def read_threemf(data: bytes, limits: ReadLimits) -> Scan:
         triangles.append((entry.triangles[:, [0, 2, 1]] if part.is_mirrored else entry.triangles) + first)
         first += len(entry.vertices)
     all_vertices, all_triangles = np.concatenate(vertices), np.concatenate(triangles)
-    check_vertices(all_vertices)
+    check_vertices(all_vertices, limits.allow_missing)
     check_triangles(all_triangles, limits)
     origins = [origin for origin, _, _ in build.placed]
     source = ThreemfSource(package, build.models, parts, origins)

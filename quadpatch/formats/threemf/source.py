@@ -13,10 +13,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from quadpatch.formats.attributes import joined_vertices, nearest_rim_triangle
-from quadpatch.formats.scan import Fill, Scan, VertexAttributes
+from quadpatch.formats.scan import Fill, Moved, Scan, VertexAttributes
 from quadpatch.formats.scene_parts import Part, PartFill, split_by_part
 from quadpatch.formats.text import to_words
 from quadpatch.formats.threemf.model import Model, ModelObject
+from quadpatch.formats.threemf.moved_vertices import move_in_threemf
 from quadpatch.formats.threemf.package import Package
 from quadpatch.types import FloatArray, Triangles, Vertices
 
@@ -66,6 +67,10 @@ class ThreemfSource:
             groups = self.models[self.origins[number].path].colours
             _colour_vertices(self._entry(number), groups, table)
         return VertexAttributes(None if np.isnan(colours).all() else colours)
+
+    def move(self, scan: Scan, moved: Moved) -> bytes:
+        """Hand the package back with vertices at other positions."""
+        return move_in_threemf(self, scan, moved)
 
     def append(self, scan: Scan, fill: Fill) -> bytes:
         """Add the fill to the objects that have the holes."""

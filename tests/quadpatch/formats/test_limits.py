@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from quadpatch.errors import CoordinateRangeError, NotFiniteError, QuadpatchError
+from quadpatch.errors import CoordinateRangeError, EmptyMeshError, NotFiniteError, QuadpatchError
 from quadpatch.formats.limits import check_vertices
 from quadpatch.types import FloatArray
 from tests.quadpatch.shapes import sphere
@@ -56,3 +56,23 @@ def test_coordinates_that_are_mostly_below_float32_are_refused(vertices: FloatAr
 )
 def test_what_a_scan_may_have_passes(vertices: FloatArray) -> None:
     assert refusal(vertices) is None
+
+
+def test_missing_vertices_pass_where_they_are_allowed_as_long_as_others_are_there() -> None:
+    vertices = BALL.copy()
+    vertices[:5] = np.nan
+    check_vertices(vertices, allow_missing=True)
+    with pytest.raises(NotFiniteError):
+        check_vertices(vertices)
+    with pytest.raises(EmptyMeshError, match="all 162 vertices"):
+        check_vertices(np.full_like(vertices, np.nan), allow_missing=True)
+
+
+@pytest.mark.parametrize(
+    "row", [[np.nan, 0, 0], [np.nan, np.nan, 1], [np.inf, np.inf, np.inf], [np.nan, np.nan, np.inf]]
+)
+def test_a_vertex_that_is_missing_in_part_or_infinite_never_passes(row: list[float]) -> None:
+    vertices = BALL.copy()
+    vertices[0], vertices[7] = np.nan, row
+    with pytest.raises(NotFiniteError, match="vertex 7 of 162"):
+        check_vertices(vertices, allow_missing=True)

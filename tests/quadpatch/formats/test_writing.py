@@ -8,7 +8,7 @@ import pytest
 
 from quadpatch.errors import FormatError
 from quadpatch.formats.reading import read_scan
-from quadpatch.formats.scan import Fill, Scan, VertexAttributes
+from quadpatch.formats.scan import Fill, Moved, Scan, VertexAttributes
 from quadpatch.formats.writing import write_scan
 from tests.quadpatch.formats.fills import as_scan, cap_holes
 from tests.quadpatch.shapes import punched, sphere
@@ -23,6 +23,9 @@ class Broken:
     error: Exception
 
     def append(self, scan: Scan, fill: Fill) -> bytes:
+        raise self.error
+
+    def move(self, scan: Scan, moved: Moved) -> bytes:
         raise self.error
 
     def vertex_attributes(self, scan: Scan) -> VertexAttributes:

@@ -1,3 +1,8 @@
+"""The command line as a person or a script calls it.
+
+Also tests `quadpatch.cli.holes`, `quadpatch.cli.flags`, `quadpatch.cli.messages` and `quadpatch.cli.reports`.
+"""
+
 import json
 import re
 import subprocess
@@ -7,7 +12,8 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner, Result
 
-from quadpatch.cli import app, summary
+from quadpatch.cli.app import app
+from quadpatch.cli.fill import summary
 from quadpatch.formats.reading import read_scan
 from quadpatch.preview import drawing
 from tests.quadpatch.shapes import bumpy_plate, punched, sphere, write_ply

@@ -1,0 +1,162 @@
+"""`fill` repairs a file."""
+
+import logging
+from collections import Counter
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from quadpatch.cli.flags import (
+    Output,
+    Overlap,
+    Overwrite,
+    PatchLength,
+    Preview,
+    Quiet,
+    Report,
+    Resolution,
+    Seed,
+    Source,
+    WeldTolerance,
+    read_tolerance,
+)
+from quadpatch.cli.messages import clear_errors, progress_bars, say
+from quadpatch.cli.reports import closing_words, n_holes, write_report
+from quadpatch.errors import OptionError
+from quadpatch.formats.output_files import check_folder, check_outputs, is_stream
+from quadpatch.options import (
+    DictionaryOptions,
+    HoleOptions,
+    HoleRule,
+    NetworkOptions,
+    PatchOptions,
+    Recipe,
+    RepairOptions,
+)
+from shared_rules.hole_selection import Cap
+from shared_rules.rule_text import RuleTextError, read_rule
+
+if TYPE_CHECKING:
+    from quadpatch.repair import RepairedFile
+
+FITTING = NetworkOptions()
+
+
+def fill(  # noqa: PLR0913, PLR0917  one argument per flag
+    source: Source,
+    output: Output,
+    model: Annotated[
+        str,
+        typer.Option(
+            help="self (learn a dictionary from this mesh), self-network (fit a network to it: minutes), "
+            "smooth (geometry only), a shipped model, or a model file."
+        ),
+    ] = "self",
+    recipe: Annotated[
+        Recipe, typer.Option(help="How the model is put to use: our way, or exactly the paper's.")
+    ] = "default",
+    report: Report = None,
+    preview: Preview = None,
+    closeups: Annotated[
+        Path | None,
+        typer.Option(metavar="DIR", help="Draw every chosen hole before and after, as hole_<id>.png in this folder."),
+    ] = None,
+    overwrite: Overwrite = False,
+    max_diameter: Annotated[float | None, typer.Option(help="Leave wider holes open (mesh units).")] = None,
+    max_perimeter: Annotated[float | None, typer.Option(help="Leave longer rims open (mesh units).")] = None,
+    all_but_largest: Annotated[bool, typer.Option(help="Leave the widest loop open.")] = False,
+    hole: Annotated[list[int] | None, typer.Option(help="Fill just this hole; repeat for more.")] = None,
+    include_borders: Annotated[
+        bool, typer.Option("--include-borders", help="Treat outer borders of pieces like holes.")
+    ] = False,
+    cap: Annotated[Cap | None, typer.Option(help="Close open ends, as of tubes, by a plane patch.")] = None,
+    rule: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="[CONDITION,...:]ACTION",
+            help="What to do with some holes: max_diameter=5:smooth, kind=open_end:flat, id=3,id=4:skip. "
+            "Repeat for more; the first that fits counts.",
+        ),
+    ] = None,
+    patch_length: PatchLength = None,
+    resolution: Resolution = None,
+    overlap: Overlap = None,
+    atoms: Annotated[int | None, typer.Option(help="Atoms to learn (recipe paper, model self).")] = None,
+    nonzero: Annotated[
+        int | None, typer.Option(help="Atoms that one patch may use (recipe paper, model self).")
+    ] = None,
+    fit_steps: Annotated[int, typer.Option(help="Fit at most so many steps (model self-network).")] = FITTING.steps,
+    fit_seconds: Annotated[float, typer.Option(help="Fit at most so long (model self-network).")] = FITTING.seconds,
+    weld_tolerance: WeldTolerance = "auto",
+    seed: Seed = 0,
+    quiet: Quiet = False,
+) -> None:
+    """Repair a mesh file."""
+    from quadpatch.repair import repair_and_keep  # noqa: PLC0415  the libraries behind it take a second to load
+
+    with clear_errors(), progress_bars(quiet) as progress:
+        options = RepairOptions(
+            HoleOptions(
+                max_diameter,
+                max_perimeter,
+                all_but_largest,
+                tuple(hole) if hole else None,
+                include_borders,
+                cap,
+                tuple(_rule(text) for text in rule or ()),
+            ),
+            PatchOptions(patch_length, resolution, overlap),
+            seed,
+            recipe,
+            DictionaryOptions(atoms, nonzero),
+            NetworkOptions(fit_steps, fit_seconds),
+            read_tolerance(weld_tolerance),
+        )
+        others = [path for path in (report, preview) if path]
+        check_outputs(source, output, others, may_overwrite=overwrite)
+        if closeups:
+            check_folder(closeups, [source, output, *others])
+        repaired = repair_and_keep(source, output, model, options, progress)
+        logging.getLogger("quadpatch").addHandler(logging.NullHandler())  # what people read is in the warnings
+        if report and not is_stream(report):  # drawing may take the process down
+            write_report(repaired.report, report)
+        _draw(repaired, preview, closeups)
+        write_report(repaired.report, report)
+    if not quiet:
+        say(summary(repaired.report))
+
+
+def _rule(text: str) -> HoleRule:
+    """Read one `--rule`; what is no rule raises OptionError."""
+    try:
+        return HoleRule.from_dict(read_rule(text))
+    except RuleTextError as error:
+        raise OptionError(str(error)) from error
+
+
+def summary(report: dict[str, Any]) -> str:
+    """One paragraph for people: what was found, filled and left open, and why."""
+    counts = report["counts"]
+    open_holes = counts["skipped"] + counts["refused"]
+    base = report["model"].get("fitted_from")
+    model = f"{base}, fitted to this mesh" if base else "the model"
+    text = f"{n_holes(counts['found'])}: {counts['filled']} filled by {model}, {counts['filled_smooth']} by geometry"
+    text += _reasons(report, "filled_smooth") + f", {open_holes} left open" + _reasons(report, "skipped", "refused")
+    return f"{text}. {closing_words(report)}"
+
+
+def _reasons(report: dict[str, Any], *verdicts: str) -> str:
+    """Count the reasons behind some verdicts, in brackets; empty where there are none."""
+    counts = Counter(row["reason"] for row in report["holes"] if row["verdict"] in verdicts)
+    return " (" + "; ".join(f"{count} × {reason}" for reason, count in counts.items()) + ")" if counts else ""
+
+
+def _draw(repaired: "RepairedFile", preview: Path | None, closeups: Path | None) -> None:
+    """Draw what was asked for; what fails is a warning in the report."""
+    from quadpatch.preview.drawing import add_close_ups, add_picture  # noqa: PLC0415  see fill
+
+    if preview:
+        add_picture(repaired, preview)
+    if closeups:
+        add_close_ups(repaired, closeups)
