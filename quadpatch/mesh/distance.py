@@ -35,6 +35,12 @@ def nearest_points(points: Vertices, mesh: TriangleMesh) -> Vertices:
     return np.asarray(_nearest(points, mesh)[2])
 
 
+def project(points: Vertices, mesh: TriangleMesh) -> tuple[FloatArray, IntArray, Vertices]:
+    """Find distance (n,), nearest triangle (n,) and nearest point (n, 3) of a mesh, which has triangles."""
+    squared, triangle, places = _nearest(points, mesh)
+    return np.asarray(np.sqrt(squared)), np.asarray(triangle, np.int64), np.asarray(places)
+
+
 def _nearest(points: Vertices, mesh: TriangleMesh) -> tuple[FloatArray, IntArray, FloatArray]:
     """Squared distances (n,), triangles (n,) and places (n, 3)."""
     used, local = np.unique(mesh.triangles, return_inverse=True)

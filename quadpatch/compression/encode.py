@@ -1,0 +1,228 @@
+"""Encodes a mesh: quads, sparse codes of their patches, and what these miss, within an error that is promised.
+
+How many quads, whether they follow the surface's bends or are all of one size, whether the dictionary is learned and how
+finely codes are rounded is tried, and the smallest file wins.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from quadpatch.compression.candidate import Candidate, DictionaryChoice, Task, coded, make_candidate
+from quadpatch.compression.content import QpzContent
+from quadpatch.compression.control_mesh import collapse
+from quadpatch.compression.decoded_surface import content_atoms, decode_surface
+from quadpatch.compression.guarantee import guaranteed
+from quadpatch.compression.kept_vertices import keep_vertices, parts_of_cell
+from quadpatch.compression.proof import sample
+from quadpatch.compression.qpz_file import encode_content
+from quadpatch.errors import NoQuadsError, OptionError
+from quadpatch.mesh.measures import diagonal, mean_edge_length
+from quadpatch.mesh.raycast import RayScene
+from quadpatch.options import PatchOptions
+from quadpatch.stages import Stages
+from quadpatch.types import FloatArray, TriangleMesh, Triangles, Vertices
+
+# Promised errors, as parts of the bounding box's diagonal, between which a file makes sense.
+_SMALLEST_ERROR, _LARGEST_ERROR = 1e-6, 0.1
+# Vertices of the mesh for one quad, where the search for their number starts; and bounds of that number.
+_VERTICES_PER_QUAD = 110
+_QUADS_RANGE = (6, 20_000)
+_MOST_DOUBLINGS = 2
+# Triangles for each quad of the start, to which the mesh is collapsed once for all tries.
+_THINNED = 32
+# Steps of coefficients that are tried, in parts of the promised error.
+_CODE_STEPS = (1.0, 1.4, 2.0, 2.8)
+_FIRST_CODE_STEP = 1.4
+
+
+@dataclass(frozen=True)
+class EncodeOptions:
+    """How a mesh is encoded.
+
+    Attributes
+    ----------
+    max_error : float
+        In mesh units: the decoded surface lies this close to the mesh, and the mesh this close to it.
+    keep_connectivity : bool
+        Bring back every vertex and triangle, in their order, in place of a regular mesh over the quads.
+    patches : PatchOptions
+        `length` is the mean side of a quad, `resolution` the cells along it, rounded to a power of 2; both are searched
+        for by default. `overlap` can't be chosen: patches share the vertices along their edges.
+    seed : int
+        Nothing is random here; the same for every task.
+    """
+
+    max_error: float
+    keep_connectivity: bool = False
+    patches: PatchOptions = field(default_factory=PatchOptions)
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        is_number = isinstance(self.max_error, (int, float)) and not isinstance(self.max_error, bool)
+        if not (is_number and 0 < self.max_error < np.inf):
+            raise OptionError(f"max_error must be finite and greater than 0; it is {self.max_error}")
+        if not isinstance(self.keep_connectivity, bool):
+            raise OptionError(f"keep_connectivity must be true or false; it is {self.keep_connectivity!r}")
+        if self.patches.overlap is not None:
+            raise OptionError("patches.overlap can't be chosen here: patches share the vertices along their edges")
+        if not isinstance(self.seed, int) or self.seed < 0:
+            raise OptionError(f"seed must be a whole number of 0 or more; it is {self.seed}")
+
+    @classmethod
+    def from_dict(cls, values: Mapping[str, Any]) -> "EncodeOptions":
+        """Build from nested plain values; an unknown name raises OptionError."""
+        try:
+            patches = PatchOptions(**(values.get("patches") or {}))
+            return cls(**{**{k: v for k, v in values.items() if k != "patches"}, "patches": patches})
+        except (TypeError, ValueError) as error:
+            raise OptionError(f"options don't fit: {error}") from error
+
+
+@dataclass(frozen=True)
+class Encoding:
+    """A mesh as a file.
+
+    Attributes
+    ----------
+    data : bytes
+        The file.
+    content : QpzContent
+    parts : int
+        Of a cell, for kept vertices.
+    spacing : float
+        Wanted spacing of samples, in mesh units.
+    """
+
+    data: bytes
+    content: QpzContent
+    parts: int
+    spacing: float
+
+
+def encode_mesh(
+    mesh: TriangleMesh,
+    dictionary: DictionaryChoice,
+    options: EncodeOptions,
+    stages: Stages,
+    original: tuple[Vertices, Triangles] | None = None,
+    unit: str = "",
+) -> Encoding:
+    """Encode a mesh.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+        Welded; open, non-manifold and in several pieces as it may be.
+    dictionary : DictionaryChoice
+    options : EncodeOptions
+    stages : Stages
+    original : (vertices, triangles), optional
+        What `keep_connectivity` brings back; that of `mesh` by default.
+    unit : str
+
+    Raises
+    ------
+    OptionError
+        If the promised error does not fit the mesh's size.
+    NoQuadsError
+        If the mesh is too small or too thin to carry one quad.
+    """
+    _check_size(options.max_error, diagonal(mesh))
+    spacing = mean_edge_length(mesh)
+    scene = RayScene(mesh)
+    with stages.stage("quadrangulate"):
+        thinned = collapse(mesh, _THINNED * _start(mesh, options))
+        samples = sample(mesh, spacing)
+        task = Task(
+            mesh, thinned, scene, samples, spacing, dictionary, options.max_error, options.keep_connectivity, unit
+        )
+        best = _searched(task, options)
+    with stages.stage("learn"):
+        best = min(
+            (coded(task, best, step * options.max_error) for step in _CODE_STEPS), key=lambda one: one.estimated_bytes
+        )
+    content = best.content
+    atoms = content_atoms(content, best.model_atoms)
+    parts = 0
+    with stages.stage("reconstruct"):
+        if options.keep_connectivity:
+            content, parts = _kept(content, atoms, original or (mesh.vertices, mesh.triangles))
+        else:
+            content = guaranteed(content, atoms, best.target)
+    return Encoding(encode_content(content, parts), content, parts, spacing)
+
+
+def _check_size(max_error: float, diagonal_length: float) -> None:
+    smallest, largest = _SMALLEST_ERROR * diagonal_length, _LARGEST_ERROR * diagonal_length
+    if not smallest <= max_error <= largest:
+        raise OptionError(
+            f"max_error is {max_error:.4g}; for a mesh {diagonal_length:.4g} wide it must lie "
+            f"between {smallest:.3g} and {largest:.3g}"
+        )
+
+
+def _searched(task: Task, options: EncodeOptions) -> Candidate:
+    """Find the quads that give the smallest file."""
+    step = _FIRST_CODE_STEP * options.max_error
+    levels = _levels(options.patches.resolution)
+    start = _start(task.mesh, options)
+
+    def tried(n_quads: int, *, is_uniform: bool) -> Candidate | None:
+        try:
+            return make_candidate(task, (n_quads, is_uniform, levels), step)
+        except NoQuadsError:
+            return None
+
+    found = {start: tried(start, is_uniform=False)}
+    if options.patches.length is None:
+        _walk_downhill(found, start, lambda n: tried(n, is_uniform=False))
+    count = min(found, key=lambda n: _bytes(found[n]))
+    best = min((found[count], tried(count, is_uniform=True)), key=_bytes)
+    if best is None:
+        raise NoQuadsError("the surface is too small or too thin to carry one quad")
+    return best
+
+
+def _walk_downhill(found: dict[int, Candidate | None], start: int, tried: Any) -> None:
+    """Halve and double the number of quads as long as files get smaller."""
+    for factor in (0.5, 2.0):
+        count = start
+        for _ in range(_MOST_DOUBLINGS):
+            following = int(np.clip(count * factor, *_QUADS_RANGE))
+            if following in found:
+                break
+            found[following] = tried(following)
+            if _bytes(found[following]) > _bytes(found[count]):
+                break
+            count = following
+        if count != start:
+            break
+
+
+def _bytes(candidate: Candidate | None) -> float:
+    return np.inf if candidate is None else candidate.estimated_bytes
+
+
+def _levels(resolution: int | None) -> int | None:
+    return None if resolution is None else int(np.clip(round(np.log2(resolution)), 1, 6))
+
+
+def _start(mesh: TriangleMesh, options: EncodeOptions) -> int:
+    """Quads that the search starts with: those of the wanted side, else a share of the vertices."""
+    length = options.patches.length
+    if length is None:
+        return int(np.clip(len(mesh.vertices) // _VERTICES_PER_QUAD, *_QUADS_RANGE))
+    a, b, c = (mesh.vertices[mesh.triangles[:, corner]] for corner in range(3))
+    area = float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum()) / 2
+    return int(np.clip(round(area / length**2), *_QUADS_RANGE))
+
+
+def _kept(content: QpzContent, atoms: FloatArray, original: tuple[Vertices, Triangles]) -> tuple[QpzContent, int]:
+    vertices, triangles = original
+    content = replace(content, corrected=np.zeros(0, np.int64), corrections=np.zeros(0, np.int64))
+    decoded = decode_surface(content, atoms)
+    parts = parts_of_cell(decoded, content.lengths.max_error)
+    return replace(content, kept=keep_vertices(vertices, triangles, content, decoded, parts)), parts
