@@ -49,8 +49,8 @@ def restore(  # noqa: PLR0913 - one parameter per option of the command line
         str,
         typer.Option(
             metavar="PROPERTY|nan|FILE",
-            help="Which vertices are missing: those that a vertex property of a PLY marks, those with a coordinate "
-            "that is NaN, or those whose numbers a text or JSON file lists.",
+            help="Which vertices are missing: those that a vertex property of a PLY marks, those whose coordinates "
+            "are NaN, or those whose numbers a text or JSON file lists.",
         ),
     ],
     model: ModelOption = None,

@@ -16,7 +16,7 @@ def summary_of(spec: JobSpec) -> str:
 def _restoring(spec: JobSpec) -> str:
     missing = None if spec.restore is None else spec.restore.missing
     if missing is None or isinstance(missing, MissingAsNan):
-        which = "the vertices with a coordinate that is NaN"
+        which = "the vertices whose coordinates are NaN"
     elif isinstance(missing, MissingByProperty):
         which = f"the vertices that the property {missing.name} marks"
     else:

@@ -13,9 +13,9 @@ Corner = Annotated[list[Coordinate], Field(min_length=3, max_length=3)]
 
 
 class MissingAsNan(Request):
-    """Missing are the vertices with a coordinate that is no number."""
+    """Missing are the vertices whose three coordinates are NaN."""
 
-    kind: Literal["nan"] = Field(description="A coordinate is NaN.", examples=["nan"])
+    kind: Literal["nan"] = Field(description="Their coordinates are NaN.", examples=["nan"])
 
 
 class MissingByProperty(Request):

@@ -164,7 +164,7 @@ def test_a_reference_can_be_deleted_only_after_its_job(
 @pytest.mark.parametrize(
     ("spec", "summary"),
     [
-        (NAN, "give the vertices with a coordinate that is NaN a position, and keep all others"),
+        (NAN, "give the vertices whose coordinates are NaN a position, and keep all others"),
         (
             {"task": "restore", "restore": {"missing": {"kind": "property", "name": "lost"}}},
             "give the vertices that the property lost marks a position, and keep all others",
