@@ -23,7 +23,7 @@ from quadpatch.mesh.smoothing import laplacian_smooth
 from quadpatch.patches.scale import base_surface_iterations
 from quadpatch.quads.mesher import quadrangulate
 from quadpatch.sparse.dictionary import Dictionary
-from quadpatch.types import FloatArray, QuadMesh, TriangleMesh, Vertices
+from quadpatch.types import FloatArray, QuadMesh, TriangleMesh
 
 # Step of the quad mesh's vertices, in parts of the promised error; the codes make up for it.
 _PLACE_STEP = 1.0
@@ -31,6 +31,8 @@ _PLACE_STEP = 1.0
 _PIECE_BYTES = 2.5
 _MOST_PROBES = 10_000
 _LEVELS_RANGE = (2, 5)
+# Added to the levels before rounding: a grid that is too coarse costs more than one that is too fine.
+_FINER = 0.05
 # Last coefficients that no patch uses are not written.
 _FEWEST_ATOMS = 1
 
@@ -112,7 +114,7 @@ def make_candidate(task: Task, quads: tuple[int, bool, int | None], code_step: f
     quad_mesh = QuadMesh(from_lattice(places, origin, _PLACE_STEP * task.max_error), np.array(walk.polygons, np.int64))
     if levels is None:
         cells = len(task.mesh.vertices) / len(fitted.quads)
-        levels = int(np.clip(round(0.5 * np.log2(max(cells, 1.0))), *_LEVELS_RANGE))
+        levels = int(np.clip(round(0.5 * np.log2(max(cells, 1.0)) + _FINER), *_LEVELS_RANGE))
     grid = make_grid(quad_mesh, levels)
     heights, known = measure_heights(grid, task.mesh, task.scene, _mean_side(quad_mesh))
     lengths = Lengths(task.max_error, tuple(origin.tolist()), _PLACE_STEP * task.max_error, code_step)  # type: ignore[arg-type]
@@ -153,15 +155,20 @@ def _coded_over(task: Task, candidate: Candidate, code_step: float, kind: str) -
 
 
 def _estimate(task: Task, content: QpzContent, atoms: FloatArray, target: Target) -> float:
-    """Bytes of the file with its first corrections, and of the triangles that are still too far away."""
+    """Bytes of the file with its first corrections, and of the triangles where one surface is too far away."""
     n_bytes = float(len(encode_content(content, 0)))
     if task.keeps_connectivity:
         return n_bytes
-    used = np.unique(task.mesh.triangles)
-    probes: Vertices = task.mesh.vertices[used[:: max(1, len(used) // _MOST_PROBES)]]
-    distance = distance_to_mesh(probes, decode_surface(content, atoms, target.grid).mesh)
-    missed = float((distance > task.max_error).mean())
+    decoded = decode_surface(content, atoms, target.grid).mesh
+    missed = max(_share_beyond(task.mesh, decoded, task.max_error), _share_beyond(decoded, task.mesh, task.max_error))
     return n_bytes + _PIECE_BYTES * missed * len(task.mesh.triangles)
+
+
+def _share_beyond(mesh: TriangleMesh, other: TriangleMesh, limit: float) -> float:
+    """Share of some vertices of a mesh that are farther from another than a limit."""
+    used = np.unique(mesh.triangles)
+    probes = mesh.vertices[used[:: max(1, len(used) // _MOST_PROBES)]]
+    return float((distance_to_mesh(probes, other) > limit).mean())
 
 
 def _uniform(mesh: TriangleMesh, n_quads: int) -> QuadMesh:

@@ -4,7 +4,7 @@ How many quads, whether they follow the surface's bends or are all of one size, 
 finely codes are rounded is tried, and the smallest file wins.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -23,19 +23,21 @@ from quadpatch.mesh.measures import diagonal, mean_edge_length
 from quadpatch.mesh.raycast import RayScene
 from quadpatch.options import PatchOptions
 from quadpatch.stages import Stages
-from quadpatch.types import FloatArray, TriangleMesh, Triangles, Vertices
+from quadpatch.types import TriangleMesh, Triangles, Vertices
 
 # Promised errors, as parts of the bounding box's diagonal, between which a file makes sense.
 _SMALLEST_ERROR, _LARGEST_ERROR = 1e-6, 0.1
 # Vertices of the mesh for one quad, where the search for their number starts; and bounds of that number.
 _VERTICES_PER_QUAD = 110
 _QUADS_RANGE = (6, 20_000)
-_MOST_DOUBLINGS = 2
+_MOST_DOUBLINGS = 3
 # Triangles for each quad of the start, to which the mesh is collapsed once for all tries.
 _THINNED = 32
 # Steps of coefficients that are tried, in parts of the promised error.
 _CODE_STEPS = (1.0, 1.4, 2.0, 2.8)
 _FIRST_CODE_STEP = 1.4
+# So many of them, those with the smallest estimates, are brought within the promised error.
+_FINISHED = 2
 
 
 @dataclass(frozen=True)
@@ -141,18 +143,17 @@ def encode_mesh(
         )
         best = _searched(task, options)
     with stages.stage("learn"):
-        best = min(
-            (coded(task, best, step * options.max_error) for step in _CODE_STEPS), key=lambda one: one.estimated_bytes
-        )
-    content = best.content
-    atoms = content_atoms(content, best.model_atoms)
-    parts = 0
+        tries = sorted((coded(task, best, step * options.max_error) for step in _CODE_STEPS), key=_bytes)
     with stages.stage("reconstruct"):
         if options.keep_connectivity:
-            content, parts = _kept(content, atoms, original or (mesh.vertices, mesh.triangles))
+            finished = [_kept(one, original or (mesh.vertices, mesh.triangles)) for one in tries[:1]]
         else:
-            content = guaranteed(content, atoms, best.target)
-    return Encoding(encode_content(content, parts), content, parts, spacing)
+            finished = [
+                (guaranteed(one.content, content_atoms(one.content, one.model_atoms), one.target), 0)
+                for one in tries[:_FINISHED]
+            ]
+        files = [Encoding(encode_content(content, parts), content, parts, spacing) for content, parts in finished]
+    return min(files, key=lambda file: len(file.data))
 
 
 def _check_size(max_error: float, diagonal_length: float) -> None:
@@ -186,20 +187,24 @@ def _searched(task: Task, options: EncodeOptions) -> Candidate:
     return best
 
 
-def _walk_downhill(found: dict[int, Candidate | None], start: int, tried: Any) -> None:
-    """Halve and double the number of quads as long as files get smaller."""
-    for factor in (0.5, 2.0):
-        count = start
-        for _ in range(_MOST_DOUBLINGS):
-            following = int(np.clip(count * factor, *_QUADS_RANGE))
-            if following in found:
-                break
-            found[following] = tried(following)
-            if _bytes(found[following]) > _bytes(found[count]):
-                break
-            count = following
-        if count != start:
+def _walk_downhill(
+    found: dict[int, Candidate | None], start: int, tried: Callable[[int], Candidate | None]
+) -> None:
+    """Try half and twice as many quads, and go on where files got smaller."""
+    halved, doubled = (int(np.clip(start * factor, *_QUADS_RANGE)) for factor in (0.5, 2.0))
+    for count in (halved, doubled):
+        if count not in found:
+            found[count] = tried(count)
+    best = min(found, key=lambda n: _bytes(found[n]))
+    factor = best / start
+    for _ in range(_MOST_DOUBLINGS - 1):
+        following = int(np.clip(best * factor, *_QUADS_RANGE))
+        if following in found:
             break
+        found[following] = tried(following)
+        if _bytes(found[following]) > _bytes(found[best]):
+            break
+        best = following
 
 
 def _bytes(candidate: Candidate | None) -> float:
@@ -220,9 +225,10 @@ def _start(mesh: TriangleMesh, options: EncodeOptions) -> int:
     return int(np.clip(round(area / length**2), *_QUADS_RANGE))
 
 
-def _kept(content: QpzContent, atoms: FloatArray, original: tuple[Vertices, Triangles]) -> tuple[QpzContent, int]:
+def _kept(candidate: Candidate, original: tuple[Vertices, Triangles]) -> tuple[QpzContent, int]:
     vertices, triangles = original
-    content = replace(content, corrected=np.zeros(0, np.int64), corrections=np.zeros(0, np.int64))
+    atoms = content_atoms(candidate.content, candidate.model_atoms)
+    content = replace(candidate.content, corrected=np.zeros(0, np.int64), corrections=np.zeros(0, np.int64))
     decoded = decode_surface(content, atoms)
     parts = parts_of_cell(decoded, content.lengths.max_error)
     return replace(content, kept=keep_vertices(vertices, triangles, content, decoded, parts)), parts

@@ -25,8 +25,9 @@ from quadpatch.compression.lattice import to_lattice
 from quadpatch.compression.proof import Samples, deviation, sample
 from quadpatch.compression.sparse_codes import decoded_heights
 from quadpatch.mesh.boundary import boundary_edge_mask
+from quadpatch.mesh.distance import distance_to_mesh
 from quadpatch.mesh.topology import directed_edges
-from quadpatch.types import FloatArray, IntArray, TriangleMesh, Vertices
+from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Vertices
 
 # Heights that are off by more than this part of the promised error are corrected at once; others where samples ask.
 _CORRECTED_FROM = 0.85
@@ -34,6 +35,8 @@ _CORRECTION_ROUNDS = 2
 # Border vertices are moved by at most so many mean edges of the grid.
 _LONGEST_MOVE = 2.0
 _REMOVAL_ROUNDS = 3
+# A border vertex that is farther from the surface than this part of the promised error lies beyond its border.
+_BEYOND = 0.8
 # Steps between points of the mesh's border, in parts of the promised error; and at most so many points.
 _BORDER_SPACING = 0.3
 _MOST_BORDER_POINTS = 200_000
@@ -105,26 +108,29 @@ def _corrected(content: QpzContent, atoms: FloatArray, target: Target) -> QpzCon
     for _ in range(_CORRECTION_ROUNDS):
         where = np.flatnonzero(asked & (steps != 0))
         content = replace(content, corrected=where, corrections=steps[where])
-        decoded = decode_surface(content, atoms, target.grid)
-        found = deviation(target.samples, decoded.mesh)
-        far = np.unique(found.nearest[found.distance > limit])
-        if not len(far):
-            break
         # No cell has been left out yet, so triangles of the mesh are those of the grid.
-        asked[target.grid.triangles[far]] = True
+        mesh = decode_surface(content, atoms, target.grid).mesh
+        forward = deviation(target.samples, mesh)
+        backward = deviation(sample(mesh, target.spacing), target.surface)
+        far = [forward.nearest[forward.distance > limit], backward.samples.triangle[backward.distance > limit]]
+        corners = target.grid.triangles[np.unique(np.concatenate(far))]
+        if asked[corners].all():
+            break
+        asked[corners] = True
     where = np.flatnonzero(asked & (steps != 0))
     return replace(content, corrected=where, corrections=steps[where])
 
 
 def _trimmed(content: QpzContent, atoms: FloatArray, target: Target) -> QpzContent:
-    """Leave out cells that are too far from the surface, and move borders onto its border."""
+    """Move borders onto the surface's border, and leave out the cells that are too far from the surface."""
     border = _border_points(target.surface, _BORDER_SPACING * content.lengths.max_error)
     moves = np.zeros((len(target.grid.points), 3), np.int64)
     for round_number in range(_REMOVAL_ROUNDS):
-        content = _with_removed(content, atoms, target, moves)
-        if round_number == 0 and len(border):
-            moves = _moves(content, atoms, target, border)
-            content = _with_moves(content, target.grid, moves)
+        # The last round moves nothing, so that no cell changes any more after it was looked at.
+        if round_number < _REMOVAL_ROUNDS - 1 and len(border):
+            is_moved = moves.any(axis=1, keepdims=True)
+            moves = np.where(is_moved, moves, _moves(content, atoms, target, border))
+        content = _with_removed(_with_moves(content, target.grid, moves), atoms, target, moves)
     return content
 
 
@@ -157,20 +163,27 @@ def _remaining(content: QpzContent, grid: Grid) -> IntArray:
 
 
 def _moves(content: QpzContent, atoms: FloatArray, target: Target, border: Vertices) -> IntArray:
-    """Steps (n_grid, 3) onto the mesh's border, for border vertices that samples too far away are nearest to."""
+    """Steps (n_grid, 3) onto the surface's border.
+
+    Moved are border vertices that lie beyond it, and those that points too far from the grid are nearest to.
+    """
     decoded = decode_surface(content, atoms, target.grid)
     triangles = _remaining(content, target.grid)
     moves = np.zeros((len(decoded.vertices), 3), np.int64)
-    if not len(triangles):
+    where = border_vertices(triangles, len(decoded.vertices))
+    if not len(where):
         return moves
+    limit = content.lengths.max_error
     found = deviation(target.samples, decoded.mesh)
-    corners = triangles[np.unique(found.nearest[found.distance > content.lengths.max_error])].ravel()
-    where = np.intersect1d(corners, border_vertices(triangles, len(decoded.vertices)))
+    is_near_far_points = np.zeros(len(moves), np.bool_)
+    is_near_far_points[triangles[np.unique(found.nearest[found.distance > limit])]] = True
+    is_beyond = distance_to_mesh(decoded.vertices[where], target.surface) > _BEYOND * limit
+    where = where[is_beyond | is_near_far_points[where]]
     edge = np.linalg.norm(decoded.vertices[triangles[:, 0]] - decoded.vertices[triangles[:, 1]], axis=1).mean()
     distance, nearest = cKDTree(border).query(decoded.vertices[where])
     near = distance < _LONGEST_MOVE * edge
     way = border[nearest[near]] - decoded.vertices[where[near]]
-    moves[where[near]] = np.rint(way / (MOVE_STEP * content.lengths.max_error)).astype(np.int64)
+    moves[where[near]] = np.rint(way / (MOVE_STEP * limit)).astype(np.int64)
     return moves
 
 

@@ -27,8 +27,8 @@ _LEAST_DEVIATION = 0.25
 _ATOM_STEP = 0.7
 # An atom of which less than this part is its own counts as dependent.
 _DEPENDENT = 1e-6
-# Steps of atoms are 2**-3 to 2**-10.
-_EXPONENTS = (3, 10)
+# Steps of atoms are 2**-2 to 2**-10.
+_EXPONENTS = (2, 10)
 
 
 @dataclass(frozen=True)

@@ -143,7 +143,7 @@ def _write_bands(writer: IntWriter, table: IntArray) -> None:
 def _read_bands(reader: IntReader, shape: tuple[int, int]) -> IntArray:
     table = np.zeros(shape, np.int64)
     for low, high in _bands(shape[1]):
-        table[:, low:high] = reader.read(shape[0] * (high - low)).reshape(shape[0], -1)
+        table[:, low:high] = reader.read(shape[0] * (high - low)).reshape(shape[0], high - low)
     return table
 
 

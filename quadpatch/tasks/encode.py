@@ -1,0 +1,195 @@
+"""Encodes a mesh file: mesh in, `.qpz` out, and what was proved of it."""
+
+import hashlib
+import json
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from quadpatch.compression.candidate import DictionaryChoice
+from quadpatch.compression.content import COSINE, MODEL, SELF, DictionaryReference
+from quadpatch.compression.decode import Decoded, decode_mesh
+from quadpatch.compression.encode import EncodeOptions, Encoding, encode_mesh
+from quadpatch.compression.proof import deviation, psnr, sample
+from quadpatch.errors import FormatError, OptionError, StageError
+from quadpatch.formats.output_files import is_stream, write_whole
+from quadpatch.formats.reading import read_scan
+from quadpatch.formats.scan import Scan
+from quadpatch.inpainters.model_file import load_model, shipped_model
+from quadpatch.mesh.measures import diagonal
+from quadpatch.mesh.weld import Weld, weld
+from quadpatch.report import UNKNOWN_UNIT, describe_mesh, describe_redundancy, json_ready
+from quadpatch.sparse.dictionary import Dictionary
+from quadpatch.stages import Stages, failure_of, harmless
+from quadpatch.tasks.measures import check_surface, corrected_patches, entities
+from quadpatch.tasks.result import TaskResult
+from quadpatch.types import Progress, TriangleMesh, no_progress
+
+SUFFIX = ".qpz"
+# Rounding of distances, relative.
+_ROUNDING = 1e-9
+
+
+def encode_file(
+    source: Path,
+    output: Path,
+    model: str | Path = SELF,
+    options: EncodeOptions | None = None,
+    progress: Progress = no_progress,
+) -> TaskResult:
+    """Encode one file.
+
+    Parameters
+    ----------
+    source, output : Path
+        A mesh of any known format; a `.qpz` file, or `-` for standard output.
+    model : str or Path
+        `self`: a dictionary that is learned from the mesh and stands in the file, or products of cosines where these
+        take fewer bytes; `cosine`: these alone; the name of a shipped dictionary, or a dictionary's file, which the
+        decoder then needs as well.
+    options : EncodeOptions
+        Its `max_error` has no default.
+    progress : callable
+
+    Returns
+    -------
+    TaskResult
+        `after` is what the file decodes to.
+
+    Raises
+    ------
+    QuadpatchError
+        Its `code` says what is wrong with file, model or options.
+    StageError
+        If the decoded mesh is not as close as promised; nothing is written then.
+    OSError
+        If the output can't be written.
+    """
+    if options is None:
+        raise OptionError("max_error must be given: the largest distance that the decoded surface may have, in mesh units")
+    if output.suffix.lower() != SUFFIX and not is_stream(output):
+        raise FormatError(f"an encoded mesh is written as {SUFFIX}; got {output.name}")
+    stages = Stages(harmless(progress))
+    choice, card = _dictionary(model)
+    with stages.stage("read"):
+        scan, welded = _read(source)
+    original = (scan.vertices, scan.triangles)
+    encoding = encode_mesh(welded.mesh, choice, options, stages, original, scan.unit or "")
+    with stages.stage("judge"):
+        decoded = decode_mesh(encoding.data, lambda reference: _known(choice.model))
+        measures = _proved(scan, welded.mesh, encoding, decoded, options)
+    with stages.stage("write"):
+        write_whole(output, encoding.data)
+    measures["bytes_per_vertex"] = len(encoding.data) / len(scan.vertices)
+    measures["ratio"] = (12 * len(scan.vertices) + 12 * len(scan.triangles)) / len(encoding.data)
+    report = {
+        "schema": 1,
+        "task": "encode",
+        "source": describe_mesh(scan, welded.mesh),
+        "length_unit": scan.unit or UNKNOWN_UNIT,
+        "model": card,
+        "options": json.loads(json.dumps(asdict(options))),
+        **measures,
+        "stages": [{"name": name, "seconds": round(seconds, 4)} for name, seconds in stages.seconds.items()],
+        "warnings": [*_attribute_warnings(scan), *describe_redundancy(welded.counts)],
+    }
+    changed = np.ones(len(decoded.mesh.triangles), np.bool_)
+    return TaskResult(json_ready(report), welded.mesh, decoded.mesh, changed)
+
+
+def _dictionary(model: str | Path) -> tuple[DictionaryChoice, dict[str, Any]]:
+    """Turn a model's name or path into the dictionaries that may be used, and what the report says of them."""
+    if model == SELF:
+        return DictionaryChoice((SELF, COSINE)), {"name": SELF}
+    if model == COSINE:
+        return DictionaryChoice((COSINE,)), {"name": COSINE}
+    dictionary, reference = load_dictionary(model)
+    facts = {"name": reference.name, "kind": "dictionary", "sha256": reference.sha256.hex()}
+    return DictionaryChoice((MODEL,), dictionary, reference), facts
+
+
+def load_dictionary(model: str | Path) -> tuple[Dictionary, DictionaryReference]:
+    """Read a dictionary by name or path, with the reference that a file has to it.
+
+    Raises
+    ------
+    ModelError
+        If there is no such model.
+    OptionError
+        If it is a network.
+    """
+    path = Path(model) if Path(model).is_file() else shipped_model(str(model))
+    loaded = load_model(path)
+    if loaded.dictionary is None:
+        raise OptionError(f"{path.name} is a network; meshes are encoded over dictionaries")
+    name, version = loaded.card.get("name"), loaded.card.get("version")
+    named = f"{name}@{version}" if name and version and "@" not in str(name) else str(name or path.stem)
+    return loaded.dictionary, DictionaryReference(MODEL, named[:200], hashlib.sha256(path.read_bytes()).digest())
+
+
+def _known(dictionary: Dictionary | None) -> Dictionary:
+    if dictionary is None:
+        raise StageError("the file names a model that it was not encoded with")
+    return dictionary
+
+
+def _read(source: Path) -> tuple[Scan, Weld]:
+    scan = read_scan(source)
+    welded = weld(scan.vertices, scan.triangles, "auto")
+    check_surface(scan, welded.mesh)
+    return scan, welded
+
+
+def _proved(
+    scan: Scan, mesh: TriangleMesh, encoding: Encoding, decoded: Decoded, options: EncodeOptions
+) -> dict[str, Any]:
+    """Measure what the file decodes to, and raise StageError where that breaks its promise."""
+    content, length = encoding.content, diagonal(mesh)
+    forward = deviation(sample(mesh, encoding.spacing), decoded.mesh)
+    backward = deviation(sample(decoded.mesh, encoding.spacing), mesh)
+    largest = max(forward.largest, backward.largest)
+    measures: dict[str, Any] = {}
+    if content.kept is not None:
+        if not np.array_equal(decoded.mesh.triangles, scan.triangles):
+            raise StageError("the decoded triangles are not those of the mesh")
+        moved = np.linalg.norm(decoded.mesh.vertices - scan.vertices, axis=1)
+        # Corresponding points of corresponding triangles are no farther apart than their vertices.
+        largest = float(moved.max())
+        measures["vertex_shift"] = {"max": largest, "rms": float(np.sqrt((moved**2).mean()))}
+    if not largest <= options.max_error * (1.0 + _ROUNDING):
+        raise StageError(f"the decoded mesh is {largest:.6g} away from the mesh; promised are {options.max_error:.6g}")
+    return {
+        **measures,
+        "bytes": len(encoding.data),
+        "max_error": {"promised": options.max_error, "true_to_decoded": forward.largest, "decoded_to_true": backward.largest},
+        "rms_error": {"true_to_decoded": forward.rms, "decoded_to_true": backward.rms},
+        "psnr": {"true_to_decoded": psnr(length, forward.rms), "decoded_to_true": psnr(length, backward.rms)},
+        "sample_spacing": max(forward.samples.spacing, backward.samples.spacing),
+        "dictionary": {"kind": content.dictionary.kind, "atoms": content.codes.shape[1]},
+        "decoded": {"vertices": len(decoded.mesh.vertices), "triangles": len(decoded.mesh.triangles)},
+        "patches": {
+            "count": len(content.walk.polygons),
+            "resolution": 2**content.levels,
+            "corrected": corrected_patches(content),
+            "nonzero_coefficients": int(np.count_nonzero(content.codes)),
+        },
+        "corrections": len(content.corrected),
+        "cells_left_out": len(content.removed),
+        "triangles_as_they_are": len(content.pieces.walk.polygons),
+        **entities(scan, content),
+    }
+
+
+def _attribute_warnings(scan: Scan) -> list[str]:
+    """Say what the mesh carries besides its shape, which no encoded file keeps."""
+    found: list[str] = []
+
+    def look() -> None:
+        if scan.source is not None:
+            attributes = scan.source.vertex_attributes(scan)
+            found.extend(name for name in ("colours", "normals", "texture") if getattr(attributes, name) is not None)
+
+    failure_of(look)
+    return [f"{', '.join(found)} are left out: an encoded mesh holds the shape alone"] if found else []
