@@ -12,12 +12,12 @@ from service.services import Services
 
 Publish = Callable[..., ModelVersion]
 Settle = Callable[..., None]
-NAN = {"task": "restore", "restore": {"missing": {"kind": "nan"}}}
-DENOISE = {"task": "denoise"}
-SELF = {"method": "dictionary", "model": "self"}
-DECODE = {"task": "decode"}
+NAN: dict[str, Any] = {"task": "restore", "restore": {"missing": {"kind": "nan"}}}
+DENOISE: dict[str, Any] = {"task": "denoise"}
+SELF: dict[str, Any] = {"method": "dictionary", "model": "self"}
+DECODE: dict[str, Any] = {"task": "decode"}
 NAMED = {"model": "mine@3"}
-ENCODE = {"task": "encode", "encode": {"max_error": 0.01}, "method": SELF}
+ENCODE: dict[str, Any] = {"task": "encode", "encode": {"max_error": 0.01}, "method": SELF}
 
 
 @pytest.fixture
