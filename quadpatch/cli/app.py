@@ -6,9 +6,12 @@ option is at fault (`code: message` on standard error), 2 wrong usage.
 
 import typer
 
+from quadpatch.cli.encode import decode, encode
 from quadpatch.cli.fill import fill
 from quadpatch.cli.holes import holes
 
-app = typer.Typer(help="Repair holes in 3D scans.", no_args_is_help=True, add_completion=False)
-for command in (fill, holes):
+app = typer.Typer(
+    help="Repair holes in 3D scans, and put their patches to other uses.", no_args_is_help=True, add_completion=False
+)
+for command in (fill, holes, encode, decode):
     app.command()(command)

@@ -20,6 +20,11 @@ Overwrite = Annotated[bool, typer.Option("--overwrite", help="Let OUT take the p
 PatchLength = Annotated[float | None, typer.Option(help="Side of a patch (mesh units).")]
 Resolution = Annotated[int | None, typer.Option(help="Bins along one side of a patch.")]
 Overlap = Annotated[int | None, typer.Option(help="k: every quad carries 1 + 4 k patches.")]
+Model = Annotated[
+    str, typer.Option(help="self (learn a dictionary from this mesh), a shipped dictionary, or a dictionary's file.")
+]
+Atoms = Annotated[int | None, typer.Option(help="Atoms to learn (model self).")]
+Nonzero = Annotated[int | None, typer.Option(help="Atoms that one patch may use.")]
 Seed = Annotated[int, typer.Option(help="Start of every random choice.")]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No progress, no summary.")]
 WeldTolerance = Annotated[

@@ -72,7 +72,9 @@ def _write_through(data: bytes, opened: Callable[[], int]) -> None:
         sink.write(data)
 
 
-def check_outputs(source: Path, mesh: Path, others: Iterable[Path], *, may_overwrite: bool = False) -> None:
+def check_outputs(
+    source: Path, mesh: Path, others: Iterable[Path], *, may_overwrite: bool = False, inputs: Iterable[Path] = ()
+) -> None:
     """Find out before any work whether outputs have a folder and overwrite neither the scan nor each other.
 
     Parameters
@@ -85,6 +87,8 @@ def check_outputs(source: Path, mesh: Path, others: Iterable[Path], *, may_overw
         Where report and pictures go.
     may_overwrite : bool
         Whether the repaired mesh may take the place of what is read. The others never may.
+    inputs : iterable of Path
+        What else is read, and never overwritten.
 
     Raises
     ------
@@ -96,7 +100,10 @@ def check_outputs(source: Path, mesh: Path, others: Iterable[Path], *, may_overw
     _check_place(mesh)
     if is_same_file(mesh, source) and not may_overwrite:
         raise OptionError(f"{mesh} is the scan itself: name another file, or say --overwrite")
-    claimed_paths = [source, mesh]
+    for path in inputs:
+        if is_same_file(mesh, path):
+            raise OptionError(f"{mesh} is read as well: name another file")
+    claimed_paths = [source, mesh, *inputs]
     for path in others:
         _check_place(path)
         if any(is_same_file(path, other) for other in claimed_paths):

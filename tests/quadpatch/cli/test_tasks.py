@@ -1,0 +1,165 @@
+"""What the commands of all tasks do alike, and each of them from file to file.
+
+Also tests `quadpatch.cli.encode`.
+"""
+
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner, Result
+
+from quadpatch.cli.app import app
+from quadpatch.cli.tasks import Files, given, run_task, vertices
+from quadpatch.errors import StageError
+from quadpatch.formats.moving import Moved, write_moved
+from quadpatch.formats.reading import read_scan
+from quadpatch.tasks.result import TaskResult
+from quadpatch.types import Progress, TriangleMesh
+from tests.quadpatch.shapes import bumpy_plate, sphere, write_ply
+
+
+def lift(files: Files, progress: Progress) -> TaskResult:
+    """Move every vertex of a scan up by 1."""
+    scan = read_scan(files.source)
+    progress("reconstruct", 0.5)
+    moved = scan.vertices + np.array([0.0, 0.0, 1.0])
+    warnings = write_moved(files.output, scan, Moved(moved))
+    report: dict[str, Any] = {"length_unit": "mesh units", "stages": [{"name": "read", "seconds": 1.2}]}
+    report |= {"moved_vertices": len(moved), "warnings": warnings}
+    before, after = TriangleMesh(scan.vertices, scan.triangles), TriangleMesh(moved, scan.triangles)
+    return TaskResult(report, before, after, np.ones(len(scan.triangles), dtype=bool))
+
+
+def run(files: Files, quiet: bool = False) -> None:
+    run_task(
+        files,
+        lambda progress: lift(files, progress),
+        lambda report, unit: f"{vertices(report['moved_vertices'])} lifted by 1 {unit}",
+        quiet,
+    )
+
+
+@pytest.fixture
+def ball(tmp_path: Path) -> Path:
+    return write_ply(tmp_path / "ball.ply", sphere(1))
+
+
+def test_a_task_gives_mesh_report_picture_and_a_sentence(
+    ball: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    run(Files(ball, tmp_path / "out.ply", tmp_path / "out.json", tmp_path / "out.png"))
+    assert (
+        read_scan(tmp_path / "out.ply").vertices.tobytes() == (sphere(1).vertices + np.array([0.0, 0.0, 1.0])).tobytes()
+    )
+    assert (tmp_path / "out.png").read_bytes().startswith(b"\x89PNG")
+    report = json.loads((tmp_path / "out.json").read_text())
+    assert [stage["name"] for stage in report["stages"]] == ["read", "preview"]
+    told = capsys.readouterr()
+    assert told.out == ""
+    assert told.err.startswith("42 vertices lifted by 1 mesh units. ")
+    assert told.err.endswith(" s.\n")
+
+
+def test_quiet_tasks_say_nothing(ball: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    run(Files(ball, tmp_path / "out.ply", None, None), quiet=True)
+    assert capsys.readouterr() == ("", "")
+
+
+def test_no_file_that_is_read_is_overwritten(ball: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    raw = ball.read_bytes()
+    other = write_ply(tmp_path / "clean.ply", sphere(0))
+    for files in (
+        Files(ball, ball, None, None),
+        Files(ball, other, None, None, may_overwrite=True, inputs=[other]),
+        Files(ball, tmp_path / "out.ply", other, None, inputs=[other]),
+        Files(ball, tmp_path / "out.ply", tmp_path / "out.ply", None),
+    ):
+        with pytest.raises(SystemExit, match="1"):
+            run(files)
+        assert capsys.readouterr().err.startswith("invalid_option: ")
+    assert ball.read_bytes() == raw
+    assert not (tmp_path / "out.ply").exists()
+    run(Files(ball, ball, None, None, may_overwrite=True), quiet=True)
+    assert ball.read_bytes() != raw
+
+
+def test_a_task_that_fails_is_one_line(ball: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    def fail(_: Progress) -> TaskResult:
+        raise StageError("there is no way")
+
+    with pytest.raises(SystemExit, match="1"):
+        run_task(Files(ball, tmp_path / "out.ply", None, None), fail, lambda *_: "", False)
+    assert capsys.readouterr().err == "stage_failed: there is no way\n"
+
+
+def test_options_that_were_not_given_are_left_out() -> None:
+    assert given(seed=0, noise=None, patches={"length": None, "resolution": 12}, other={"atoms": None}) == {
+        "seed": 0,
+        "patches": {"resolution": 12},
+    }
+
+
+def call(*arguments: str | Path) -> Result:
+    return CliRunner().invoke(app, [str(argument) for argument in arguments])
+
+
+@pytest.fixture(scope="module")
+def plate(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return write_ply(tmp_path_factory.mktemp("plate") / "plate.ply", bumpy_plate(40, 2.0))
+
+
+@pytest.mark.parametrize("flags", [[], ["--keep-connectivity"]], ids=["surface", "connectivity"])
+def test_what_is_encoded_is_decoded_within_the_error(plate: Path, tmp_path: Path, flags: list[str]) -> None:
+    packed, report = tmp_path / "plate.qpz", tmp_path / "plate.json"
+    done = call("encode", plate, "-o", packed, "--max-error", "0.02", "--report", report, *flags)
+    assert done.exit_code == 0, done.output
+    assert done.stdout == ""
+    told = " ".join(done.stderr.split())
+    assert told.startswith(f"1,600 vertices encoded in {packed.stat().st_size:,} bytes (")
+    assert "mesh units from the scan, 0.02 are allowed. " in told
+    content = json.loads(report.read_text())
+    assert content["task"] == "encode"
+    assert content["options"]["max_error"] == 0.02
+    assert content["options"]["keep_connectivity"] == bool(flags)
+    again = call("decode", packed, "-o", tmp_path / "again.obj", "--preview", tmp_path / "again.png")
+    assert again.exit_code == 0, again.output
+    kind = "in the order of the scan" if flags else "as a regular mesh over the quads"
+    assert f"triangles, {kind}, at most 0.02 mesh units from the scan. " in " ".join(again.stderr.split())
+    assert (tmp_path / "again.png").exists()
+    if flags:
+        shift = read_scan(tmp_path / "again.obj").vertices - read_scan(plate).vertices
+        assert np.linalg.norm(shift, axis=1).max() <= 0.02
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code"),
+    [
+        (["encode", "PLATE", "-o", "out.ply", "--max-error", "0.01"], "unsupported_format"),
+        (["encode", "PLATE", "-o", "out.qpz", "--max-error", "0"], "invalid_option"),
+        (["encode", "PLATE", "-o", "out.qpz", "--max-error", "0.01", "--resolution", "1"], "invalid_option"),
+        (["encode", "PLATE", "-o", "out.qpz", "--max-error", "0.01", "--model", "no-such"], "unusable_model"),
+        (["encode", "PLATE", "-o", "PLATE", "--max-error", "0.01"], "invalid_option"),
+        (["decode", "PLATE", "-o", "out.ply"], "unreadable_mesh"),
+        (["decode", "missing.qpz", "-o", "out.ply"], "unreadable_mesh"),
+        (["decode", "missing.qpz", "-o", "out.docx"], "unsupported_format"),
+    ],
+)
+def test_errors_of_tasks_are_one_line_of_code_and_message(
+    plate: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, arguments: list[str], code: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    result = call(*[str(plate) if argument == "PLATE" else argument for argument in arguments])
+    assert result.exit_code == 1, result.output
+    assert list(tmp_path.iterdir()) == []
+    assert result.stdout == ""
+    (line,) = result.stderr.splitlines()
+    assert re.fullmatch(rf"{code}: .+", line)
+
+
+@pytest.mark.parametrize("arguments", [["encode", "a.ply", "-o", "a.qpz"], ["decode", "a.qpz"]])
+def test_wrong_usage_of_a_task_has_its_own_exit_code(arguments: list[str]) -> None:
+    assert call(*arguments).exit_code == 2
