@@ -5,7 +5,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from quadpatch.compression.connectivity import encode_polygons
-from quadpatch.compression.content import COSINE, MODEL, SELF, DictionaryReference, Lengths, QpzContent
+from quadpatch.compression.content import (
+    COSINE,
+    MODEL,
+    SELF,
+    DictionaryKind,
+    DictionaryReference,
+    Lengths,
+    QpzContent,
+)
 from quadpatch.compression.control_mesh import collapse_to_quads
 from quadpatch.compression.decoded_surface import content_atoms, decode_surface
 from quadpatch.compression.guarantee import Target, first_corrections
@@ -27,12 +35,12 @@ from quadpatch.types import FloatArray, QuadMesh, TriangleMesh
 
 # Step of the quad mesh's vertices, in parts of the promised error; the codes make up for it.
 _PLACE_STEP = 1.0
-# Bytes of one triangle that the quads do not cover, and of one correction, for estimates.
-_PIECE_BYTES = 2.5
+# Bytes of one triangle where the surfaces are too far apart, for estimates: it takes others with it.
+_PIECE_BYTES = 6.0
 _MOST_PROBES = 10_000
 _LEVELS_RANGE = (2, 5)
 # Added to the levels before rounding: a grid that is too coarse costs more than one that is too fine.
-_FINER = 0.05
+_FINER = 0.3
 # Last coefficients that no patch uses are not written.
 _FEWEST_ATOMS = 1
 
@@ -50,7 +58,7 @@ class DictionaryChoice:
         Of that model.
     """
 
-    kinds: tuple[str, ...]
+    kinds: tuple[DictionaryKind, ...]
     model: Dictionary | None = None
     reference: DictionaryReference | None = None
 
@@ -107,7 +115,7 @@ def make_candidate(task: Task, quads: tuple[int, bool, int | None], code_step: f
     """
     n_quads, is_uniform, levels = quads
     rough = _uniform(task.mesh, n_quads) if is_uniform else collapse_to_quads(task.thinned, n_quads)
-    fitted = fit_quads(rough, task.mesh)
+    fitted = fit_quads(rough, task.thinned)
     walk, _, vertex = encode_polygons(fitted.quads)
     origin = task.mesh.vertices[task.mesh.triangles].reshape(-1, 3).min(axis=0)
     places = to_lattice(fitted.vertices[vertex], origin, _PLACE_STEP * task.max_error)
@@ -117,7 +125,8 @@ def make_candidate(task: Task, quads: tuple[int, bool, int | None], code_step: f
         levels = int(np.clip(round(0.5 * np.log2(max(cells, 1.0)) + _FINER), *_LEVELS_RANGE))
     grid = make_grid(quad_mesh, levels)
     heights, known = measure_heights(grid, task.mesh, task.scene, _mean_side(quad_mesh))
-    lengths = Lengths(task.max_error, tuple(origin.tolist()), _PLACE_STEP * task.max_error, code_step)  # type: ignore[arg-type]
+    x, y, z = origin.tolist()
+    lengths = Lengths(task.max_error, (x, y, z), _PLACE_STEP * task.max_error, code_step)
     empty = np.zeros((len(fitted.quads), 0), np.int64)
     content = QpzContent(lengths, task.unit, levels, DictionaryReference(COSINE), None, walk, places, empty)
     target = Target(task.mesh, task.samples, task.spacing, grid, heights, known)
@@ -130,7 +139,7 @@ def coded(task: Task, candidate: Candidate, code_step: float) -> Candidate:
     return min(choices, key=lambda choice: choice.estimated_bytes)
 
 
-def _coded_over(task: Task, candidate: Candidate, code_step: float, kind: str) -> Candidate:
+def _coded_over(task: Task, candidate: Candidate, code_step: float, kind: DictionaryKind) -> Candidate:
     target, content = candidate.target, candidate.content
     n_bins = (2**content.levels + 1) ** 2
     embedded, of_model, reference = None, None, DictionaryReference(COSINE)
@@ -160,15 +169,11 @@ def _estimate(task: Task, content: QpzContent, atoms: FloatArray, target: Target
     if task.keeps_connectivity:
         return n_bytes
     decoded = decode_surface(content, atoms, target.grid).mesh
-    missed = max(_share_beyond(task.mesh, decoded, task.max_error), _share_beyond(decoded, task.mesh, task.max_error))
+    # Grid vertices that see no surface are those that lie beyond it, or over a fold.
+    probes = task.samples.points[:: 1 + len(task.samples.points) // _MOST_PROBES]
+    beyond = float((distance_to_mesh(probes, decoded) > task.max_error).mean())
+    missed = max(beyond, float(1.0 - target.known.mean()))
     return n_bytes + _PIECE_BYTES * missed * len(task.mesh.triangles)
-
-
-def _share_beyond(mesh: TriangleMesh, other: TriangleMesh, limit: float) -> float:
-    """Share of some vertices of a mesh that are farther from another than a limit."""
-    used = np.unique(mesh.triangles)
-    probes = mesh.vertices[used[:: max(1, len(used) // _MOST_PROBES)]]
-    return float((distance_to_mesh(probes, other) > limit).mean())
 
 
 def _uniform(mesh: TriangleMesh, n_quads: int) -> QuadMesh:

@@ -2,11 +2,11 @@
 
 The walk starts at one polygon and goes on over its edges, first come, first served. For each edge it says whether a
 polygon lies beyond, and for each further corner of that polygon whether its vertex is new, follows from the edges that
-still wait, or must be named. Vertices are numbered as the walk meets them, so that only their order is lost. A mesh that
-is no manifold takes more names; every list of polygons can be coded.
+still wait, or must be named. Vertices are numbered as the walk meets them, so that only their order is lost. A mesh
+that is no manifold takes more names; every list of polygons can be coded.
 
-The walk also says from which three earlier vertices the place of a new one is predicted: p + q - r, across the edge that
-was crossed (parallelogram prediction).
+The walk also says from which three earlier vertices the place of a new one is predicted: p + q - r, across the edge
+that was crossed (parallelogram prediction).
 
 References
 ----------
@@ -205,9 +205,7 @@ def _tell(
         told.append(vertex)
 
 
-def _told(
-    corners: list[int], found: object, n_corners: int, state: tuple[Walk, _Border, int, "object"]
-) -> int:
+def _told(corners: list[int], found: object, n_corners: int, state: tuple[Walk, _Border, int, "object"]) -> int:
     """Find the vertex of the next corner."""
     walk, border, kind, names = state
     if kind == NEW:
@@ -224,7 +222,9 @@ def _told(
     return vertex
 
 
-def _place(walk: Walk, border: _Border, corners: list[int], found: tuple[tuple[int, int], tuple[int, int]] | None) -> None:
+def _place(
+    walk: Walk, border: _Border, corners: list[int], found: tuple[tuple[int, int], tuple[int, int]] | None
+) -> None:
     """Append a polygon, told from its crossed edge on, and predict its new vertices.
 
     A quad is turned so that the edge it was reached over lies opposite to the side of the quad it was reached from:

@@ -1,7 +1,7 @@
 """What a `.qpz` file says, as arrays of whole numbers and a few lengths."""
 
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Final, Literal, get_args
 
 import numpy as np
 
@@ -9,12 +9,12 @@ from quadpatch.compression.connectivity import Walk
 from quadpatch.compression.patch_dictionary import EmbeddedAtoms
 from quadpatch.types import IntArray
 
-COSINE = "cosine"
-SELF = "self"
-MODEL = "model"
-# In the order of their numbers in a file.
-DICTIONARY_KINDS = (COSINE, SELF, MODEL)
 DictionaryKind = Literal["cosine", "self", "model"]
+COSINE: Final = "cosine"
+SELF: Final = "self"
+MODEL: Final = "model"
+# In the order of their numbers in a file.
+DICTIONARY_KINDS: tuple[DictionaryKind, ...] = get_args(DictionaryKind)
 
 
 def _none() -> IntArray:

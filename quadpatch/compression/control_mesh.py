@@ -20,6 +20,8 @@ from quadpatch.types import BoolArray, QuadMesh, Quads, TriangleMesh, Vertices
 _BORDER_WEIGHT = 3.0
 # From 0 to 1: how strongly slivers are avoided.
 _QUALITY = 0.5
+# A closed surface has at least so many triangles.
+_FEWEST_TRIANGLES = 4
 # A smaller part of the mean quad's area is no quad.
 _LEAST_AREA = 1e-6
 
@@ -54,6 +56,9 @@ def collapse(mesh: TriangleMesh, n_triangles: int) -> TriangleMesh:
 def collapse_to_quads(mesh: TriangleMesh, n_quads: int) -> QuadMesh:
     """Cover a surface with about so many quads.
 
+    Triangles are paired to quads. Where one finds no partner, a mesh of a third as many triangles is taken in place of
+    that, each cut into three quads by its centroid and the midpoints of its edges, so that no hole is left.
+
     Parameters
     ----------
     mesh : TriangleMesh
@@ -64,8 +69,7 @@ def collapse_to_quads(mesh: TriangleMesh, n_quads: int) -> QuadMesh:
     Returns
     -------
     QuadMesh
-        Four different corners in every quad, turned as the triangles are; no vertex without a quad. Triangles that
-        found no partner are left out.
+        Four different corners and some area in every quad, turned as the triangles are; no vertex without a quad.
 
     Raises
     ------
@@ -80,11 +84,26 @@ def collapse_to_quads(mesh: TriangleMesh, n_quads: int) -> QuadMesh:
     vertices = np.asarray(result.vertex_matrix(), np.float64)
     polygons = [list(map(int, face)) for face in result.polygonal_face_list()]
     quads = np.array([polygon for polygon in polygons if len(polygon) == 4], np.int64).reshape(-1, 4)
+    if len(quads) < len(polygons) or not _is_proper(vertices, quads).all():
+        vertices, quads = _in_three(collapse(mesh, max(n_quads // 3, _FEWEST_TRIANGLES)))
     quads = quads[_is_proper(vertices, quads)]
     if not len(quads):
         raise NoQuadsError("the surface is too small or too thin to carry one quad")
     used, compact = np.unique(quads, return_inverse=True)
     return QuadMesh(vertices[used], compact.reshape(-1, 4).astype(np.int64))
+
+
+def _in_three(mesh: TriangleMesh) -> tuple[Vertices, Quads]:
+    """Cut every triangle into three quads."""
+    n, triangles = len(mesh.vertices), mesh.triangles
+    ends = np.sort(np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
+    keys, of_triangle = np.unique(ends[:, 0] * n + ends[:, 1], return_inverse=True)
+    midpoints = (mesh.vertices[keys // n] + mesh.vertices[keys % n]) / 2
+    edge = n + of_triangle.reshape(-1, 3)
+    centre = n + len(keys) + np.arange(len(triangles))
+    quads = [np.stack([triangles[:, k], edge[:, k], centre, edge[:, k - 1]], axis=1) for k in range(3)]
+    vertices = np.concatenate([mesh.vertices, midpoints, mesh.vertices[triangles].mean(axis=1)])
+    return vertices, np.stack(quads, axis=1).reshape(-1, 4)
 
 
 def _is_proper(vertices: Vertices, quads: Quads) -> BoolArray:

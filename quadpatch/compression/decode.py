@@ -79,7 +79,10 @@ def decode_mesh(data: bytes, find_dictionary: FindDictionary, limits: ReadLimits
 def _check_places(content: QpzContent, grid: Grid) -> None:
     """Refuse grid vertices and cells that are not there, and border moves that do not fit the border."""
     n_cells = len(grid.triangles) // 2
-    for name, numbers, limit in (("grid vertex", content.corrected, len(grid.points)), ("cell", content.removed, n_cells)):
+    for name, numbers, limit in (
+        ("grid vertex", content.corrected, len(grid.points)),
+        ("cell", content.removed, n_cells),
+    ):
         if len(numbers) and int(numbers[-1]) >= limit:
             raise ReadError(f"the .qpz file names {name} {int(numbers[-1])} of {limit}")
     if len(content.border_moves):

@@ -15,8 +15,8 @@ from quadpatch.compression.patch_dictionary import cosine_atoms
 from quadpatch.compression.sparse_codes import decoded_heights
 from quadpatch.types import BoolArray, FloatArray, IntArray, QuadMesh, TriangleMesh, Triangles, Vertices
 
-# Steps in parts of the promised error. A correction leaves half a step of height, a lattice sqrt(3) / 2 steps.
-CORRECTION_STEP = 0.9
+# Steps in parts of the promised error. A correction leaves half a step of height, a lattice sqrt(3) / 2.
+CORRECTION_STEP = 0.5
 MOVE_STEP = 0.6
 PIECE_STEP = 1.0
 

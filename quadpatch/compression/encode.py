@@ -1,7 +1,7 @@
 """Encodes a mesh: quads, sparse codes of their patches, and what these miss, within an error that is promised.
 
-How many quads, whether they follow the surface's bends or are all of one size, whether the dictionary is learned and how
-finely codes are rounded is tried, and the smallest file wins.
+How many quads, whether they follow the surface's bends or are all of one size, whether the dictionary is learned and
+how finely codes are rounded is tried, and the smallest file wins.
 """
 
 from collections.abc import Callable, Mapping
@@ -187,9 +187,7 @@ def _searched(task: Task, options: EncodeOptions) -> Candidate:
     return best
 
 
-def _walk_downhill(
-    found: dict[int, Candidate | None], start: int, tried: Callable[[int], Candidate | None]
-) -> None:
+def _walk_downhill(found: dict[int, Candidate | None], start: int, tried: Callable[[int], Candidate | None]) -> None:
     """Try half and twice as many quads, and go on where files got smaller."""
     halved, doubled = (int(np.clip(start * factor, *_QUADS_RANGE)) for factor in (0.5, 2.0))
     for count in (halved, doubled):

@@ -184,7 +184,7 @@ def _probabilities(zero: int, rate: int) -> FloatArray:
         table.append(tail * (1.0 - factor))
         tail *= factor
     # Nothing may be impossible, however steep the distribution.
-    return np.maximum(np.array([*table, tail]), 1e-7)
+    return np.asarray(np.maximum(np.array([*table, tail]), 1e-7))
 
 
 def _geometric(zero: int, rate: int) -> Any:

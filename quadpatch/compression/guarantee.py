@@ -103,7 +103,7 @@ def _corrected(content: QpzContent, atoms: FloatArray, target: Target) -> QpzCon
     """Correct the heights of grid vertices that are far off, then those around samples that are too far away."""
     limit = content.lengths.max_error
     content, steps = first_corrections(content, atoms, target)
-    asked = np.zeros(len(steps), np.bool_)
+    asked: BoolArray = np.zeros(len(steps), np.bool_)
     asked[content.corrected] = True
     for _ in range(_CORRECTION_ROUNDS):
         where = np.flatnonzero(asked & (steps != 0))
@@ -140,10 +140,10 @@ def _with_removed(content: QpzContent, atoms: FloatArray, target: Target, moves:
     found = deviation(sample(decoded.mesh, target.spacing), target.surface)
     far = found.samples.triangle[found.distance > content.lengths.max_error]
     # A vertex stands for all triangles that it belongs to.
-    corner_is_far = np.zeros(len(decoded.mesh.vertices), np.bool_)
+    corner_is_far: BoolArray = np.zeros(len(decoded.mesh.vertices), np.bool_)
     n_vertices = found.samples.n_vertices
     corner_is_far[np.unique(decoded.mesh.triangles)[found.distance[:n_vertices] > content.lengths.max_error]] = True
-    is_far = corner_is_far[decoded.mesh.triangles].any(axis=1)
+    is_far: BoolArray = np.asarray(corner_is_far[decoded.mesh.triangles].any(axis=1))
     is_far[far] = True
     remaining = np.setdiff1d(np.arange(len(target.grid.triangles) // 2), content.removed)
     removed = np.union1d(content.removed, remaining[np.flatnonzero(is_far) // 2])
@@ -157,25 +157,25 @@ def _with_moves(content: QpzContent, grid: Grid, moves: IntArray) -> QpzContent:
 
 
 def _remaining(content: QpzContent, grid: Grid) -> IntArray:
-    remains = np.ones(len(grid.triangles) // 2, np.bool_)
+    remains: BoolArray = np.ones(len(grid.triangles) // 2, np.bool_)
     remains[content.removed] = False
     return grid.triangles[np.repeat(remains, 2)]
 
 
 def _moves(content: QpzContent, atoms: FloatArray, target: Target, border: Vertices) -> IntArray:
-    """Steps (n_grid, 3) onto the surface's border.
+    """Find steps (n_grid, 3) onto the surface's border.
 
     Moved are border vertices that lie beyond it, and those that points too far from the grid are nearest to.
     """
     decoded = decode_surface(content, atoms, target.grid)
     triangles = _remaining(content, target.grid)
     moves = np.zeros((len(decoded.vertices), 3), np.int64)
-    where = border_vertices(triangles, len(decoded.vertices))
+    where: IntArray = border_vertices(triangles, len(decoded.vertices))
     if not len(where):
         return moves
     limit = content.lengths.max_error
     found = deviation(target.samples, decoded.mesh)
-    is_near_far_points = np.zeros(len(moves), np.bool_)
+    is_near_far_points: BoolArray = np.zeros(len(moves), np.bool_)
     is_near_far_points[triangles[np.unique(found.nearest[found.distance > limit])]] = True
     is_beyond = distance_to_mesh(decoded.vertices[where], target.surface) > _BEYOND * limit
     where = where[is_beyond | is_near_far_points[where]]

@@ -1,8 +1,8 @@
-"""The header of a `.qpz` file: fields of fixed size, texts, and counts as variable-length whole numbers.
+r"""The header of a `.qpz` file: fields of fixed size, texts, and counts as variable-length whole numbers.
 
 ::
 
-    magic        4 bytes  b"QPZ\\x1a"
+    magic        4 bytes  b"QPZ\x1a"
     version      1 byte   1
     reserved     1 byte   0
     digest       16 bytes BLAKE2b of all that follows
@@ -128,7 +128,7 @@ def _dictionary(reader: "_Fields") -> DictionaryReference:
         raise ReadError(f"the .qpz file names a dictionary of the unknown kind {number}")
     kind = DICTIONARY_KINDS[number]
     if kind != MODEL:
-        return DictionaryReference(kind)  # type: ignore[arg-type]
+        return DictionaryReference(kind)
     return DictionaryReference(MODEL, reader.text(), reader.take(32))
 
 

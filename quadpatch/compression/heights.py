@@ -24,6 +24,7 @@ _REACH = 0.75
 # A height that steps by more than this many lengths of a grid edge leaves one sheet of surface for another.
 _STEEPEST = 3.0
 _BALANCE_ROUNDS = 2
+_MOST_SAMPLES = 200_000
 # A balanced height moves at most by this share of a cell's side.
 _MOST_BALANCE = 0.5
 
@@ -111,7 +112,7 @@ def _is_at_step(grid: Grid, heights: FloatArray, known: BoolArray) -> BoolArray:
 def _balanced(grid: Grid, surface: TriangleMesh, heights: FloatArray, known: BoolArray) -> FloatArray:
     """Move heights by the mean of how far the surface's vertices lie above the grid around."""
     used = np.unique(surface.triangles)
-    samples = surface.vertices[used]
+    samples = surface.vertices[used[:: 1 + len(used) // _MOST_SAMPLES]]
     edge = np.linalg.norm(grid.points[grid.triangles[:, 0]] - grid.points[grid.triangles[:, 1]], axis=1)
     limit = _MOST_BALANCE * float(edge.mean())
     for _ in range(_BALANCE_ROUNDS):
@@ -133,4 +134,4 @@ def _unit_triangle_normals(mesh: TriangleMesh) -> FloatArray:
     a, b, c = (mesh.vertices[mesh.triangles[:, corner]] for corner in range(3))
     normal = np.cross(b - a, c - a)
     length = np.linalg.norm(normal, axis=1, keepdims=True)
-    return np.divide(normal, length, out=np.zeros_like(normal), where=length > 0)
+    return np.asarray(np.divide(normal, length, out=np.zeros_like(normal), where=length > 0))

@@ -12,8 +12,8 @@ import numpy as np
 from quadpatch.compression.content import KeptVertices, QpzContent
 from quadpatch.compression.decoded_surface import PIECE_STEP, DecodedSurface
 from quadpatch.compression.lattice import from_lattice, to_lattice
-from quadpatch.compression.surface_fit import barycentric
 from quadpatch.compression.subdivision import grid_normals
+from quadpatch.compression.surface_fit import barycentric
 from quadpatch.mesh.distance import project
 from quadpatch.types import FloatArray, IntArray, TriangleMesh, Triangles, Vertices
 
@@ -27,14 +27,16 @@ _ROUNDING = 1e-9
 
 
 def parts_of_cell(decoded: DecodedSurface, max_error: float) -> int:
-    """Steps of column and row within a cell."""
+    """Choose the steps of column and row within a cell."""
     corners = decoded.vertices[decoded.grid.triangles]
     edge = np.linalg.norm(corners - np.roll(corners, -1, axis=1), axis=2).max(axis=1)
     wanted = np.percentile(edge, _MOST_CELLS) / (2.0 * _ALONG_SURFACE * max_error)
     return int(np.clip(np.ceil(wanted), 1, MAX_PARTS))
 
 
-def keep_vertices(vertices: Vertices, triangles: Triangles, content: QpzContent, decoded: DecodedSurface, parts: int) -> KeptVertices:
+def keep_vertices(
+    vertices: Vertices, triangles: Triangles, content: QpzContent, decoded: DecodedSurface, parts: int
+) -> KeptVertices:
     """Find every vertex on the decoded surface.
 
     Parameters

@@ -42,9 +42,8 @@ def places_of(differences: IntArray, predictors: list[tuple[int, int, int]]) -> 
     """
     places: list[list[int]] = []
     for (p, q, r), difference in zip(predictors, differences.tolist(), strict=True):
-        if p < 0:
-            place = difference
-        else:
+        place = difference
+        if p >= 0:
             place = [places[p][i] + places[q][i] - places[r][i] + difference[i] for i in range(3)]
         if max(map(abs, place)) >= LARGEST:
             raise ReadError("a vertex lies beyond the lattice")

@@ -4,6 +4,8 @@ Every count is held against the limits of a mesh reader before memory is taken f
 can hold. Same content, same bytes.
 """
 
+from itertools import pairwise
+
 import numpy as np
 
 from quadpatch.compression.connectivity import KINDS, Walk, decode_polygons
@@ -116,7 +118,7 @@ def _write_walk(writer: IntWriter, walk: Walk) -> None:
 def _read_walk(reader: IntReader, counts: tuple[int, int, int, int], n_corners: int) -> Walk:
     """Read a walk over `counts[0]` polygons."""
     crossed, kinds, names = (reader.read(n, signed=False) for n in counts[1:])
-    if len(crossed) and int(crossed.max()) > 1 or len(kinds) and int(kinds.max()) >= KINDS:
+    if (len(crossed) and int(crossed.max()) > 1) or (len(kinds) and int(kinds.max()) >= KINDS):
         raise ReadError("the connectivity of the .qpz file is damaged")
     walk = Walk(crossed=crossed.tolist(), kinds=kinds.tolist(), names=names.tolist())
     decode_polygons(walk, counts[0], n_corners)
@@ -148,8 +150,7 @@ def _read_bands(reader: IntReader, shape: tuple[int, int]) -> IntArray:
 
 
 def _bands(n: int) -> list[tuple[int, int]]:
-    ends = [*(end for end in _BANDS if end < n), n]
-    return list(zip(ends[:-1], ends[1:], strict=True))
+    return list(pairwise([*(end for end in _BANDS if end < n), n]))
 
 
 def _read_embedded(reader: IntReader, counts: Counts) -> EmbeddedAtoms:

@@ -81,7 +81,7 @@ def subdivide(quads: Quads, n_vertices: int, levels: int) -> Subdivision:
 
 
 def grid_normals(vertices: Vertices, cells: Quads) -> FloatArray:
-    """Unit normals (n, 3) of grid vertices: the sum of the vector areas of their cells; z where there is none."""
+    """Sum the vector areas of the cells at each grid vertex: unit normals (n, 3), z where there is none."""
     area = np.cross(vertices[cells[:, 2]] - vertices[cells[:, 0]], vertices[cells[:, 3]] - vertices[cells[:, 1]])
     total = np.stack(
         [np.bincount(cells.ravel(), np.repeat(area[:, axis], 4), len(vertices)) for axis in range(3)], axis=1
@@ -147,7 +147,7 @@ def _vertex_points(n: int, cells: Quads, edges: IntArray, is_inner: BoolArray, p
     along = _rows(np.concatenate([border[:, 0], border[:, 1]]), np.concatenate([border[:, 1], border[:, 0]]), (n, n))
     keeps = np.where(inside, (valence - 3.0) / valence, np.where(on_curve, _BORDER_WEIGHT, 1.0))
     summed = _scaled(faces @ face_points, inside / valence) + _scaled(spokes @ midpoints, 2.0 * inside / valence)
-    return summed + _scaled(along, (1.0 - _BORDER_WEIGHT) * on_curve) + sp.diags_array(keeps)
+    return sp.csr_array(summed + _scaled(along, (1.0 - _BORDER_WEIGHT) * on_curve) + sp.diags_array(keeps))
 
 
 def _rows(row: IntArray, column: IntArray, shape: tuple[int, int]) -> Matrix:

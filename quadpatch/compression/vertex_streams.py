@@ -112,11 +112,11 @@ def earlier_neighbours(triangles: Triangles, n_vertices: int) -> IntArray:
 
 
 def _follows(patch: IntArray, parent: IntArray) -> BoolArray:
-    return (parent >= 0) & (patch == patch[np.maximum(parent, 0)])
+    return np.asarray((parent >= 0) & (patch == patch[np.maximum(parent, 0)]))
 
 
 def _references(kept: KeptVertices, parent: IntArray, follows: BoolArray, size: tuple[int, int]) -> IntArray:
-    """What each place is written as a difference from: the neighbour's place, else the middle of the patch."""
+    """Find what each place is written as a difference from: the neighbour's place, else the middle of the patch."""
     n_patches, span = size
     middle = np.array([span // 2, span // 2, 0])
     alone = np.where((kept.patch < n_patches)[:, np.newaxis], middle, 0)

@@ -68,7 +68,9 @@ def encode_file(
         If the output can't be written.
     """
     if options is None:
-        raise OptionError("max_error must be given: the largest distance that the decoded surface may have, in mesh units")
+        raise OptionError(
+            "max_error must be given: the largest distance that the decoded surface may have, in mesh units"
+        )
     if output.suffix.lower() != SUFFIX and not is_stream(output):
         raise FormatError(f"an encoded mesh is written as {SUFFIX}; got {output.name}")
     stages = Stages(harmless(progress))
@@ -163,7 +165,11 @@ def _proved(
     return {
         **measures,
         "bytes": len(encoding.data),
-        "max_error": {"promised": options.max_error, "true_to_decoded": forward.largest, "decoded_to_true": backward.largest},
+        "max_error": {
+            "promised": options.max_error,
+            "true_to_decoded": forward.largest,
+            "decoded_to_true": backward.largest,
+        },
         "rms_error": {"true_to_decoded": forward.rms, "decoded_to_true": backward.rms},
         "psnr": {"true_to_decoded": psnr(length, forward.rms), "decoded_to_true": psnr(length, backward.rms)},
         "sample_spacing": max(forward.samples.spacing, backward.samples.spacing),
