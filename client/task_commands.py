@@ -123,7 +123,7 @@ def denoise(  # noqa: PLR0913 - one parameter per option of the command line
     """Take noise from the vertices of a scan; their order, triangles and attributes stay."""
     screen = Screen(quiet)
     with connected(screen, url, api_key) as client:
-        box = None if region is None else {"min": list(region[:3]), "max": list(region[3:])}
+        box = None if region is None else {"kind": "box", "min": list(region[:3]), "max": list(region[3:])}
         given = {"noise": noise, "max_shift": max_shift, "region": box}
         options = {name: value for name, value in given.items() if value is not None}
         rest = {"task": "denoise", "denoise": options, "seed": seed, "label": label}

@@ -5,7 +5,7 @@ Tested in `tests/service/routes/test_tasks.py`.
 
 from collections.abc import Callable, Mapping
 
-from jobkit.schema import Denoising, JobSpec, MissingAsNan, MissingByProperty, Task
+from jobkit.schema import Denoising, JobSpec, MissingAsNan, MissingByProperty, RegionBox, RegionByProperty, Task
 
 
 def summary_of(spec: JobSpec) -> str:
@@ -28,9 +28,13 @@ def _denoising(spec: JobSpec) -> str:
     options = spec.denoise or Denoising()
     noise = "noise that is estimated" if options.noise is None else f"noise of {options.noise:g}"
     bound = "by no more than that noise allows" if options.max_shift is None else f"by {options.max_shift:g} at most"
-    where = "" if options.region is None else " in the region"
+    where = "" if options.region is None else _region(options.region)
     source = "" if options.reference is None else f", as learned from mesh {options.reference[:12]}"
     return f"take {noise} from the vertices{where}, moving each {bound}{source}"
+
+
+def _region(region: RegionBox | RegionByProperty) -> str:
+    return " in the box" if isinstance(region, RegionBox) else f" that the property {region.name} marks"
 
 
 def _encoding(spec: JobSpec) -> str:

@@ -45,7 +45,7 @@ RETRY_AFTER_S = "2"
 # A body of a megabyte may hold a hundred thousand wrong fields; its sender corrects some and tries again.
 MOST_FIELD_ERRORS = 50
 # Fields of a spec that hold one of several models, told apart by a tag.
-_UNIONS = (("method",), ("restore", "missing"))
+_UNIONS = (("method",), ("restore", "missing"), ("denoise", "region"))
 
 
 class ProblemError(Exception):

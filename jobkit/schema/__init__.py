@@ -69,6 +69,8 @@ from jobkit.schema.tasks import (
     MissingByIndex,
     MissingByProperty,
     Region,
+    RegionBox,
+    RegionByProperty,
     Restoring,
 )
 from jobkit.schema.webhooks import (
@@ -166,6 +168,8 @@ __all__ = [
     "Problem",
     "Recipe",
     "Region",
+    "RegionBox",
+    "RegionByProperty",
     "RepairSpec",
     "Request",
     "ResolvedModel",

@@ -8,6 +8,7 @@ from jobkit.schema.base import WHOLE, MeshId, Request
 
 VertexIndex = Annotated[int, Field(ge=0, le=2**31 - 1), WHOLE]
 VertexIndices = Annotated[list[VertexIndex], Field(min_length=1, max_length=100_000)]
+PropertyName = Annotated[str, Field(pattern=r"^[\x21-\x7e]{1,64}$")]
 Coordinate = Annotated[float, Field(ge=-1e18, le=1e18)]
 Corner = Annotated[list[Coordinate], Field(min_length=3, max_length=3)]
 
@@ -22,10 +23,8 @@ class MissingByProperty(Request):
     """Missing are the vertices that a vertex property of a PLY file marks."""
 
     kind: Literal["property"] = Field(description="A property marks them.", examples=["property"])
-    name: str = Field(
-        pattern=r"^[\x21-\x7e]{1,64}$",
-        description="Name of the property; a vertex is missing where it is not 0.",
-        examples=["missing"],
+    name: PropertyName = Field(
+        description="Name of the property; a vertex is missing where it is not 0.", examples=["missing"]
     )
 
 
@@ -47,9 +46,10 @@ class Restoring(Request):
     )
 
 
-class Region(Request):
-    """A box along the axes, in mesh units."""
+class RegionBox(Request):
+    """The vertices in a box along the axes, in mesh units; its sides belong to it."""
 
+    kind: Literal["box"] = Field(description="A box.", examples=["box"])
     min: Corner = Field(description="Smallest coordinates.", examples=[[-1.0, -1.0, 0.0]])
     max: Corner = Field(description="Largest coordinates.", examples=[[1.0, 1.0, 2.0]])
 
@@ -58,6 +58,18 @@ class Region(Request):
         if any(low > high for low, high in zip(self.min, self.max, strict=True)):
             raise ValueError("min lies above max along an axis")
         return self
+
+
+class RegionByProperty(Request):
+    """The vertices that a vertex property of a PLY file marks."""
+
+    kind: Literal["property"] = Field(description="A property marks them.", examples=["property"])
+    name: PropertyName = Field(
+        description="Name of the property; a vertex belongs to the region where it is not 0.", examples=["rough"]
+    )
+
+
+Region = Annotated[RegionBox | RegionByProperty, Field(discriminator="kind")]
 
 
 class Denoising(Request):
@@ -77,7 +89,11 @@ class Denoising(Request):
         description="No vertex is moved farther than this, in mesh units; null: a bound that follows from the noise.",
         examples=[0.2],
     )
-    region: Region | None = Field(default=None, description="Vertices outside of this box stay; null: all may move.")
+    region: Region | None = Field(
+        default=None,
+        description="Vertices outside of it stay; null: all may move.",
+        examples=[{"kind": "box", "min": [-1.0, -1.0, 0.0], "max": [1.0, 1.0, 2.0]}],
+    )
     reference: MeshId | None = Field(
         default=None,
         description="Id of a clean scan of a similar object, uploaded like any mesh: the dictionary is learned from "

@@ -94,7 +94,7 @@ def test_denoise_uploads_its_reference_and_sends_its_bounds(
     assert sent_spec(server)["denoise"] == {
         "noise": 0.1,
         "max_shift": 0.25,
-        "region": {"min": [0.0, 0.0, -1.0], "max": [5.0, 5.0, 1.0]},
+        "region": {"kind": "box", "min": [0.0, 0.0, -1.0], "max": [5.0, 5.0, 1.0]},
         "reference": hashlib.sha256(b"clean").hexdigest(),
     }
     assert sent_spec(server)["mesh_id"] == hashlib.sha256(b"ply").hexdigest()

@@ -16,6 +16,7 @@ NAN: dict[str, Any] = {"task": "restore", "restore": {"missing": {"kind": "nan"}
 DENOISE: dict[str, Any] = {"task": "denoise"}
 SELF: dict[str, Any] = {"method": "dictionary", "model": "self"}
 DECODE: dict[str, Any] = {"task": "decode"}
+BOX: dict[str, Any] = {"kind": "box", "min": [0, 0, 0], "max": [1, 1, 1]}
 NAMED = {"model": "mine@3"}
 ENCODE: dict[str, Any] = {"task": "encode", "encode": {"max_error": 0.01}, "method": SELF}
 
@@ -175,8 +176,13 @@ def test_a_reference_can_be_deleted_only_after_its_job(
         ),
         (DENOISE, "take noise that is estimated from the vertices, moving each by no more than that noise allows"),
         (
-            {**DENOISE, "denoise": {"noise": 0.1, "max_shift": 0.25, "region": {"min": [0, 0, 0], "max": [1, 1, 1]}}},
-            "take noise of 0.1 from the vertices in the region, moving each by 0.25 at most",
+            {**DENOISE, "denoise": {"noise": 0.1, "max_shift": 0.25, "region": BOX}},
+            "take noise of 0.1 from the vertices in the box, moving each by 0.25 at most",
+        ),
+        (
+            {**DENOISE, "denoise": {"noise": 0.1, "region": {"kind": "property", "name": "rough"}}},
+            "take noise of 0.1 from the vertices that the property rough marks, "
+            "moving each by no more than that noise allows",
         ),
         (ENCODE, "encode the surface as a regular mesh, no farther than 0.01 from the scan"),
         (
