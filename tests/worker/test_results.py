@@ -1,3 +1,5 @@
+"""Also tests `worker.result_facts`."""
+
 import json
 from dataclasses import replace
 from pathlib import Path
@@ -63,6 +65,18 @@ def test_files_lie_where_only_this_attempt_writes(tmp_path: Path, store: ObjectS
         assert store.size(result_key(ATTEMPT.job_id, 2, file.name)) == file.size_bytes
     assert (result.format, result.new_vertices, result.new_triangles, result.seconds) == ("stl", 3, 8, 1.5)
     assert result.warnings == []
+
+
+def test_the_result_of_a_task_tells_what_it_counted_and_nothing_of_holes(tmp_path: Path, store: ObjectStore) -> None:
+    error = {"promised": 0.3, "true_to_decoded": 0.2, "decoded_to_true": 0.25}
+    report = {"task": "encode", "max_error": error, "warnings": ["folded"], "counts": {"found": 9}}
+    (tmp_path / "report.json").write_text(json.dumps(report))
+    (tmp_path / "encoded.qpz").write_bytes(b"qpz")
+    request = replace(REQUEST, task="encode", output="encoded.qpz")
+    result = store_result(tmp_path, request, ATTEMPT, store, 1.5)
+    assert [(file.role, file.name) for file in result.files] == [("result", "encoded.qpz"), ("report", "report.json")]
+    assert (result.format, result.max_error, result.moved_vertices, result.warnings) == ("qpz", 0.25, None, ["folded"])
+    assert result.holes.found == 0
 
 
 def test_a_result_without_a_picture_has_two_files(tmp_path: Path, store: ObjectStore) -> None:
