@@ -68,6 +68,13 @@ def vertices_in_patches(vertices: Vertices, vertex_normals: FloatArray, patches:
     return _joined(found)
 
 
+def merged(one: Connectivity, other: Connectivity, n_patches: int) -> Connectivity:
+    """Merge the connectivity of the same vertices in two sets of patches, of which the first has `n_patches`."""
+    both = _joined([one, Connectivity(other.vertex, other.patch + n_patches, other.row, other.column)])
+    order = np.lexsort((both.patch, both.vertex))
+    return Connectivity(both.vertex[order], both.patch[order], both.row[order], both.column[order])
+
+
 def bilinear(maps: FloatArray, connectivity: Connectivity, seen: BoolArray | None = None) -> FloatArray:
     """Read maps at the places of a connectivity, interpolating between bin centres.
 

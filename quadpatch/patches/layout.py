@@ -1,6 +1,6 @@
 """From a filled mesh to its patches: base surface, quad mesh, frames, seeds, height maps (section 3 of the paper)."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -47,9 +47,28 @@ def patchify(filled: FilledMesh, base_surface: TriangleMesh, seeds: Seeds, scale
 
     A bin where the base surface can't be seen is not known: there is no detail to be coded.
     """
-    surface = sample_height_maps(
-        RayScene(filled.mesh), filled.mesh, filled.invented_triangles, seeds, scale.length, scale.resolution
-    )
+    return sample_over_base(filled.mesh, filled.invented_triangles, base_surface, seeds, scale)
+
+
+def sample_over_base(
+    mesh: TriangleMesh, invented: BoolArray, base_surface: TriangleMesh, seeds: Seeds, scale: PatchScale
+) -> Sampled:
+    """Sample any mesh and its base surface in the patches at some seeds; see `patchify`.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+    invented : (n_triangles,) bool
+        True for the triangles of `mesh` that were not measured.
+    base_surface : TriangleMesh
+    seeds : Seeds
+    scale : PatchScale
+
+    Returns
+    -------
+    Sampled
+    """
+    surface = sample_height_maps(RayScene(mesh), mesh, invented, seeds, scale.length, scale.resolution)
     smooth = sample_height_maps(
         RayScene(base_surface),
         base_surface,
@@ -58,15 +77,7 @@ def patchify(filled: FilledMesh, base_surface: TriangleMesh, seeds: Seeds, scale
         scale.length,
         scale.resolution,
     )
-    both = Patches(
-        surface.origins,
-        surface.frames,
-        surface.length,
-        surface.heights,
-        surface.known & smooth.seen,
-        surface.seen,
-        surface.triangle,
-    )
+    both = replace(surface, known=surface.known & smooth.seen)
     return Sampled(both, np.where(smooth.seen, smooth.heights, surface.heights))
 
 
@@ -100,3 +111,18 @@ def pick_patches(patches: Patches, which: BoolArray) -> Patches:
         patches.seen[which],
         patches.triangle[which],
     )
+
+
+def together(one: Sampled, other: Sampled) -> Sampled:
+    """Put two sets of patches of one length and resolution behind each other."""
+    a, b = one.patches, other.patches
+    patches = Patches(
+        np.concatenate([a.origins, b.origins]),
+        np.concatenate([a.frames, b.frames]),
+        a.length,
+        np.concatenate([a.heights, b.heights]),
+        np.concatenate([a.known, b.known]),
+        np.concatenate([a.seen, b.seen]),
+        np.concatenate([a.triangle, b.triangle]),
+    )
+    return Sampled(patches, np.concatenate([one.base_heights, other.base_heights]))

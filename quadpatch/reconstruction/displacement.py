@@ -18,7 +18,7 @@ from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.mesh.harmonic import extend_harmonically
 from quadpatch.mesh.normals import vertex_normals
 from quadpatch.mesh.topology import directed_edges
-from quadpatch.patches.connectivity import bilinear, vertices_in_patches
+from quadpatch.patches.connectivity import Connectivity, bilinear, vertices_in_patches
 from quadpatch.types import FloatArray, IntArray, Patches
 
 
@@ -56,19 +56,36 @@ def displace(filled: FilledMesh, vertices: IntArray, patches: Patches, predicted
     """
     normals = vertex_normals(filled.mesh.vertices, filled.mesh.triangles)[vertices]
     seen = vertices_in_patches(filled.mesh.vertices[vertices], normals, patches)
-    along_z = bilinear(predicted - patches.heights, seen)
+    return mean_displacement(normals, seen, patches, bilinear(predicted - patches.heights, seen))
+
+
+def mean_displacement(normals: FloatArray, seen: Connectivity, patches: Patches, along_z: FloatArray) -> Displacement:
+    """Average over patches how far they would move the vertices that they see.
+
+    Parameters
+    ----------
+    normals : (n, 3) float64
+        Of the vertices.
+    seen : Connectivity
+        Of these vertices in the patches.
+    patches : Patches
+    along_z : (c,) float64
+        How far each pair's vertex lies off along the z of its patch, in mesh units.
+
+    Returns
+    -------
+    Displacement
+    """
+    n = len(normals)
     # A patch that sees the surface at a slant moves it far for a small error in height.
     facing = np.einsum("ij,ij->i", normals[seen.vertex], patches.frames[seen.patch, 2])
     weight = _window(patches, seen.row, seen.column) * np.maximum(facing, 0.0) ** 2
     vectors = along_z[:, None] * patches.frames[seen.patch, 2]
-    total = np.bincount(seen.vertex, weight, minlength=len(vertices))
-    safe = np.maximum(total, 1e-300)
-    mean = np.stack(
-        [np.bincount(seen.vertex, weight * vectors[:, k], minlength=len(vertices)) / safe for k in range(3)], axis=1
-    )
+    safe = np.maximum(np.bincount(seen.vertex, weight, minlength=n), 1e-300)
+    mean = np.stack([np.bincount(seen.vertex, weight * vectors[:, k], minlength=n) / safe for k in range(3)], axis=1)
     squared_deviation = ((vectors - mean[seen.vertex]) ** 2).sum(axis=1)
-    deviation = np.sqrt(np.bincount(seen.vertex, weight * squared_deviation, minlength=len(vertices)) / safe)
-    return Displacement(mean, deviation, np.bincount(seen.vertex, minlength=len(vertices)))
+    deviation = np.sqrt(np.bincount(seen.vertex, weight * squared_deviation, minlength=n) / safe)
+    return Displacement(mean, deviation, np.bincount(seen.vertex, minlength=n))
 
 
 def _window(patches: Patches, row: FloatArray, column: FloatArray) -> FloatArray:
