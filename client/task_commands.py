@@ -30,6 +30,7 @@ from client.options import (
 from client.outputs import check_stdout, is_stream
 from client.repairing import Task, format_of, repair
 from client.screen import Screen
+from jobkit.schema import RestorationBase
 
 _SUFFIX = ".qpz"
 ModelOption = Annotated[
@@ -53,6 +54,10 @@ def restore(  # noqa: PLR0913 - one parameter per option of the command line
             "are NaN, or those whose numbers a text or JSON file lists.",
         ),
     ],
+    base: Annotated[
+        RestorationBase,
+        typer.Option(help="What says where they lie: the triangles around them, or a Poisson surface as well."),
+    ] = "mesh",
     model: ModelOption = None,
     seed: SeedOption = 0,
     label: LabelOption = None,
@@ -70,7 +75,8 @@ def restore(  # noqa: PLR0913 - one parameter per option of the command line
     """Give missing vertices of a scan a position; all others keep their bits."""
     screen = Screen(quiet)
     with connected(screen, url, api_key) as client:
-        rest = {"task": "restore", "restore": {"missing": read_missing(missing)}, "seed": seed, "label": label}
+        options = {"missing": read_missing(missing), "base": base}
+        rest = {"task": "restore", "restore": options, "seed": seed, "label": label}
         rest["output"] = _output(output, format_, preview)
         choice = MethodChoice(model=model)
         task = Task(mesh, output, HoleChoice(), choice, rest, report, preview, None, timeout, overwrite, again)

@@ -112,6 +112,8 @@ def task_options(spec: JobSpec) -> dict[str, Any]:
     if spec.task == "denoise":
         denoising = spec.denoise or Denoising()
         options |= denoising.model_dump(exclude={"reference"}) | {"region": _region(denoising)}
+    if spec.restore is not None:
+        options["base"] = spec.restore.base
     if spec.encode is not None:
         options |= spec.encode.model_dump()
     return options

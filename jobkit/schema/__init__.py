@@ -71,6 +71,7 @@ from jobkit.schema.tasks import (
     Region,
     RegionBox,
     RegionByProperty,
+    RestorationBase,
     Restoring,
 )
 from jobkit.schema.webhooks import (
@@ -174,6 +175,7 @@ __all__ = [
     "Request",
     "ResolvedModel",
     "Response",
+    "RestorationBase",
     "Restoring",
     "ResultFile",
     "ResultFormat",

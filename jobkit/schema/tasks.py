@@ -35,6 +35,7 @@ class MissingByIndex(Request):
     indices: VertexIndices = Field(description="Numbers of vertices in the file, from 0.", examples=[[7, 19, 20]])
 
 
+RestorationBase = Literal["mesh", "poisson"]
 Missing = Annotated[MissingAsNan | MissingByProperty | MissingByIndex, Field(discriminator="kind")]
 
 
@@ -43,6 +44,12 @@ class Restoring(Request):
 
     missing: Missing = Field(
         description="Which vertices get a position; all others keep their bits.", examples=[{"kind": "nan"}]
+    )
+    base: RestorationBase = Field(
+        default="mesh",
+        description="What says where they lie: `mesh`, the triangles around them; `poisson`, a screened Poisson "
+        "surface of the measured vertices is tried as well, which takes longer.",
+        examples=["mesh"],
     )
 
 

@@ -4,6 +4,7 @@ import pytest
 
 import jobkit.schema
 import quadpatch.options
+import quadpatch.restoration.restore
 from jobkit.meshes import MeshSource
 from jobkit.models.resolution import PAPER_NORMALISATION
 from jobkit.schema import Fitting, JobSpec
@@ -11,11 +12,13 @@ from quadpatch.compression.encode import EncodeOptions
 from quadpatch.denoising.denoise import DenoiseOptions
 from quadpatch.inpainters.model_file import RECIPES
 from quadpatch.options import HoleOptions, HoleRule, NetworkOptions, PatchOptions, RepairOptions
+from quadpatch.restoration.restore import RestoreOptions
 from worker.engine.limits import EngineLimits
 from worker.spec import inspect_request, job_request, method_options, output_format, source_name, task_options
 
 MESH_ID = "0" * 64
 OPTIONS: dict[str, Any] = {
+    "restore": RestoreOptions,
     "denoise": DenoiseOptions,
     "encode": EncodeOptions,
 }
@@ -164,6 +167,8 @@ def test_every_option_of_a_task_reaches_the_method() -> None:
     options = {"noise": 0.1, "max_shift": 0.3, "region": {"kind": "box", **box}, "reference": "1" * 64}
     job = spec(task="denoise", method=method, denoise=options, seed=7)
     assert task_options(job) == {"noise": 0.1, "max_shift": 0.3, "region": box, "patches": patches, "seed": 7}
+    by_poisson = spec(task="restore", restore={"missing": {"kind": "nan"}, "base": "poisson"})
+    assert RestoreOptions.from_dict(task_options(by_poisson)) == RestoreOptions(base="poisson")
     by_property = spec(task="denoise", denoise={"region": {"kind": "property", "name": "rough"}})
     assert DenoiseOptions.from_dict(task_options(by_property)) == DenoiseOptions(region="rough")
     method["patches"]["overlap"] = None
@@ -171,6 +176,10 @@ def test_every_option_of_a_task_reaches_the_method() -> None:
     assert task_options(job) == {"max_error": 0.5, "keep_connectivity": True, "patches": patches, "seed": 0}
     for task, kind in OPTIONS.items():
         kind.from_dict(task_options(spec(task=task, **TASKS[task])))
+
+
+def test_the_bases_of_a_restoration_are_those_of_the_method() -> None:
+    assert get_args(jobkit.schema.RestorationBase) == get_args(quadpatch.restoration.restore.Base)
 
 
 def test_a_reference_lies_in_a_folder_of_its_own() -> None:

@@ -44,6 +44,7 @@ def test_a_task_without_a_method_has_its_own_default(task: str) -> None:
         {"task": "restore", "restore": {"missing": "nan"}},
         {"task": "restore", "restore": {"missing": {"kind": "nan", "name": "x"}}},
         {"task": "restore", "restore": {"missing": {"kind": "property"}}},
+        {"task": "restore", "restore": {"missing": {"kind": "nan"}, "base": "plane"}},
         {"task": "restore", "restore": {"missing": {"kind": "property", "name": "two words"}}},
         {"task": "restore", "restore": {"missing": {"kind": "indices", "indices": []}}},
         {"task": "restore", "restore": {"missing": {"kind": "indices", "indices": [-1]}}},
