@@ -28,7 +28,7 @@ from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Verti
 
 __all__ = ["Box", "DenoiseOptions", "Denoised", "PatchModel", "denoise"]
 
-# A normal error of more than four standard deviations is one vertex in 16,000.
+# An error of more than four standard deviations is one vertex in 16,000.
 SHIFT_PER_NOISE = 4.0
 # Bins along a patch of 7 mean edges: wider patches have fewer like them.
 RESOLUTION = 11
@@ -282,7 +282,8 @@ def _with_patches(
 
 def _bounded(mesh: TriangleMesh, moves: FloatArray, max_shift: float) -> tuple[FloatArray, BoolArray]:
     """Shorten moves (n, 3) so that vertices stay within the bound even where a file rounds them."""
-    limit = max(0.0, max_shift - _ROUNDING * float(np.abs(mesh.vertices).max(initial=0.0)))
+    largest = float(np.abs(mesh.vertices[mesh.triangles]).max(initial=0.0))
+    limit = max(0.0, max_shift - _ROUNDING * (max_shift + largest))
     shift = length(moves)
     at_bound = shift > limit
     factor = np.divide(limit, shift, out=np.ones_like(shift), where=at_bound)

@@ -19,7 +19,7 @@ from quadpatch.types import FloatArray, TriangleMesh
 # Orders p of the difference. One of 2 still sees the curvature of coarse meshes; beyond 5 nothing is gained.
 _ORDERS = (2, 3, 4, 5)
 # Shares of the vertices whose residuals stay below the quantile that is compared.
-_QUANTILES = (0.25, 0.5)
+_QUANTILES = (0.4,)
 # Normals of the noisy mesh itself point anywhere.
 _NORMAL_ITERATIONS = 3
 # A residual below this share of the coordinates is their rounding.

@@ -27,6 +27,9 @@ from quadpatch.types import FloatArray, IntArray
 _SLOPE_WEIGHT = 0.3
 # Length of the vector b, in standard deviations of the noise: short, since filters of normals switch between answers.
 PROBE_SHARE = 0.05
+# The noise counts as so much stronger. One that is taken for too weak keeps some of the noisy vertices, which harms
+# creases and flat faces more than a little smoothing harms detail.
+_CAUTION = 1.1
 # Weight of the bound on the sum, to the risk itself.
 _BOUND = 1e3
 _RIDGE = 1e-9
@@ -57,7 +60,7 @@ def least_risk_weights(
     along = np.sqrt(_SLOPE_WEIGHT)
     both, answers, pushes = (
         np.concatenate([values, along * (values[edges[:, 0]] - values[edges[:, 1]])])
-        for values in (shifts / noise, responses, probe)
+        for values in (shifts / (_CAUTION * noise), responses, probe)
     )
     gram, trace = both.T @ both, pushes @ answers
     count = len(gram)
