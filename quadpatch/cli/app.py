@@ -6,6 +6,7 @@ option is at fault (`code: message` on standard error), 2 wrong usage.
 
 import typer
 
+from quadpatch.cli.denoise import denoise
 from quadpatch.cli.encode import decode, encode
 from quadpatch.cli.fill import fill
 from quadpatch.cli.holes import holes
@@ -13,5 +14,5 @@ from quadpatch.cli.holes import holes
 app = typer.Typer(
     help="Repair holes in 3D scans, and put their patches to other uses.", no_args_is_help=True, add_completion=False
 )
-for command in (fill, holes, encode, decode):
+for command in (fill, holes, denoise, encode, decode):
     app.command()(command)

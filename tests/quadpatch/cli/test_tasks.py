@@ -1,6 +1,6 @@
 """What the commands of all tasks do alike, and each of them from file to file.
 
-Also tests `quadpatch.cli.encode`.
+Also tests `quadpatch.cli.encode` and `quadpatch.cli.denoise`.
 """
 
 import json
@@ -17,6 +17,7 @@ from quadpatch.cli.tasks import Files, given, run_task, vertices
 from quadpatch.errors import StageError
 from quadpatch.formats.moving import Moved, write_moved
 from quadpatch.formats.reading import read_scan
+from quadpatch.formats.vertex_properties import vertex_property
 from quadpatch.tasks.result import TaskResult
 from quadpatch.types import Progress, TriangleMesh
 from tests.quadpatch.shapes import bumpy_plate, sphere, write_ply
@@ -135,6 +136,60 @@ def test_what_is_encoded_is_decoded_within_the_error(plate: Path, tmp_path: Path
         assert np.linalg.norm(shift, axis=1).max() <= 0.02
 
 
+def noisy(path: Path, seed: int = 0) -> Path:
+    plate = bumpy_plate(30, 2.0)
+    noise = np.random.default_rng(seed).normal(scale=0.008, size=len(plate.vertices))
+    return write_ply(path, TriangleMesh(plate.vertices + noise[:, np.newaxis] * [0.0, 0.0, 1.0], plate.triangles))
+
+
+def test_noise_is_taken_within_the_bound(tmp_path: Path) -> None:
+    source, output, report = noisy(tmp_path / "in.ply"), tmp_path / "out.ply", tmp_path / "out.json"
+    flags: list[str | Path] = ["--model", "smooth", "--noise", "0.008", "--max-shift", "0.02", "--report", report]
+    done = call("denoise", source, "-o", output, *flags, "--preview", tmp_path / "out.png")
+    assert done.exit_code == 0, done.output
+    before, after = read_scan(source), read_scan(output)
+    clean = bumpy_plate(30, 2.0).vertices
+    assert np.linalg.norm(after.vertices - before.vertices, axis=1).max() <= 0.02
+    assert np.abs(after.vertices - clean)[:, 2].mean() < 0.7 * np.abs(before.vertices - clean)[:, 2].mean()
+    shift = vertex_property(after, "shift")
+    assert shift == pytest.approx(np.linalg.norm(after.vertices - before.vertices, axis=1), abs=1e-6)
+    content = json.loads(report.read_text())
+    assert content["options"]["max_shift"] == 0.02
+    told = " ".join(done.stderr.split())
+    assert told.startswith(f"{content['moved_vertices']} vertices were moved, 95 of 100 of them by no more than ")
+    assert "; the noise is 0.008 mesh units (given). " in told
+    assert (tmp_path / "out.png").exists()
+
+
+def test_vertices_outside_the_region_stay(tmp_path: Path) -> None:
+    source, output = noisy(tmp_path / "in.ply"), tmp_path / "out.ply"
+    box = ["--region", "-0.5", "-0.5", "-1", "0.5", "0.5", "1"]
+    done = call("denoise", source, "-o", output, "--model", "smooth", *box)
+    assert done.exit_code == 0, done.output
+    before, after = read_scan(source), read_scan(output)
+    inside = np.asarray((np.abs(before.vertices) <= [0.5, 0.5, 1.0]).all(axis=1))
+    assert after.vertices[~inside].tobytes() == before.vertices[~inside].tobytes()
+    assert (after.vertices[inside] != before.vertices[inside]).any()
+    write_moved(tmp_path / "marked.ply", before, Moved(before.vertices, {"rough": inside}))
+    marked = ["--region-property", "rough"]
+    done = call("denoise", tmp_path / "marked.ply", "-o", tmp_path / "again.ply", "--model", "smooth", *marked)
+    assert done.exit_code == 0, done.output
+    again = read_scan(tmp_path / "again.ply")
+    assert again.vertices[~inside].tobytes() == before.vertices[~inside].tobytes()
+    assert call("denoise", source, "-o", output, *box, *marked).stderr.startswith("invalid_option: --region and ")
+
+
+def test_a_clean_scan_is_a_reference(tmp_path: Path) -> None:
+    clean = write_ply(tmp_path / "clean.ply", bumpy_plate(30, 2.0))
+    report = tmp_path / "out.json"
+    files: list[str | Path] = [noisy(tmp_path / "in.ply"), "-o", tmp_path / "out.ply", "--report", report]
+    done = call("denoise", *files, "--reference", clean)
+    assert done.exit_code == 0, done.output
+    assert json.loads(report.read_text())["model"]["name"] == "reference"
+    refused = call("denoise", files[0], "-o", clean, "--reference", clean)
+    assert refused.stderr.startswith("invalid_option: ")
+
+
 @pytest.mark.parametrize(
     ("arguments", "code"),
     [
@@ -143,6 +198,12 @@ def test_what_is_encoded_is_decoded_within_the_error(plate: Path, tmp_path: Path
         (["encode", "PLATE", "-o", "out.qpz", "--max-error", "0.01", "--resolution", "1"], "invalid_option"),
         (["encode", "PLATE", "-o", "out.qpz", "--max-error", "0.01", "--model", "no-such"], "unusable_model"),
         (["encode", "PLATE", "-o", "PLATE", "--max-error", "0.01"], "invalid_option"),
+        (["denoise", "PLATE", "-o", "out.ply", "--noise", "-1"], "invalid_option"),
+        (["denoise", "PLATE", "-o", "out.ply", "--max-shift", "nan"], "invalid_option"),
+        (["denoise", "PLATE", "-o", "out.ply", "--region", "1", "1", "1", "0", "0", "0"], "invalid_option"),
+        (["denoise", "PLATE", "-o", "out.ply", "--region-property", "rough"], "invalid_option"),
+        (["denoise", "PLATE", "-o", "out.ply", "--reference", "missing.ply"], "unreadable_mesh"),
+        (["denoise", "PLATE", "-o", "PLATE"], "invalid_option"),
         (["decode", "PLATE", "-o", "out.ply"], "unreadable_mesh"),
         (["decode", "missing.qpz", "-o", "out.ply"], "unreadable_mesh"),
         (["decode", "missing.qpz", "-o", "out.docx"], "unsupported_format"),
@@ -160,6 +221,6 @@ def test_errors_of_tasks_are_one_line_of_code_and_message(
     assert re.fullmatch(rf"{code}: .+", line)
 
 
-@pytest.mark.parametrize("arguments", [["encode", "a.ply", "-o", "a.qpz"], ["decode", "a.qpz"]])
+@pytest.mark.parametrize("arguments", [["encode", "a.ply", "-o", "a.qpz"], ["decode", "a.qpz"], ["denoise", "a.ply"]])
 def test_wrong_usage_of_a_task_has_its_own_exit_code(arguments: list[str]) -> None:
     assert call(*arguments).exit_code == 2
