@@ -8,9 +8,6 @@ from typing import Any
 
 from jobkit.schema import HoleCounts
 
-# Of reports, as they are named in results; a task's report has those that it counts.
-_MEASURES = ("restored_vertices", "moved_vertices", "shift_95")
-
 
 def facts_of_fill(report: Mapping[str, Any]) -> dict[str, Any]:
     """Return the fields of `JobResult` that the report of a repair tells: verdicts, what was added, warnings."""
@@ -25,9 +22,13 @@ def facts_of_fill(report: Mapping[str, Any]) -> dict[str, Any]:
 
 def facts_of_task(report: Mapping[str, Any]) -> dict[str, Any]:
     """Return the same of a report of another task: what it counts and measures, lengths in mesh units."""
-    measures = {name: report[name] for name in _MEASURES if report.get(name) is not None}
-    warnings = [str(text) for text in report["warnings"]]
-    return {**measures, "max_error": _largest_error(report), "warnings": warnings}
+    return {
+        "restored_vertices": report.get("vertices", {}).get("restored"),
+        "moved_vertices": report.get("moved_vertices"),
+        "shift_95": report.get("shift_95"),
+        "max_error": _largest_error(report),
+        "warnings": [str(text) for text in report["warnings"]],
+    }
 
 
 def _largest_error(report: Mapping[str, Any]) -> float | None:

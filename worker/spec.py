@@ -107,7 +107,7 @@ def method_options(spec: JobSpec, time_s: float) -> dict[str, Any]:
 def task_options(spec: JobSpec) -> dict[str, Any]:
     """Return the options of another task as `from_dict` of its options reads them; lengths are in mesh units."""
     options: dict[str, Any] = {"seed": spec.seed}
-    if isinstance(spec.method, DictionaryMethod):
+    if not isinstance(spec.method, SmoothMethod):
         options["patches"] = spec.method.patches.model_dump()
     if spec.task == "denoise":
         denoising = spec.denoise or Denoising()

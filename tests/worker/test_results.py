@@ -13,6 +13,7 @@ from jobkit.storage.base import ObjectStore, StoredObject, result_key
 from worker.engine.limits import EngineLimits
 from worker.engine.request import EngineRequest
 from worker.failures import Failure
+from worker.result_facts import facts_of_task
 from worker.results import drop_result, missing_pictures, note_lost_pictures, store_result
 
 ATTEMPT = Attempt("job_01jd7z3v5qk8m2x4c6b8n0a9de", 2)
@@ -77,6 +78,18 @@ def test_the_result_of_a_task_tells_what_it_counted_and_nothing_of_holes(tmp_pat
     assert [(file.role, file.name) for file in result.files] == [("result", "encoded.qpz"), ("report", "report.json")]
     assert (result.format, result.max_error, result.moved_vertices, result.warnings) == ("qpz", 0.25, None, ["folded"])
     assert result.holes.found == 0
+
+
+def test_the_numbers_of_a_report_are_those_of_the_result() -> None:
+    restored = facts_of_task({"vertices": {"missing": 9, "restored": 7, "left": 2}, "warnings": ["2 are left"]})
+    assert (restored["restored_vertices"], restored["moved_vertices"], restored["warnings"]) == (
+        7,
+        None,
+        ["2 are left"],
+    )
+    denoised = facts_of_task({"moved_vertices": 5, "shift_95": 0.5, "warnings": []})
+    assert (denoised["moved_vertices"], denoised["shift_95"], denoised["max_error"]) == (5, 0.5, None)
+    assert facts_of_task({"max_error": 0.25, "warnings": []})["max_error"] == 0.25
 
 
 def test_a_result_without_a_picture_has_two_files(tmp_path: Path, store: ObjectStore) -> None:
