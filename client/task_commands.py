@@ -35,7 +35,11 @@ from jobkit.schema import RestorationBase
 _SUFFIX = ".qpz"
 ModelOption = Annotated[
     str | None,
-    typer.Option(help="name@version, an alias, or 'self': learned from the mesh itself.", show_default="of the task"),
+    typer.Option(
+        help="name@version, an alias, or 'self': learned from the mesh itself; 'smooth' restores and denoises by "
+        "geometry alone.",
+        show_default="self",
+    ),
 ]
 EncodedArgument = Annotated[
     Path, typer.Argument(metavar="MESH", help="A .qpz file.", exists=True, dir_okay=False, readable=True)
@@ -78,7 +82,7 @@ def restore(  # noqa: PLR0913 - one parameter per option of the command line
         options = {"missing": read_missing(missing), "base": base}
         rest = {"task": "restore", "restore": options, "seed": seed, "label": label}
         rest["output"] = _output(output, format_, preview)
-        choice = MethodChoice(model=model)
+        choice = _method(model)
         task = Task(mesh, output, HoleChoice(), choice, rest, report, preview, None, timeout, overwrite, again)
         check_stdout([output, report, preview], as_json)
         job = repair(client, screen, task)
@@ -134,7 +138,7 @@ def denoise(  # noqa: PLR0913 - one parameter per option of the command line
         options = {name: value for name, value in given.items() if value is not None}
         rest = {"task": "denoise", "denoise": options, "seed": seed, "label": label}
         rest["output"] = _output(output, format_, preview)
-        choice = MethodChoice(model=model)
+        choice = _method(model)
         task = Task(
             mesh, output, HoleChoice(), choice, rest, report, preview, None, timeout, overwrite, again, reference
         )
@@ -174,7 +178,7 @@ def encode(  # noqa: PLR0913 - one parameter per option of the command line
         options = {"max_error": max_error, "keep_connectivity": keep_connectivity}
         rest = {"task": "encode", "encode": options, "seed": seed, "label": label}
         rest["output"] = {"preview": preview is not None}
-        choice = MethodChoice(model=model)
+        choice = _method(model)
         task = Task(mesh, output, HoleChoice(), choice, rest, report, preview, None, timeout, False, again)
         check_stdout([output, report, preview], as_json)
         job = repair(client, screen, task)
@@ -202,12 +206,17 @@ def decode(  # noqa: PLR0913 - one parameter per option of the command line
     screen = Screen(quiet)
     with connected(screen, url, api_key) as client:
         rest = {"task": "decode", "label": label, "output": _output(output, format_, preview)}
-        choice = MethodChoice(model=model)
+        choice = _method(model)
         task = Task(mesh, output, HoleChoice(), choice, rest, report, preview, None, timeout, False, again)
         check_stdout([output, report, preview], as_json)
         job = repair(client, screen, task)
     if as_json:
         print_json(job)
+
+
+def _method(model: str | None) -> MethodChoice:
+    """Return the method that a model means: `smooth` is geometry alone."""
+    return MethodChoice("smooth") if model == "smooth" else MethodChoice(model=model)
 
 
 def _output(output: Path, format_: Any, preview: Path | None) -> dict[str, Any]:

@@ -38,7 +38,7 @@ def _restored(result: JobResult, _unit: str) -> str:
 
 def _denoised(result: JobResult, unit: str) -> str:
     moved = "the vertices were moved" if result.moved_vertices is None else _moved(result.moved_vertices)
-    bound = "" if result.shift_95 is None else f", 95 of 100 by no more than {result.shift_95:.3g} {unit}"
+    bound = "" if result.shift_95 is None else f", 95 of 100 of them by no more than {result.shift_95:.3g} {unit}"
     return f"{moved}{bound}"
 
 

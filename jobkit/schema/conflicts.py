@@ -6,12 +6,22 @@ are still read.
 Tested in `tests/jobkit/schema/test_tasks.py`.
 """
 
-from jobkit.schema.methods import SELF, DictionaryMethod
+from collections.abc import Mapping
+
+from jobkit.schema.methods import SELF, CnnMethod, DictionaryMethod
 from jobkit.schema.spec import HoleSelection, RepairSpec
 from shared_rules.hole_selection import MODEL_FILLS_ONLY, names_fills
+from shared_rules.tasks import Task
 
 # The field of a spec that holds the options of a task; `fill` has fields of its own, `decode` has no options.
 OPTIONS_OF_TASKS = {"restore": "restore", "denoise": "denoise", "encode": "encode"}
+# The methods that a task takes.
+_METHODS: Mapping[Task, tuple[str, ...]] = {
+    "restore": ("dictionary", "cnn", "smooth"),
+    "denoise": ("dictionary", "smooth"),
+    "encode": ("dictionary",),
+    "decode": ("dictionary",),
+}
 # What such a task can't do without.
 _REQUIRED = {"restore": "restore.missing", "encode": "encode.max_error"}
 
@@ -65,15 +75,22 @@ def _missing_option(spec: RepairSpec) -> str | None:
 
 
 def _conflict_of_method(spec: RepairSpec) -> str | None:
-    if not isinstance(spec.method, DictionaryMethod):
-        return f"the task {spec.task} goes by a dictionary; the method {spec.method.method} goes with the task fill"
-    if spec.method.recipe != "default":
-        return f"recipes go with the task fill; the task of this job is {spec.task}"
-    if spec.task == "encode" and spec.method.patches.overlap is not None:
-        return "patches of the task encode share their borders: leave method.patches.overlap out"
+    method = spec.method
+    if method.method not in _METHODS[spec.task]:
+        return f"the task {spec.task} goes by {' or '.join(_METHODS[spec.task])}, not by the method {method.method}"
+    if isinstance(method, CnnMethod) and method.model == SELF:
+        return "a network can't be fitted to a mesh whose vertices are missing: name a model other than self"
     has_reference = spec.denoise is not None and spec.denoise.reference is not None
-    if has_reference and spec.method.model != SELF:
-        return "denoise.reference takes the place of a model: leave method.model out, or say self"
+    if has_reference and not (isinstance(method, DictionaryMethod) and method.model == SELF):
+        return "denoise.reference takes the place of a model: leave method out, or say self"
+    return _conflict_of_dictionary(spec, method) if isinstance(method, DictionaryMethod) else None
+
+
+def _conflict_of_dictionary(spec: RepairSpec, method: DictionaryMethod) -> str | None:
+    if method.recipe != "default":
+        return f"recipes go with the task fill; the task of this job is {spec.task}"
+    if spec.task == "encode" and method.patches.overlap is not None:
+        return "patches of the task encode share their borders: leave method.patches.overlap out"
     return None
 
 

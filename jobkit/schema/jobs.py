@@ -65,7 +65,7 @@ class JobResult(Response):
     shift_95: float | None = Field(
         default=None,
         ge=0,
-        description="Of `denoise`: 95 of 100 vertices were moved no farther than this, in mesh units.",
+        description="Of `denoise`: 95 of 100 moved vertices were moved no farther than this, in mesh units.",
         examples=[0.03],
     )
     max_error: float | None = Field(

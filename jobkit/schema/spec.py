@@ -138,9 +138,9 @@ class RepairSpec(Request):
     )
     method: Method = Field(
         default_factory=_default_method,
-        description="How patches are completed or coded. All tasks but `fill` go by a dictionary. Left out, it is a "
-        "dictionary: the model `default` where the task is `fill`, else `self`. For `decode`, `self` means the "
-        "dictionary that the file holds or names.",
+        description="How patches are completed or coded. `encode` and `decode` go by a dictionary, `denoise` by one or "
+        "`smooth`. Left out, it is a dictionary: the model `default` where the task is `fill`, else `self`. For "
+        "`decode`, `self` means the dictionary that the file holds or names.",
     )
     restore: Restoring | None = Field(default=None, description="Options of the task `restore`, which needs them.")
     denoise: Denoising | None = Field(default=None, description="Options of the task `denoise`.")

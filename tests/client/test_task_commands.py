@@ -102,6 +102,11 @@ def test_denoise_uploads_its_reference_and_sends_its_bounds(
     assert (tmp_path / "out.stl").read_bytes() == b"result"
 
 
+def test_a_task_by_geometry_alone_has_no_model(run: Callable[..., Result], server: ScriptedServer) -> None:
+    assert run("denoise", "out.ply", "--model", "smooth").exit_code == ExitCode.OK
+    assert sent_spec(server)["method"] == {"method": "smooth"}
+
+
 def test_encode_writes_a_qpz_file_and_nothing_else(run: Callable[..., Result], server: ScriptedServer) -> None:
     refused = run("encode", "out.ply", "--max-error", "0.01")
     assert refused.exit_code == ExitCode.USAGE
@@ -178,7 +183,7 @@ def test_a_file_that_is_no_list_of_numbers_is_refused(tmp_path: Path, text: str)
         (
             "denoise",
             {"moved_vertices": 85_000, "shift_95": 0.03125},
-            "85,000 vertices were moved, 95 of 100 by no more than 0.0312 mm",
+            "85,000 vertices were moved, 95 of 100 of them by no more than 0.0312 mm",
         ),
         ("encode", {"max_error": 0.0098}, "encoded, no farther than 0.0098 mm from the scan"),
         ("decode", {}, "decoded as ply"),

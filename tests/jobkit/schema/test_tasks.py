@@ -77,8 +77,11 @@ def test_what_is_not_in_the_contract_is_refused(change: dict[str, Any]) -> None:
         ("decode", {"output": {"closeups": True}}, "output.closeups goes with the task fill"),
         ("restore", {"restore": None}, "the task restore needs restore.missing"),
         ("encode", {"encode": None}, "the task encode needs encode.max_error"),
-        ("denoise", {"method": {"method": "smooth"}}, "the method smooth goes with the task fill"),
-        ("encode", {"method": {"method": "cnn"}}, "the method cnn goes with the task fill"),
+        ("denoise", {"method": {"method": "cnn"}}, "goes by dictionary or smooth, not by the method cnn"),
+        ("encode", {"method": {"method": "cnn"}}, "goes by dictionary, not by the method cnn"),
+        ("decode", {"method": {"method": "smooth"}}, "goes by dictionary, not by the method smooth"),
+        ("restore", {"method": {"method": "cnn", "model": "self"}}, "can't be fitted"),
+        ("denoise", {"denoise": {"reference": "b" * 64}, "method": {"method": "smooth"}}, "leave method out"),
         ("restore", {"method": {"method": "dictionary", "recipe": "paper"}}, "recipes go with the task fill"),
         ("encode", {"method": {"method": "dictionary", "patches": {"overlap": 1}}}, "leave method.patches.overlap out"),
         (
@@ -96,6 +99,11 @@ def test_options_that_do_not_go_with_the_task_are_named(task: str, fields: dict[
 
 def test_a_reference_goes_with_the_model_that_is_the_default_of_denoising() -> None:
     assert conflict_of(spec("denoise", denoise={"reference": "b" * 64, "noise": 0.1, "max_shift": 0.3})) is None
+
+
+@pytest.mark.parametrize(("task", "method"), [("restore", "smooth"), ("restore", "cnn"), ("denoise", "smooth")])
+def test_some_tasks_take_other_methods(task: str, method: str) -> None:
+    assert conflict_of(spec(task, method={"method": method})) is None
 
 
 def test_the_identity_of_a_fill_is_what_it_was_before_there_were_tasks() -> None:
