@@ -1,4 +1,7 @@
-"""One way to encode a mesh, and how many bytes it would take."""
+"""One way to encode a mesh, and how many bytes it would take.
+
+Tested in `tests/quadpatch/compression/test_encode.py`.
+"""
 
 from dataclasses import dataclass, replace
 

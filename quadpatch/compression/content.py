@@ -1,4 +1,7 @@
-"""What a `.qpz` file says, as arrays of whole numbers and a few lengths."""
+"""What a `.qpz` file says, as arrays of whole numbers and a few lengths.
+
+Tested in `tests/quadpatch/compression/test_qpz_file.py`.
+"""
 
 from dataclasses import dataclass, field
 from typing import Final, Literal, get_args

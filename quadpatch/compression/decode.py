@@ -1,4 +1,7 @@
-"""Decodes a `.qpz` file: bytes in, mesh out."""
+"""Decodes a `.qpz` file: bytes in, mesh out.
+
+Tested in `tests/quadpatch/compression/test_qpz_file.py`.
+"""
 
 from dataclasses import dataclass
 from typing import Protocol

@@ -2,6 +2,8 @@
 
 The order is that of the encoder: the quads' grid, raised by the codes; corrections along the normals; cells left out;
 border vertices moved; pieces that are no height map appended.
+
+Tested in `tests/quadpatch/compression/test_encode.py`.
 """
 
 from dataclasses import dataclass

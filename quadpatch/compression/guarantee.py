@@ -4,6 +4,8 @@ What the codes miss is corrected from the cheapest to the dearest. Grid vertices
 that lie where there is no surface are left out, and the border vertices of the rest are moved onto the border of the
 mesh. Triangles of the mesh that are still too far from all that go into the file themselves: folds, thin walls,
 whatever the quads do not cover.
+
+Tested in `tests/quadpatch/compression/test_encode.py`.
 """
 
 from dataclasses import dataclass, replace

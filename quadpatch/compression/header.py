@@ -14,6 +14,8 @@ r"""The header of a `.qpz` file: fields of fixed size, texts, and counts as vari
 
 A text is its length in bytes and UTF-8; a number has seven bits in every byte, low ones first, and the top bit set in
 all but its last byte.
+
+Tested in `tests/quadpatch/compression/test_qpz_file.py`.
 """
 
 import hashlib

@@ -3,6 +3,8 @@
 This is the paper's connectivity of vertices and bins, in fractions of a bin. Columns and rows are told by their
 difference from those of a neighbour that comes earlier in the file, where both lie on one patch. A vertex that no patch
 brings back within the promised error stands on a lattice of its own.
+
+Tested in `tests/quadpatch/compression/test_encode.py`.
 """
 
 from dataclasses import dataclass

@@ -6,6 +6,8 @@ that a file can ask for no more memory than its triangles take.
 References
 ----------
 I. Pavlov, "LZMA specification", 2015.
+
+Tested in `tests/quadpatch/compression/test_qpz_file.py`.
 """
 
 import lzma

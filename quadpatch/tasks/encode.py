@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from quadpatch.compression.candidate import DictionaryChoice
+from quadpatch.compression.collapse_estimate import estimated_collapse_bytes
 from quadpatch.compression.content import COSINE, MODEL, SELF, DictionaryReference
 from quadpatch.compression.decode import Decoded, decode_mesh
 from quadpatch.compression.encode import EncodeOptions, Encoding, encode_mesh
@@ -84,6 +85,8 @@ def encode_file(
         measures = _proved(scan, welded.mesh, encoding, decoded, options)
     with stages.stage("write"):
         write_whole(output, encoding.data)
+    draco = estimated_collapse_bytes(welded.mesh, measures["rms_error"]["true_to_decoded"])
+    measures["draco_estimate"] = draco
     measures["bytes_per_vertex"] = len(encoding.data) / len(scan.vertices)
     measures["ratio"] = (12 * len(scan.vertices) + 12 * len(scan.triangles)) / len(encoding.data)
     report = {
@@ -95,7 +98,11 @@ def encode_file(
         "options": json.loads(json.dumps(asdict(options))),
         **measures,
         "stages": [{"name": name, "seconds": round(seconds, 4)} for name, seconds in stages.seconds.items()],
-        "warnings": [*_attribute_warnings(scan), *describe_redundancy(welded.counts)],
+        "warnings": [
+            *_attribute_warnings(scan),
+            *describe_redundancy(welded.counts),
+            *_suggestion(len(encoding.data), draco, options),
+        ],
     }
     changed = np.ones(len(decoded.mesh.triangles), np.bool_)
     return TaskResult(json_ready(report), welded.mesh, decoded.mesh, changed)
@@ -186,6 +193,16 @@ def _proved(
         "triangles_as_they_are": len(content.pieces.walk.polygons),
         **entities(scan, content),
     }
+
+
+def _suggestion(n_bytes: int, draco: float | None, options: EncodeOptions) -> list[str]:
+    """Suggest edge collapse and Draco where these would take fewer bytes."""
+    if options.keep_connectivity or draco is None or draco >= n_bytes:
+        return []
+    return [
+        f"edge collapse and Draco would take about {draco:,.0f} bytes in place of {n_bytes:,} at the same RMS error, "
+        "without a promised largest error"
+    ]
 
 
 def _attribute_warnings(scan: Scan) -> list[str]:

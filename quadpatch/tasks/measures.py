@@ -1,4 +1,7 @@
-"""What reports of encoded meshes count."""
+"""What reports of encoded meshes count.
+
+Tested in `tests/quadpatch/tasks/test_encode.py`.
+"""
 
 from typing import Any
 

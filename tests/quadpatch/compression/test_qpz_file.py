@@ -1,4 +1,8 @@
-"""Hostile `.qpz` files: whatever the bytes, a coded error or a mesh, and no memory beyond the limits."""
+"""Hostile `.qpz` files: whatever the bytes, a coded error or a mesh, and no memory beyond the limits.
+
+Tests `quadpatch.compression.header`, `quadpatch.compression.content`, `quadpatch.compression.vertex_streams` and
+`quadpatch.compression.decode` as well.
+"""
 
 from dataclasses import asdict, replace
 
