@@ -10,9 +10,11 @@ from quadpatch.cli.denoise import denoise
 from quadpatch.cli.encode import decode, encode
 from quadpatch.cli.fill import fill
 from quadpatch.cli.holes import holes
+from quadpatch.cli.reconstruct import reconstruct
+from quadpatch.cli.restore import restore
 
 app = typer.Typer(
     help="Repair holes in 3D scans, and put their patches to other uses.", no_args_is_help=True, add_completion=False
 )
-for command in (fill, holes, denoise, encode, decode):
+for command in (fill, holes, restore, denoise, encode, decode, reconstruct):
     app.command()(command)

@@ -1,6 +1,6 @@
 """What the commands of all tasks do alike, and each of them from file to file.
 
-Also tests `quadpatch.cli.encode` and `quadpatch.cli.denoise`.
+Also tests `quadpatch.cli.restore`, `quadpatch.cli.denoise`, `quadpatch.cli.encode` and `quadpatch.cli.reconstruct`.
 """
 
 import json
@@ -190,6 +190,74 @@ def test_a_clean_scan_is_a_reference(tmp_path: Path) -> None:
     assert refused.stderr.startswith("invalid_option: ")
 
 
+@pytest.fixture(scope="module")
+def holey(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
+    """A plate of which some vertices are missing: marked, without coordinates, and in a list."""
+    folder = tmp_path_factory.mktemp("holey")
+    scan = read_scan(write_ply(folder / "whole.ply", bumpy_plate(30, 2.0)))
+    missing = np.random.default_rng(0).random(len(scan.vertices)) < 0.1
+    write_moved(folder / "marked.ply", scan, Moved(scan.vertices, {"lost": missing}))
+    unknown = TriangleMesh(np.where(missing[:, np.newaxis], np.nan, scan.vertices), scan.triangles)
+    write_ply(folder / "nan.ply", unknown)
+    (folder / "list.txt").write_text(" ".join(map(str, np.flatnonzero(missing))))
+    return {name: folder / name for name in ("whole.ply", "marked.ply", "nan.ply", "list.txt")}
+
+
+@pytest.mark.parametrize(
+    ("source", "missing"),
+    [("marked.ply", "lost"), ("marked.ply", "property:lost"), ("nan.ply", "nan"), ("whole.ply", "")],
+)
+def test_missing_vertices_get_a_position_however_they_are_named(
+    holey: dict[str, Path], tmp_path: Path, source: str, missing: str
+) -> None:
+    report = tmp_path / "out.json"
+    files: list[str | Path] = [holey[source], "-o", tmp_path / "out.ply", "--report", report]
+    done = call("restore", *files, "--missing", missing or holey["list.txt"], "--model", "smooth")
+    assert done.exit_code == 0, done.output
+    whole, after = read_scan(holey["whole.ply"]), read_scan(tmp_path / "out.ply")
+    restored = vertex_property(after, "restored") > 0
+    assert restored.sum() == 79
+    assert after.vertices[~restored].tobytes() == whole.vertices[~restored].tobytes()
+    assert np.abs(after.vertices - whole.vertices).max() < 0.1
+    counts = json.loads(report.read_text())["vertices"]
+    assert (counts["missing"], counts["restored"]) == (79, 79)
+    told = " ".join(done.stderr.split())
+    assert told.startswith("79 of 79 missing vertices got a position, 95 of 100 of them expected to be off by no more")
+
+
+def test_a_picture_of_what_was_restored_is_drawn(holey: dict[str, Path], tmp_path: Path) -> None:
+    files: list[str | Path] = [holey["nan.ply"], "-o", tmp_path / "out.obj", "--preview", tmp_path / "out.png"]
+    done = call("restore", *files, "--missing", "nan", "--model", "smooth")
+    assert done.exit_code == 0, done.output
+    assert (tmp_path / "out.png").read_bytes().startswith(b"\x89PNG")
+    assert "obj has no place for numbers of vertices: restored, expected_error left out" in " ".join(
+        done.stderr.split()
+    )
+
+
+def test_a_list_of_missing_vertices_is_not_overwritten(holey: dict[str, Path]) -> None:
+    listed = holey["list.txt"].read_bytes()
+    for flag in ("-o", "--report"):
+        outputs = ["-o", holey["list.txt"].parent / "out.ply", flag, holey["list.txt"]]
+        refused = call("restore", holey["whole.ply"], "--missing", holey["list.txt"], *outputs)
+        assert refused.stderr.startswith("invalid_option: ")
+    assert holey["list.txt"].read_bytes() == listed
+
+
+def test_a_scan_is_rebuilt_from_its_patches(plate: Path, tmp_path: Path) -> None:
+    report = tmp_path / "out.json"
+    files: list[str | Path] = [plate, "-o", tmp_path / "out.ply", "--report", report]
+    done = call("reconstruct", *files, "--atoms", "20", "--nonzero", "4", "--resolution", "10")
+    assert done.exit_code == 0, done.output
+    content = json.loads(report.read_text())
+    assert content["dictionary"] == {"atoms": 20, "nonzero": 4}
+    assert content["patches"]["resolution"] == 10
+    shift = read_scan(tmp_path / "out.ply").vertices - read_scan(plate).vertices
+    assert 0 < np.linalg.norm(shift, axis=1).max() < 0.1
+    told = " ".join(done.stderr.split())
+    assert f"rebuilt from {content['patches']['count']:,} patches with 4 of 20 atoms each, off by " in told
+
+
 @pytest.mark.parametrize(
     ("arguments", "code"),
     [
@@ -198,6 +266,12 @@ def test_a_clean_scan_is_a_reference(tmp_path: Path) -> None:
         (["encode", "PLATE", "-o", "out.qpz", "--max-error", "0.01", "--resolution", "1"], "invalid_option"),
         (["encode", "PLATE", "-o", "out.qpz", "--max-error", "0.01", "--model", "no-such"], "unusable_model"),
         (["encode", "PLATE", "-o", "PLATE", "--max-error", "0.01"], "invalid_option"),
+        (["restore", "PLATE", "-o", "out.ply", "--missing", "nan"], "invalid_option"),
+        (["restore", "PLATE", "-o", "out.ply", "--missing", "lost"], "invalid_option"),
+        (["restore", "PLATE", "-o", "out.ply", "--missing", "PLATE"], "invalid_option"),
+        (["restore", "PLATE", "-o", "PLATE", "--missing", "nan"], "invalid_option"),
+        (["reconstruct", "PLATE", "-o", "out.ply", "--atoms", "1"], "invalid_option"),
+        (["reconstruct", "PLATE", "-o", "out.ply", "--model", "general-residual@1"], "invalid_option"),
         (["denoise", "PLATE", "-o", "out.ply", "--noise", "-1"], "invalid_option"),
         (["denoise", "PLATE", "-o", "out.ply", "--max-shift", "nan"], "invalid_option"),
         (["denoise", "PLATE", "-o", "out.ply", "--region", "1", "1", "1", "0", "0", "0"], "invalid_option"),
@@ -221,6 +295,14 @@ def test_errors_of_tasks_are_one_line_of_code_and_message(
     assert re.fullmatch(rf"{code}: .+", line)
 
 
-@pytest.mark.parametrize("arguments", [["encode", "a.ply", "-o", "a.qpz"], ["decode", "a.qpz"], ["denoise", "a.ply"]])
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["encode", "a.ply", "-o", "a.qpz"],
+        ["decode", "a.qpz"],
+        ["denoise", "a.ply"],
+        ["restore", "a.ply", "-o", "b.ply"],
+    ],
+)
 def test_wrong_usage_of_a_task_has_its_own_exit_code(arguments: list[str]) -> None:
     assert call(*arguments).exit_code == 2
