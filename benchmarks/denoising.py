@@ -11,12 +11,11 @@ Tested in `tests/benchmarks/test_denoising_peers.py`.
 """
 
 import argparse
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 
-from benchmarks.denoising_peers import bilateral_normals, guided_normals, taubin
+from benchmarks.denoising_peers import Method, bilateral_normals, guided_normals, taubin
 from quadpatch.denoising.denoise import PatchModel, denoise
 from quadpatch.formats.reading import read_scan
 from quadpatch.mesh.distance import distance_to_mesh
@@ -29,8 +28,6 @@ MESHES = ("fandisk", "stanford_bunny", "igea")
 CUT_MESHES = ("relief_gyroid",)
 NOISES = (0.1, 0.2, 0.3)
 SEED = 0
-
-Method = Callable[[TriangleMesh], Vertices]
 
 
 def main() -> None:

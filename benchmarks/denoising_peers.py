@@ -15,6 +15,7 @@ G. Taubin, "A signal processing approach to fair surface design", SIGGRAPH, 1995
 Tested in `tests/benchmarks/test_denoising_peers.py`.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -24,6 +25,8 @@ from scipy.spatial import cKDTree
 
 from quadpatch.mesh.normals import area_vectors, length, unit
 from quadpatch.types import FloatArray, IntArray, TriangleMesh, Vertices
+
+Method = Callable[[TriangleMesh], Vertices]
 
 # The defaults of the authors of guided normals, who compare with bilateral normals in the same program.
 NORMAL_ITERATIONS = 20

@@ -1,8 +1,9 @@
 """How strong the noise of a mesh is, from the mesh alone.
 
-A high-order difference, (I - A)^p x with A the average over the neighbours, takes the shape out of a surface and leaves
-noise. What it leaves is compared with what it leaves of noise of known strength on the same mesh. Creases and detail add
-to it at some vertices, so the median of the magnitudes counts; and they add to every order, so the smallest answer does.
+A high-order difference, (I - A)^p x with A the average over the neighbours, takes the shape out of a surface and
+leaves noise. What it leaves is compared with what it leaves of noise of known strength on the same mesh. Creases and
+detail add to it at some vertices, so a quantile of the magnitudes counts; and they add to every order, so the smallest
+answer does. What is as fine as the mesh and everywhere counts as noise.
 
 References
 ----------
@@ -18,8 +19,8 @@ from quadpatch.types import FloatArray, TriangleMesh
 
 # Orders p of the difference. One of 2 still sees the curvature of coarse meshes; beyond 5 nothing is gained.
 _ORDERS = (2, 3, 4, 5)
-# Shares of the vertices whose residuals stay below the quantile that is compared.
-_QUANTILES = (0.4,)
+# Quantile of the residuals that is compared, a little below the median: creases add to the larger ones.
+_QUANTILE = 0.4
 # Normals of the noisy mesh itself point anywhere.
 _NORMAL_ITERATIONS = 3
 # A residual below this share of the coordinates is their rounding.
@@ -53,11 +54,11 @@ def estimate_noise(mesh: TriangleMesh) -> float:
         both = both - average @ both
         if order in _ORDERS:
             measured, simulated = (np.abs(np.einsum("ij,ij->i", both[used, k : k + 3], normals[used])) for k in (0, 3))
-            estimates += [_ratio(measured, simulated, share) for share in _QUANTILES]
+            estimates.append(_ratio(measured, simulated))
     noise = min(estimates)
     return noise if noise > _ROUNDING * float(np.abs(centred[used]).max()) else 0.0
 
 
-def _ratio(measured: FloatArray, simulated: FloatArray, share: float) -> float:
-    at_unit_noise = float(np.quantile(simulated, share))
-    return float(np.quantile(measured, share)) / at_unit_noise if at_unit_noise > 0 else 0.0
+def _ratio(measured: FloatArray, simulated: FloatArray) -> float:
+    at_unit_noise = float(np.quantile(simulated, _QUANTILE))
+    return float(np.quantile(measured, _QUANTILE)) / at_unit_noise if at_unit_noise > 0 else 0.0

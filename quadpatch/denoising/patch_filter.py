@@ -1,4 +1,4 @@
-r"""Denoising by patches: every patch is coded over atoms that are learned from clean ones like it (section 4 of the paper).
+r"""Denoising by patches: each is coded over atoms that are learned from clean ones like it (section 5 of the paper).
 
 A first, smoothed surface (the pilot) carries the patches. The atoms of a patch are the deviations of its nearest clean
 patches from their mean; where they come from says the model: another scan, the pilot itself, or a dictionary. What is
@@ -26,7 +26,7 @@ import numpy as np
 from quadpatch.denoising.atoms import Atoms
 from quadpatch.mesh.normals import vertex_normals
 from quadpatch.patches.connectivity import Connectivity, vertices_in_patches
-from quadpatch.types import FloatArray, IntArray, Patches, TriangleMesh
+from quadpatch.types import BoolArray, FloatArray, IntArray, Patches, TriangleMesh
 
 # The mean height of a patch is free: its standard deviation, in that of the noise.
 _FREE_LEVEL = 10.0
@@ -50,7 +50,7 @@ class PatchShifts:
 
     shift: FloatArray
     response: FloatArray
-    is_shown: FloatArray
+    is_shown: BoolArray
 
 
 def filter_by_patches(

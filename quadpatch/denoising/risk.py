@@ -1,7 +1,7 @@
 r"""Weights of several denoised surfaces, by the error that each of them and any mean of them is expected to have.
 
-Let y be the noisy vertices along their normals, and y + d_k what filter k makes of them. With weights w the mean squared
-error is, but for a constant, that of Stein's unbiased risk estimate,
+Let y be the noisy vertices along their normals, and y + d_k what filter k makes of them. With weights w the mean
+squared error is, but for a constant, that of Stein's unbiased risk estimate,
 
 .. math:: w^T D^T Q D w + 2 \sigma^2 \sum_k w_k\, \mathrm{tr}(Q\, \partial d_k / \partial y),
 

@@ -12,6 +12,8 @@ X. Sun, P. Rosin, R. Martin, F. Langbein, "Fast and effective feature-preserving
 Visualization and Computer Graphics 13, 2007: the update of the vertices.
 """
 
+from itertools import pairwise
+
 import numpy as np
 from scipy.sparse import csr_array
 
@@ -60,13 +62,18 @@ class SurfaceFilters:
         self._spread = csr_array((np.ones(len(corners)), (corners, owner)), (len(mesh.vertices), len(mesh.triangles)))
         self._count = np.maximum(np.bincount(corners, minlength=len(mesh.vertices)), 1)[:, None]
 
+    @property
+    def n_pairs(self) -> int:
+        """Count of pairs of neighbouring triangles: what the memory goes by."""
+        return int(self._near.nnz)
+
     def apply(self, vertices: Vertices) -> list[Vertices]:
         """Give the vertices (n, 3) as each filter moves them."""
         by_normals = [self.with_filtered_normals(vertices, rounds) for rounds in (_LIGHT, _ROUNDS)]
         return [*self.diffused(vertices), *by_normals]
 
     def normals(self, vertices: Vertices) -> FloatArray:
-        """Normals (n, 3) of a smoothed copy; those of a noisy mesh point anywhere."""
+        """Give the normals (n, 3) of a smoothed copy; those of a noisy mesh point anywhere."""
         smooth = vertices
         for _ in range(_NORMAL_STEPS):
             smooth = 0.5 * (smooth + self._average @ smooth)
@@ -79,7 +86,7 @@ class SurfaceFilters:
             smooth = 0.5 * (smooth + self._average @ smooth)
             if step in _HALF_STEPS:
                 scales.append(smooth)
-        twiced = [2 * once - twice for once, twice in zip(scales, scales[1:], strict=False)]
+        twiced = [2 * once - twice for once, twice in pairwise(scales)]
         # Along the surface they would round the corners of a rim.
         rim, normals = self._rim, normals[self._rim]
         for moved in twiced:
@@ -123,7 +130,7 @@ class SurfaceFilters:
 
 
 def _neighbours(triangles: Triangles, n_vertices: int, links: IntArray) -> csr_array[np.float64]:
-    """Triangles that share a vertex, or an edge as `links` (k, 2) have them, each with itself too: an (n, n) pattern."""
+    """Pattern (n, n) of triangles that share a vertex, or an edge as `links` (k, 2) say; each with itself too."""
     n = len(triangles)
     corners, owner = triangles.ravel(), np.repeat(np.arange(n), 3)
     plain = np.bincount(corners, minlength=n_vertices)[corners] <= _CROWDED

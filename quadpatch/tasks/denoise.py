@@ -34,7 +34,7 @@ SHIFT = "shift"
 _MOST_FOLDS = 20
 
 
-def denoise_file(  # noqa: PLR0913, PLR0917  the arguments that all tasks have, and a reference
+def denoise_file(
     source: Path,
     output: Path,
     model: str | Path = SELF,
@@ -136,7 +136,8 @@ def _beyond_bound(output: Path, scan: Scan, max_shift: float) -> list[str]:
     n_beyond = int((shift > max_shift).sum())
     if not n_beyond:
         return []
-    return [f"the numbers of the file put {n_beyond:,} vertices beyond max_shift, by up to {shift.max() - max_shift:.3g}"]
+    excess = shift.max() - max_shift
+    return [f"the numbers of the file put {n_beyond:,} vertices beyond max_shift, by up to {excess:.3g}"]
 
 
 def _report(
