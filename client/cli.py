@@ -4,7 +4,6 @@ Tested in `tests/client/test_keeping.py`.
 """
 
 import json
-from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -15,24 +14,30 @@ from client.exit_codes import exit_codes_text
 from client.job_commands import cancel, delete, fetch, pin, wait
 from client.options import (
     DEFAULT_URL,
-    OUTPUT,
+    AgainOption,
     AllButLargestOption,
     CapOption,
     CloseupsOption,
+    FormatOption,
     HoleChoice,
     HoleOption,
     IncludeBordersOption,
     JsonOption,
     KeyOption,
+    LabelOption,
     MaxDiameterOption,
     MaxPerimeterOption,
+    MeshArgument,
     MethodChoice,
     MethodName,
     OutputOption,
+    OverwriteOption,
     PreviewOption,
     QuietOption,
     ReportOption,
     RuleOption,
+    SeedOption,
+    TimeoutOption,
     UrlOption,
     WeldToleranceOption,
     make_spec,
@@ -43,20 +48,17 @@ from client.repairing import Task, format_of
 from client.repairing import repair as run_repair
 from client.screen import Screen
 from client.tables import print_holes, print_jobs, print_models
-from jobkit.schema import JobState, OutputFormat, Recipe
+from client.task_commands import decode, denoise, encode, restore
+from jobkit.schema import JobState, Recipe
 
 app = typer.Typer(
     name="quadpatch-client",
-    help="Repair holes in 3D scans through a Quadpatch service.",
+    help="Repair 3D scans through a Quadpatch service: fill holes, restore vertices, take noise away, compress.",
     epilog=f"Exit codes:\n\n{exit_codes_text()}",
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
 )
-MeshArgument = Annotated[
-    Path,
-    typer.Argument(help="Mesh file: PLY, STL, OBJ, OFF, GLB, glTF or 3MF.", exists=True, dir_okay=False, readable=True),
-]
 _PATCHES = "Patches"
 _FITTING = "Fitting a network to the mesh (--method cnn --model self)"
 
@@ -102,29 +104,15 @@ def repair(  # noqa: PLR0913 - one parameter per option of the command line
         float | None,
         typer.Option(help="Fit at most so long.", show_default="of the service", rich_help_panel=_FITTING),
     ] = None,
-    seed: Annotated[int, typer.Option(help="Starts every random choice.")] = 0,
-    label: Annotated[str | None, typer.Option(help="A name for the job, for people.")] = None,
-    format_: Annotated[
-        OutputFormat | None,
-        typer.Option(
-            "--format",
-            help="Format of the repaired mesh.",
-            show_default="the suffix of OUTPUT",
-            rich_help_panel=OUTPUT,
-        ),
-    ] = None,
+    seed: SeedOption = 0,
+    label: LabelOption = None,
+    format_: FormatOption = None,
     report: ReportOption = None,
     preview: PreviewOption = None,
     closeups: CloseupsOption = None,
-    overwrite: Annotated[
-        bool, typer.Option("--overwrite", help="Let OUTPUT take the place of MESH.", rich_help_panel=OUTPUT)
-    ] = False,
-    again: Annotated[
-        bool, typer.Option("--again", help="Start a new job although the same one is under way or done.")
-    ] = False,
-    timeout: Annotated[
-        float | None, typer.Option(help="Seconds to wait for the job; then it is canceled.", show_default="none")
-    ] = None,
+    overwrite: OverwriteOption = False,
+    again: AgainOption = False,
+    timeout: TimeoutOption = None,
     url: UrlOption = DEFAULT_URL,
     api_key: KeyOption = None,
     as_json: JsonOption = False,
@@ -218,6 +206,8 @@ def jobs(
         print_jobs(_stdout(), listed)
 
 
+for task_command in (restore, denoise, encode, decode):
+    app.command(epilog=f"Exit codes:\n\n{exit_codes_text()}")(task_command)
 for command in (wait, fetch, cancel, delete, pin):
     app.command()(command)
 

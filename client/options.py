@@ -9,7 +9,7 @@ import typer
 from pydantic import ValidationError
 
 from client.errors import UsageError
-from jobkit.schema import SELF, JobSpec, Recipe, conflict_of
+from jobkit.schema import SELF, JobSpec, OutputFormat, Recipe, conflict_of
 from shared_rules.rule_text import RuleTextError, read_rule
 
 DEFAULT_URL = "http://127.0.0.1:8000"
@@ -93,6 +93,30 @@ CloseupsOption = Annotated[
         rich_help_panel=OUTPUT,
     ),
 ]
+MeshArgument = Annotated[
+    Path,
+    typer.Argument(help="Mesh file: PLY, STL, OBJ, OFF, GLB, glTF or 3MF.", exists=True, dir_okay=False, readable=True),
+]
+FormatOption = Annotated[
+    OutputFormat | None,
+    typer.Option(
+        "--format",
+        help="Format of the mesh that comes back.",
+        show_default="the suffix of OUTPUT",
+        rich_help_panel=OUTPUT,
+    ),
+]
+OverwriteOption = Annotated[
+    bool, typer.Option("--overwrite", help="Let OUTPUT take the place of MESH.", rich_help_panel=OUTPUT)
+]
+SeedOption = Annotated[int, typer.Option(help="Starts every random choice.")]
+LabelOption = Annotated[str | None, typer.Option(help="A name for the job, for people.")]
+AgainOption = Annotated[
+    bool, typer.Option("--again", help="Start a new job although the same one is under way or done.")
+]
+TimeoutOption = Annotated[
+    float | None, typer.Option(help="Seconds to wait for the job; then it is canceled.", show_default="none")
+]
 
 
 @dataclass(frozen=True)
@@ -131,7 +155,7 @@ def make_spec(mesh_id: str, holes: HoleChoice, method: MethodChoice, **rest: Any
         If an option is out of its range, or does not go with the method or with another option.
     """
     chosen = _given({**vars(holes), "rules": _rules(holes.rules)})
-    values = {"mesh_id": mesh_id, "holes": chosen, "method": _method(method), **_given(rest)}
+    values = {"mesh_id": mesh_id, "holes": chosen, **_given({"method": _method(method)}), **_given(rest)}
     try:
         spec = JobSpec.model_validate(values)
     except ValidationError as error:
@@ -154,6 +178,8 @@ def tolerance(word: str | None) -> float | str | None:
 def _method(choice: MethodChoice) -> dict[str, Any]:
     patches = _given({"length": choice.length, "resolution": choice.resolution, "overlap": choice.overlap})
     fitting = _given({"steps": choice.fit_steps, "seconds": choice.fit_seconds})
+    if choice == MethodChoice():
+        return {}  # the service has a default of its own for each task
     if choice.method != "dictionary" and choice.recipe is not None:
         raise UsageError(f"the method {choice.method!r} takes no recipe; recipes go with dictionaries")
     if fitting and (choice.method, choice.model) != ("cnn", SELF):

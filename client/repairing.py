@@ -1,4 +1,4 @@
-"""`repair`: a mesh file in, a mesh file out."""
+"""`repair` and the other tasks: a mesh file in, a mesh file out."""
 
 import json
 import tempfile
@@ -33,7 +33,7 @@ _ANALYSIS_S = 60.0
 
 @dataclass(frozen=True)
 class Task:
-    """What one `repair` is to do.
+    """What one command is to do: `repair`, or that of another task.
 
     Attributes
     ----------
@@ -52,6 +52,8 @@ class Task:
         Whether the repaired mesh may take the place of the scan.
     again : bool
         Whether a new job is started although the same one is on its way or has a result.
+    reference : Path, optional
+        A clean scan to learn from, which is uploaded like the source.
     """
 
     source: Path
@@ -65,6 +67,7 @@ class Task:
     timeout_s: float | None = None
     may_overwrite: bool = False
     again: bool = False
+    reference: Path | None = None
 
 
 @dataclass(frozen=True)
@@ -97,12 +100,11 @@ def repair(client: Client, screen: Screen, task: Task) -> Job:
         After the job has been canceled.
     """
     # A wrong option or path should show before a large file has been sent and an hour been spent on it.
-    make_spec("0" * 64, task.holes, task.method, **task.rest)
+    make_spec("0" * 64, task.holes, task.method, **_rest(task, "0" * 64))
     check_outputs(task)
-    with screen.transfer("uploading") as progress:
-        mesh = client.upload(task.source, progress)
-    screen.say(f"{task.source.name}: {_size(mesh.size_bytes)} uploaded")
-    spec = make_spec(mesh.id, task.holes, task.method, mesh_name=sent_name(task.source) or None, **task.rest)
+    mesh_id = _upload(client, screen, task.source)
+    rest = _rest(task, "" if task.reference is None else _upload(client, screen, task.reference))
+    spec = make_spec(mesh_id, task.holes, task.method, mesh_name=sent_name(task.source) or None, **rest)
     with HeldInterrupt(screen.complain) as interrupt:
         job = client.create_job(spec) if task.again else client.create_job_once(spec)
         job = _wait(client, screen, job, task.timeout_s, interrupt)
@@ -110,12 +112,28 @@ def repair(client: Client, screen: Screen, task: Task) -> Job:
     return job
 
 
+def _upload(client: Client, screen: Screen, path: Path) -> str:
+    with screen.transfer("uploading") as progress:
+        mesh = client.upload(path, progress)
+    screen.say(f"{path.name}: {_size(mesh.size_bytes)} uploaded")
+    return mesh.id
+
+
+def _rest(task: Task, reference_id: str) -> dict[str, Any]:
+    """Return the further fields of the job spec, with the id that the reference has got."""
+    if task.reference is None:
+        return task.rest
+    return {**task.rest, "denoise": {**task.rest.get("denoise", {}), "reference": reference_id}}
+
+
 def check_outputs(task: Task) -> None:
     """Raise UsageError where an output has no folder, is one, or would overwrite another one or the scan."""
     check_place(task.output)
     if is_same_file(task.output, task.source) and not task.may_overwrite:
         raise UsageError(f"{task.output} is the scan itself: name another file, or say --overwrite")
-    _files(task).check(task.source)
+    if task.reference is not None and is_same_file(task.output, task.reference):
+        raise UsageError(f"{task.output} is the reference itself: name another file")
+    _files(task).check(*[path for path in (task.source, task.reference) if path is not None])
 
 
 def _files(task: Task) -> Files:

@@ -36,7 +36,7 @@ from client.polling import parse, poll
 from client.transfers import ByteProgress, download, file_chunks, no_progress, sent_name, sha256_of
 from client.transport import Transport
 from client.watching import watch
-from jobkit.schema import FileRole, Job, JobPage, JobSpec, JobState, Mesh, MeshState, ModelList, Plan
+from jobkit.schema import FileRole, Job, JobPage, JobSpec, JobState, Mesh, MeshState, ModelList, Plan, identity_of
 
 _PAGE = 100
 # Of failed and canceled jobs with the same spec that are passed over.
@@ -127,7 +127,7 @@ class Client:
         So a program that was ended, or that gave up on a service which was away, finds its job again by asking for
         the same thing. A job that failed or was canceled is no reason not to start another one.
         """
-        text = json.dumps(spec.model_dump(mode="json"), sort_keys=True)
+        text = json.dumps(json.loads(identity_of(spec)), sort_keys=True)
         digest = hashlib.sha256(text.encode()).hexdigest()
         for number in range(1, _MOST_KEYS + 1):
             try:

@@ -1,8 +1,9 @@
-"""A finished repair in sentences."""
+"""A finished job in sentences."""
 
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+from client.task_summary import counted, task_sentence
 from jobkit.schema import HoleCounts, Job, JobResult
 
 _LONGEST_LIST = 6
@@ -50,7 +51,7 @@ def stage_seconds(report: Mapping[str, Any]) -> str:
 
 
 def paragraph(name: str, job: Job, report: Mapping[str, Any]) -> str:
-    """Tell a whole repair in one paragraph.
+    """Tell a whole job in one paragraph.
 
     Parameters
     ----------
@@ -63,9 +64,13 @@ def paragraph(name: str, job: Job, report: Mapping[str, Any]) -> str:
     """
     if job.result is None:
         raise ValueError(f"job {job.id} has no result")
+    if job.spec.task != "fill":
+        sentences = [task_sentence(name, job.spec.task, job.result, str(report.get("length_unit", "mesh units")))]
+        sentences.append(f"The work took {job.result.seconds:.1f} s ({stage_seconds(report)}).")
+        return " ".join([*sentences, *_warnings(job.result.warnings)])
     counts = job.result.holes
     sentences = [
-        f"{name} has {_counted(counts.found, 'hole')}: {verdicts(counts)}.",
+        f"{name} has {counted(counts.found, 'hole')}: {verdicts(counts)}.",
         _added(job.result),
     ]
     smooth = geometry_only(report)
@@ -81,17 +86,12 @@ def paragraph(name: str, job: Job, report: Mapping[str, Any]) -> str:
 def _added(result: JobResult) -> str:
     if not result.new_triangles:
         return "Nothing was added."
-    added = f"{_counted(result.new_vertices, 'vertex')} and {_counted(result.new_triangles, 'triangle')}"
+    added = f"{counted(result.new_vertices, 'vertex')} and {counted(result.new_triangles, 'triangle')}"
     return f"{added} were added; every measured vertex kept its bits."
 
 
 def _warnings(warnings: Iterable[str]) -> list[str]:
     return [f"Warning: {warning}." for warning in warnings]
-
-
-def _counted(number: int, noun: str) -> str:
-    plural = {"vertex": "vertices"}.get(noun, noun + "s")
-    return f"{number:,} {noun if number == 1 else plural}"
 
 
 def _reason_in_words(code: str, examples: list[str]) -> str:

@@ -12,9 +12,8 @@ from jobkit.schema import Job, MeshFacts, ModelList, ModelVersion, Plan, Planned
 def print_holes(console: Console, facts: MeshFacts, plan: Plan) -> None:
     """Print every hole of a mesh, and whether a job would fill it."""
     unit = facts.unit or "mesh units"
-    table = _table(
-        f"{facts.vertices:,} vertices, {facts.triangles:,} triangles, {len(plan.holes):,} holes; lengths in {unit}"
-    )
+    counts = f"{facts.vertices or 0:,} vertices, {facts.triangles or 0:,} triangles, {len(plan.holes):,} holes"
+    table = _table(f"{counts}; lengths in {unit}")
     for name in ("id", "diameter", "perimeter", "edges", "area"):
         table.add_column(name, justify="right")
     for name in ("kind", "centre"):
@@ -70,13 +69,14 @@ def _standing(version: ModelVersion) -> str:
 def print_jobs(console: Console, jobs: Iterable[Job]) -> None:
     """Print jobs, one a line."""
     table = _table(None)
-    for name in ("job", "state", "done", "created (UTC)"):
+    for name in ("job", "task", "state", "done", "created (UTC)"):
         table.add_column(name, no_wrap=True)
     table.add_column("label", overflow="fold")
     for job in jobs:
         detail = job.error.code if job.error else job.stage
         table.add_row(
             job.id,
+            job.spec.task,
             f"{job.state.value}: {detail}" if detail else job.state.value,
             f"{job.percent:.0f} %",
             f"{job.created_at.astimezone(UTC):%m-%d %H:%M:%S}",

@@ -15,6 +15,8 @@
     ├── ConflictError
     │   ├── MeshRejectedError       mesh_rejected         the analysis found that the file is no usable mesh
     │   ├── MeshNotReadyError       mesh_not_ready        the analysis is still to come
+    │   ├── MeshEncodedError        mesh_encoded          a .qpz file has to be decoded before anything else
+    │   ├── MeshNotEncodedError     mesh_not_encoded      a mesh that is no .qpz file is to be decoded
     │   ├── UnknownHoleError        unknown_hole          an explicit id names no hole of the mesh
     │   ├── MeshInUseError          mesh_in_use           a mesh is to be deleted while jobs name it
     │   ├── JobNotFinishedError     job_not_finished      a result is asked for, or a deletion, before the job has ended
@@ -147,6 +149,18 @@ class MeshNotReadyError(ConflictError):
     """The analysis of the mesh is still to come."""
 
     code = "mesh_not_ready"
+
+
+class MeshEncodedError(ConflictError):
+    """The mesh is a `.qpz` file, which has to be decoded before anything else."""
+
+    code = "mesh_encoded"
+
+
+class MeshNotEncodedError(ConflictError):
+    """A mesh is to be decoded that is no `.qpz` file."""
+
+    code = "mesh_not_encoded"
 
 
 class UnknownHoleError(ConflictError):

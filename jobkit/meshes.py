@@ -12,8 +12,9 @@ from sqlalchemy.orm import Session
 
 from jobkit.database.clock import shared_now, utc_now
 from jobkit.database.expiry import expiry
+from jobkit.database.job_rows import names_mesh
 from jobkit.database.session import Database
-from jobkit.database.tables import JobRow, MeshRow
+from jobkit.database.tables import MeshRow
 from jobkit.errors import MeshNotFoundError, RowConflictError, StaleAttemptError
 from jobkit.schema import Format, Mesh, MeshFacts, MeshLinks, MeshProblem, MeshState
 from jobkit.storage.base import StoredObject
@@ -163,7 +164,7 @@ class Meshes:
 
     def _show(self, session: Session, row: MeshRow) -> Mesh:
         """Return the row as clients see it."""
-        is_used = session.scalar(select(exists().where(JobRow.mesh_id == row.id)))
+        is_used = session.scalar(select(exists().where(names_mesh(row.id))))
         expires_at = expiry(None if is_used else row.used_at, self._retention_days, row.pinned)
         path = f"/v1/meshes/{row.id}"
         names = Mesh.model_fields.keys() - {"links", "expires_at"}

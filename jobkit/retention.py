@@ -14,6 +14,7 @@ from sqlalchemy import CursorResult, Select, delete, exists, func, select, updat
 from sqlalchemy.orm import Session
 
 from jobkit.database.clock import utc_now
+from jobkit.database.job_rows import names_mesh
 from jobkit.database.session import Database
 from jobkit.database.tables import AttemptRow, EventRow, IdempotencyRow, JobRow, MeshRow
 from jobkit.errors import (
@@ -80,7 +81,7 @@ def delete_mesh(database: Database, mesh_id: str) -> None:
     """
     try:
         with database.write() as session:
-            n_jobs = session.scalar(select(func.count()).select_from(JobRow).where(JobRow.mesh_id == mesh_id))
+            n_jobs = session.scalar(select(func.count()).select_from(JobRow).where(names_mesh(mesh_id)))
             if n_jobs:
                 noun = "job names" if n_jobs == 1 else "jobs name"
                 raise MeshInUseError(f"{n_jobs} {noun} mesh {mesh_id}; delete them first")
@@ -144,7 +145,7 @@ def expire_meshes(database: Database, days: float, now: datetime, is_over: Calla
     """
     if days == 0:
         return 0
-    is_free = ~exists().where(JobRow.mesh_id == MeshRow.id)
+    is_free = ~exists().where(names_mesh(MeshRow.id))
     is_expired = MeshRow.pinned.is_(False) & (MeshRow.used_at < now - timedelta(days=days)) & is_free
     with database.read() as session:
         ids = list(session.scalars(select(MeshRow.id).where(is_expired).order_by(MeshRow.used_at)))
@@ -172,10 +173,10 @@ def _delete_jobs(session: Session, rows: Sequence[JobRow]) -> None:
     """Delete jobs with all that names them, and note on their meshes until when these were in use."""
     ids = [row.id for row in rows]
     # In one order everywhere, so that two transactions can't deadlock.
-    for row in sorted(rows, key=lambda row: row.mesh_id):
-        ended_at = row.finished_at or utc_now()
+    uses = [(mesh_id, row.finished_at or utc_now()) for row in rows for mesh_id in (row.mesh_id, row.reference_id)]
+    for mesh_id, ended_at in sorted((mesh_id, ended_at) for mesh_id, ended_at in uses if mesh_id is not None):
         session.execute(
-            update(MeshRow).where(MeshRow.id == row.mesh_id, MeshRow.used_at < ended_at).values(used_at=ended_at)
+            update(MeshRow).where(MeshRow.id == mesh_id, MeshRow.used_at < ended_at).values(used_at=ended_at)
         )
     for table in (IdempotencyRow, EventRow, AttemptRow):
         session.execute(delete(table).where(table.job_id.in_(ids)))

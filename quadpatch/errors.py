@@ -6,6 +6,7 @@
     ├── MeshError
     │   ├── ReadError           unreadable_mesh       the bytes are no mesh of that format
     │   ├── FormatError         unsupported_format    a format or feature that is not read or written
+    │   │   └── EncodedMeshError  mesh_encoded        a .qpz file, which has to be decoded before anything else
     │   ├── EmptyMeshError      empty_mesh            no vertex or no face
     │   ├── NotFiniteError      not_finite            infinite or NaN coordinates
     │   ├── CoordinateRangeError  coordinate_out_of_range  coordinates of a size that no scan has
@@ -55,6 +56,12 @@ class FormatError(MeshError):
     """A format, or a feature of one, that is not read or written here."""
 
     code = "unsupported_format"
+
+
+class EncodedMeshError(FormatError):
+    """A `.qpz` file, which has to be decoded before anything else."""
+
+    code = "mesh_encoded"
 
 
 class EmptyMeshError(MeshError):

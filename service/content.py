@@ -18,6 +18,7 @@ from jobkit.storage.digests import digest_field, verified_chunks
 from service.head_requests import is_head
 from service.problems import ProblemError
 from service.services import Services
+from shared_rules.tasks import DONE, FILL, Task
 
 _RANGE = re.compile(r"^bytes=(?:(\d{1,18})-(\d{0,18})|-(\d{1,18}))$")
 _UNSAFE = re.compile(r"[^A-Za-z0-9._ -]")
@@ -109,10 +110,10 @@ def content_disposition(filename: str) -> str:
     return header if plain == filename else f"{header}; filename*=UTF-8''{quote(filename, safe='')}"
 
 
-def repaired_name(filename: str | None, mesh_id: str, suffix: str) -> str:
-    """Return the name of a result: that of the upload, marked as repaired."""
+def result_name(filename: str | None, mesh_id: str, suffix: str, task: Task = FILL) -> str:
+    """Return the name of a result: that of the upload, marked by what was done to it."""
     stem = PurePath(filename or "").stem or f"mesh-{mesh_id[:12]}"
-    return f"{stem}-repaired{suffix}"
+    return f"{stem}-{DONE[task]}{suffix}"
 
 
 def _requested_range(request: Request, content: Content) -> tuple[int, int] | None:

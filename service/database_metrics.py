@@ -24,7 +24,7 @@ from jobkit.database.tables import (
     StageRow,
 )
 from jobkit.jobs.attempts import AT_WORK
-from jobkit.schema import DeliveryState, JobState, MeshState, ModelState
+from jobkit.schema import TASKS, DeliveryState, JobState, MeshState, ModelState
 from jobkit.storage.damage import OBJECT_KINDS
 from jobkit.storage.scrub_schedule import oldest_check
 
@@ -74,6 +74,11 @@ def _states(session: Session) -> Iterator[Metric]:
     yield _gauge_by_state(
         "quadpatch_meshes", "Meshes that are kept, by state.", _counts(session, MeshRow.state), mesh_states
     )
+    tasks = GaugeMetricFamily("quadpatch_jobs_by_task", "Jobs that are kept, by task.", labels=["task"])
+    by_task = _counts(session, JobRow.task)
+    for task in TASKS:
+        tasks.add_metric([task], by_task.get(task, 0))
+    yield tasks
     models, proof_states = _counts(session, ModelRow.state), [state.value for state in ModelState]
     yield _gauge_by_state("quadpatch_models", "Versions of models, by state.", models, proof_states)
     deliveries, states = _counts(session, DeliveryRow.state), [state.value for state in DeliveryState]
@@ -135,10 +140,12 @@ def _totals(session: Session) -> Iterator[Metric]:
     for outcome, code in dict.fromkeys([*_EXPECTED_OUTCOMES, *counts]):
         attempts.add_metric([outcome, code], counts.get((outcome, code), 0))
     stages = SummaryMetricFamily(
-        "quadpatch_stage_duration_seconds", "Stages of published repairs, by method.", labels=["stage", "method"]
+        "quadpatch_stage_duration_seconds",
+        "Stages of published jobs, by method and task.",
+        labels=["stage", "method", "task"],
     )
     for stage in session.scalars(select(StageRow)):
-        stages.add_metric([stage.stage, stage.method], stage.count, stage.seconds)
+        stages.add_metric([stage.stage, stage.method, stage.task], stage.count, stage.seconds)
     yield from (attempts, stages)
 
 

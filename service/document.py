@@ -15,7 +15,8 @@ TITLE = "Quadpatch"
 VERSION = "0.2.0"
 DESCRIPTION = (
     "Repairs holes in 3D scans. Upload a mesh, start a job, fetch the repaired mesh: measured vertices keep their "
-    "bits, invented ones are marked, scored and explained. Names are snake_case, times RFC 3339, lengths in mesh "
+    "bits, invented ones are marked, scored and explained. Other tasks of a job restore missing vertices, take noise "
+    "away, and compress a surface. Names are snake_case, times RFC 3339, lengths in mesh "
     "units. Every error is an RFC 9457 problem document with a stable `code`. On loopback without API keys no key is "
     "asked for."
 )

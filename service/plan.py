@@ -1,8 +1,9 @@
-"""What a job would do: its selection, applied to the hole list that a worker found."""
+"""What a job would do: for a fill its selection, applied to the hole list that a worker found."""
 
 from jobkit.errors import UnknownHoleError
 from jobkit.schema import DictionaryMethod, HoleSelection, JobSpec, Limits, MeshFacts, Plan, PlannedHole, ResolvedModel
 from jobkit.settings import Settings
+from service.plan_summary import summary_of
 from shared_rules.hole_selection import choose_holes, join_islands, unknown_hole
 
 
@@ -15,7 +16,7 @@ def make_plan(spec: JobSpec, facts: MeshFacts, model: ResolvedModel, settings: S
         If an explicit id names no hole.
     """
     check_hole_ids(spec.holes, facts)
-    choices = choose_holes(facts.holes, spec.holes, facts.diagonal)
+    choices = choose_holes(facts.holes, spec.holes, facts.diagonal or 0.0)
     if not (isinstance(spec.method, DictionaryMethod) and spec.method.recipe == "paper"):
         choices = join_islands(
             [hole.lies_in for hole in facts.holes], choices
@@ -30,17 +31,36 @@ def make_plan(spec: JobSpec, facts: MeshFacts, model: ResolvedModel, settings: S
         )
         for hole, choice in zip(facts.holes, choices, strict=True)
     ]
-    limits = Limits(
-        time_s=spec.limits.time_s or settings.job_time_limit_s,
-        memory_mb=spec.limits.memory_mb or settings.job_memory_limit_mb,
-    )
+    n_selected = sum(hole.selected for hole in holes)
     return Plan(
         mesh_id=spec.mesh_id,
+        task=spec.task,
+        summary=f"fill {n_selected} of {len(holes)} holes",
         model=model,
         holes=holes,
-        selected=sum(hole.selected for hole in holes),
-        limits=limits,
+        selected=n_selected,
+        limits=_limits(spec, settings),
         is_exact=spec.weld_tolerance == "auto",
+    )
+
+
+def plan_of_task(spec: JobSpec, model: ResolvedModel, settings: Settings) -> Plan:
+    """Say what a job would do whose task is not to fill holes: it has no hole list."""
+    return Plan(
+        mesh_id=spec.mesh_id,
+        task=spec.task,
+        summary=summary_of(spec),
+        model=model,
+        holes=[],
+        selected=0,
+        limits=_limits(spec, settings),
+    )
+
+
+def _limits(spec: JobSpec, settings: Settings) -> Limits:
+    return Limits(
+        time_s=spec.limits.time_s or settings.job_time_limit_s,
+        memory_mb=spec.limits.memory_mb or settings.job_memory_limit_mb,
     )
 
 

@@ -44,6 +44,8 @@ _RETRY_LATER = (
 RETRY_AFTER_S = "2"
 # A body of a megabyte may hold a hundred thousand wrong fields; its sender corrects some and tries again.
 MOST_FIELD_ERRORS = 50
+# Fields of a spec that hold one of several models, told apart by a tag.
+_UNIONS = (("method",), ("restore", "missing"), ("denoise", "region"))
 
 
 class ProblemError(Exception):
@@ -128,11 +130,20 @@ def malformed_json(reason: str) -> ProblemError:
 
 
 def _field_error(detail: Mapping[str, Any], root: str | None) -> FieldError:
-    where = [str(step) for step in detail["loc"]]
-    location = root or where.pop(0)
+    steps = [str(step) for step in detail["loc"]]
+    location = root or steps.pop(0)
     is_body = location == "body"
-    method = where.index("method") + 1 if where[:1] == ["method"] or where[:2] == ["spec", "method"] else len(where)
-    where[method : method + 1] = []  # the tag of the union, which stands in no document
+    where = _without_tag(steps)
     pointer = "".join("/" + step.replace("~", "~0").replace("/", "~1") for step in where) if is_body else where[-1]
     message = printable(str(detail["msg"]))
     return FieldError(location=location, pointer=printable(pointer), message=message, code=str(detail["type"]))
+
+
+def _without_tag(where: list[str]) -> list[str]:
+    """Take out of a location the tag of a union, which stands in no document."""
+    start = 1 if where[:1] == ["spec"] else 0
+    for union in _UNIONS:
+        end = start + len(union)
+        if tuple(where[start:end]) == union:
+            return [*where[:end], *where[end + 1 :]]
+    return where

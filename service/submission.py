@@ -9,22 +9,33 @@ from dataclasses import dataclass
 from jobkit.database.idempotency import Idempotency
 from jobkit.errors import (
     MeshNotReadyError,
-    MeshRejectedError,
     OptionsConflictError,
     OverLimitError,
     QueueUnavailableError,
 )
 from jobkit.jobs.jobs import NewJob
 from jobkit.logs import current_request_id
-from jobkit.models.resolution import resolve_method
+from jobkit.models.resolution import resolve_decoding, resolve_method
 from jobkit.requeue import submit_analysis, submit_job, submit_proof
-from jobkit.schema import Job, JobSpec, Limits, Mesh, MeshFacts, MeshState, Plan, ResolvedModel, conflict_of
+from jobkit.schema import (
+    DictionaryMethod,
+    Job,
+    JobSpec,
+    Limits,
+    MeshState,
+    Plan,
+    ResolvedModel,
+    conflict_of,
+    identity_of,
+)
 from jobkit.settings import Settings
 from jobkit.telemetry import current_traceparent
 from service.formats import clean_filename
 from service.idempotency import idempotency_of
-from service.plan import check_hole_ids, make_plan
+from service.mesh_checks import check_mesh, check_reference
+from service.plan import check_hole_ids, make_plan, plan_of_task
 from service.services import Services
+from shared_rules.tasks import FILL
 
 _logger = logging.getLogger("service")
 
@@ -41,7 +52,7 @@ class Submission:
     @property
     def idempotency(self) -> Idempotency | None:
         """The key with a digest of the request, None where none was sent."""
-        return idempotency_of(self.principal, self.key, self.rerun_of or "", self.spec.model_dump_json())
+        return idempotency_of(self.principal, self.key, self.rerun_of or "", identity_of(self.spec))
 
 
 def submit(services: Services, submission: Submission) -> tuple[Job, bool]:
@@ -54,8 +65,8 @@ def submit(services: Services, submission: Submission) -> tuple[Job, bool]:
 
     Raises
     ------
-    MeshNotFoundError, MeshRejectedError, UnknownHoleError
-        If the mesh can't be repaired as asked.
+    MeshNotFoundError, MeshRejectedError, MeshEncodedError, MeshNotEncodedError, UnknownHoleError
+        If the mesh, or the reference, can't be worked on as asked.
     ModelNotFoundError, ModelKindError, NoNetworkError, ModelNotProvenError, ModelRefusedError
         If the method's model can't be used.
     OptionsConflictError
@@ -90,8 +101,12 @@ def submit(services: Services, submission: Submission) -> tuple[Job, bool]:
 def plan(services: Services, spec: JobSpec) -> Plan:
     """Return what a job would do, without making it; raises as `submit`, and MeshNotReadyError."""
     model = _check(services, spec)
-    facts = _facts(services.meshes.get(spec.mesh_id))
-    return make_plan(spec, facts, model, services.settings)
+    mesh = services.meshes.get(spec.mesh_id)
+    if mesh.state is MeshState.ANALYSING:
+        raise MeshNotReadyError(f"mesh {mesh.id} is still being analysed; ask again, or send Prefer: wait=10")
+    if spec.task == FILL and mesh.facts is not None:
+        return make_plan(spec, mesh.facts, model, services.settings)
+    return plan_of_task(spec, model, services.settings)
 
 
 def request_analysis(services: Services, mesh_id: str) -> None:
@@ -116,10 +131,14 @@ def _check(services: Services, spec: JobSpec) -> ResolvedModel:
         raise OptionsConflictError(conflict)
     _check_limits(spec.limits, services.settings)
     mesh = services.meshes.get(spec.mesh_id)
-    if mesh.problem is not None:
-        raise MeshRejectedError(f"mesh {mesh.id} was rejected ({mesh.problem.code}): {mesh.problem.message}")
+    check_mesh(mesh, spec)
+    if spec.reference_id is not None:
+        check_reference(services.meshes.get(spec.reference_id))
     if mesh.facts is not None:
         check_hole_ids(spec.holes, mesh.facts)
+    encoded = None if mesh.facts is None else mesh.facts.encoded
+    if encoded is not None and isinstance(spec.method, DictionaryMethod):
+        return resolve_decoding(services.registry, spec.method, encoded)
     return resolve_method(services.registry, spec.method)
 
 
@@ -131,9 +150,3 @@ def _check_limits(limits: Limits, settings: Settings) -> None:
     for name, requested, most in limits_of_service:
         if requested is not None and requested > most:
             raise OverLimitError(f"limits.{name} is {requested}; this service grants at most {most}")
-
-
-def _facts(mesh: Mesh) -> MeshFacts:
-    if mesh.state is MeshState.ANALYSING or mesh.facts is None:
-        raise MeshNotReadyError(f"mesh {mesh.id} is still being analysed; ask again, or send Prefer: wait=10")
-    return mesh.facts

@@ -35,7 +35,7 @@ def analyse(context: Context, analysis: Analysis) -> None:
         check,
         lambda observer: _work(context, analysis, observer),
         lambda facts: meshes.publish(analysis, facts),
-        lambda facts: f"{facts.vertices} vertices, {len(facts.holes)} holes",
+        lambda facts: f"{facts.format}, {facts.vertices} vertices, {len(facts.holes)} holes",
     )
 
 

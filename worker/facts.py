@@ -10,13 +10,13 @@ _NO_UNIT = "mesh units"
 
 
 def mesh_facts(inspection: dict[str, Any]) -> MeshFacts:
-    """Translate the answer of `quadpatch.repair.inspect_file`; lengths are in mesh units."""
-    bounding_box = inspection["bounding_box"]
+    """Translate the answer of `quadpatch.tasks.inspect.inspect_any`; lengths are in mesh units."""
+    bounding_box = inspection.get("bounding_box")
     unit = inspection["length_unit"]
     return MeshFacts.model_validate(
         {
             **inspection,
             "unit": None if unit == _NO_UNIT else unit,
-            "diagonal": math.dist(bounding_box["min"], bounding_box["max"]),
+            "diagonal": None if bounding_box is None else math.dist(bounding_box["min"], bounding_box["max"]),
         }
     )

@@ -37,7 +37,11 @@ def run_job(job_id: str) -> None:
             "attempt",
             SpanKind.CONSUMER,
             started.traceparent,
-            {"quadpatch.job_id": attempt.job_id, "quadpatch.attempt": attempt.number},
+            {
+                "quadpatch.job_id": attempt.job_id,
+                "quadpatch.attempt": attempt.number,
+                "quadpatch.task": started.job.spec.task,
+            },
         ) as span,
     ):
         state = repair(context, started)

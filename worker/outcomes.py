@@ -5,7 +5,7 @@ Tested in `tests/worker/test_repairs.py`.
 
 import logging
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import TypeVar
 
@@ -13,7 +13,7 @@ from jobkit.errors import NotFoundError, ObjectDamagedError, StoreUnavailableErr
 from jobkit.meshes import MESH_DAMAGED, MeshSource
 from jobkit.storage.digests import verified_file
 from worker.context import Context
-from worker.engine.request import MESH_FOLDER
+from worker.engine.request import MESH_FOLDER, REFERENCE_FOLDER
 from worker.failures import (
     EngineFailedError,
     EngineStoppedError,
@@ -58,22 +58,31 @@ def outcome_of(work: Callable[[], T], subject: str) -> T | Failure | StopReason:
 
 
 @contextmanager
-def folder_with_mesh(context: Context, source: MeshSource) -> Iterator[Path]:
-    """Make the folder of a request with the mesh in it, under a name that states its format.
+def folder_with_mesh(context: Context, source: MeshSource, reference: MeshSource | None = None) -> Iterator[Path]:
+    """Make the folder of a request with the mesh in it, and its reference, under names that state their formats.
 
     Raises
     ------
     EngineFailedError
-        If the mesh is gone from the store, or its bytes are not those that were uploaded.
+        If a mesh is gone from the store, or its bytes are not those that were uploaded.
     """
-    with request_folder(context.work_folder) as folder:
-        try:
-            with verified_file(context.store, source.key, source.mesh_id) as path:
-                (folder / MESH_FOLDER).mkdir()
-                (folder / source_name(source)).symlink_to(path)
-                yield folder
-        except NotFoundError as error:
-            raise EngineFailedError(Failure("mesh_missing", "the mesh is gone from the store")) from error
-        except ObjectDamagedError as error:
-            message = "the bytes of the mesh in the store are not those that were uploaded; upload it again"
-            raise EngineFailedError(Failure(MESH_DAMAGED, message)) from error
+    with request_folder(context.work_folder) as folder, ExitStack() as files:
+        files.enter_context(_linked(context, source, folder, MESH_FOLDER, "the mesh"))
+        if reference is not None:
+            files.enter_context(_linked(context, reference, folder, REFERENCE_FOLDER, "the reference mesh"))
+        yield folder
+
+
+@contextmanager
+def _linked(context: Context, source: MeshSource, folder: Path, subfolder: str, name: str) -> Iterator[None]:
+    """Link the verified file of a mesh into a folder of its own; `name` is for people."""
+    try:
+        with verified_file(context.store, source.key, source.mesh_id) as path:
+            (folder / subfolder).mkdir()
+            (folder / source_name(source, subfolder)).symlink_to(path)
+            yield
+    except NotFoundError as error:
+        raise EngineFailedError(Failure("mesh_missing", f"{name} is gone from the store")) from error
+    except ObjectDamagedError as error:
+        message = f"the bytes of {name} in the store are not those that were uploaded; upload it again"
+        raise EngineFailedError(Failure(MESH_DAMAGED, message)) from error

@@ -40,7 +40,7 @@ from worker.results import (
     stage_seconds,
     store_result,
 )
-from worker.spec import repair_request
+from worker.spec import job_request
 
 # A repair that is nearly done may finish when its worker is asked to stop; the others are handed back.
 _DRAIN_GRACE_S = 2.0
@@ -108,21 +108,23 @@ def _drop(context: Context, started_attempt: StartedAttempt) -> None:
 
 
 def _run(context: Context, started_attempt: StartedAttempt) -> _Repaired:
-    with Heartbeat(_heartbeat_calls(context, started_attempt)) as heartbeat:
+    calls, task = _heartbeat_calls(context, started_attempt), started_attempt.job.spec.task
+    with Heartbeat(calls, task) as heartbeat:
         return _work(context, started_attempt, heartbeat)
 
 
 def _work(context: Context, started_attempt: StartedAttempt, heartbeat: Heartbeat) -> _Repaired:
     job, started_at = started_attempt.job, time.monotonic()
     source = context.meshes.source(job.mesh_id)
+    reference = None if job.spec.reference_id is None else context.meshes.source(job.spec.reference_id)
     model = model_argument(job.model, context.registry, context.store, context.cache_folder)
     deprecated = deprecation(job.model, context.registry)
     settings = context.settings
     limits = EngineLimits(settings.job_time_limit_s, settings.job_memory_limit_mb, n_threads=context.n_threads)
     request = replace(
-        repair_request(job.spec, source, model, limits), model_card=network_card(job.model, context.registry)
+        job_request(job.spec, source, model, limits, reference), model_card=network_card(job.model, context.registry)
     )
-    with folder_with_mesh(context, source) as folder:
+    with folder_with_mesh(context, source, reference) as folder:
         with context.telemetry.stages() as spans:
             observer = Observer(_report_to_both(heartbeat, spans), _StopRule(context, heartbeat), heartbeat.note_memory)
             failure = run_engine(context.fork_server, request, folder, observer)
@@ -133,7 +135,7 @@ def _work(context: Context, started_attempt: StartedAttempt, heartbeat: Heartbea
         if deprecated is not None:
             note_deprecation(folder, f"{job.model.name}@{job.model.version}", deprecated.reason)
         result = store_result(folder, request, started_attempt.attempt, context.store, time.monotonic() - started_at)
-        return _Repaired(result, stage_seconds(folder, job.spec.method.method))
+        return _Repaired(result, stage_seconds(folder, job.spec))
 
 
 def _report_to_both(heartbeat: Heartbeat, spans: StageSpans) -> Callable[[str, float], None]:

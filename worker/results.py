@@ -7,12 +7,13 @@ from typing import Any
 
 from jobkit.jobs.endings import Attempt
 from jobkit.jobs.stage_seconds import StageSeconds
-from jobkit.schema import FileRole, HoleCounts, JobResult, ResultFile
+from jobkit.schema import FileRole, JobResult, JobSpec, ResultFile
 from jobkit.storage.base import ObjectStore, result_key
 from quadpatch.formats.output_files import write_whole
 from quadpatch.stages import failure_of
 from worker.engine.request import CLOSE_UPS_NAME, PREVIEW_NAME, REPORT_NAME, EngineRequest
 from worker.failures import Failure
+from worker.result_facts import facts_of_fill, facts_of_task
 
 _MEDIA_TYPES = {
     "stl": "model/stl",
@@ -52,30 +53,27 @@ def store_result(
     attempt : Attempt
     store : ObjectStore
     seconds : float
-        Wall-clock time of the repair.
+        Wall-clock time of the work.
     """
     mesh = _store_file(folder / request.output, "result", attempt, store)
     pictures = [file for picture in (_PREVIEW, _CLOSE_UPS) for file in _store_picture(picture, folder, attempt, store)]
     report = _read_report(folder)
     files = [mesh, _store_file(folder / REPORT_NAME, "report", attempt, store), *pictures]
-    counts = HoleCounts.model_validate(report["counts"])
     return JobResult.model_validate(
         {
             "format": Path(request.output).suffix.removeprefix("."),
-            "holes": counts,
-            "new_vertices": sum(hole.get("new_vertices", 0) for hole in report["holes"]),
-            "new_triangles": sum(hole.get("new_triangles", 0) for hole in report["holes"]),
             "seconds": round(seconds, 3),
-            "warnings": _warnings(report, counts),
             "files": files,
+            **(facts_of_fill(report) if request.task == "repair" else facts_of_task(report)),
         }
     )
 
 
-def stage_seconds(folder: Path, method: str) -> StageSeconds:
-    """Read from an engine's report how long the stages took; `method` as in the spec."""
+def stage_seconds(folder: Path, spec: JobSpec) -> StageSeconds:
+    """Read from an engine's report how long the stages took."""
     stages = _read_report(folder).get("stages", [])
-    return StageSeconds(method, {str(stage["name"]): float(stage["seconds"]) for stage in stages})
+    seconds = {str(stage["name"]): float(stage["seconds"]) for stage in stages}
+    return StageSeconds(spec.method.method, seconds, spec.task)
 
 
 def missing_pictures(folder: Path, request: EngineRequest) -> list[Picture]:
@@ -134,12 +132,3 @@ def _store_file(path: Path, role: FileRole, attempt: Attempt, store: ObjectStore
     return ResultFile(
         role=role, name=path.name, media_type=media_type, size_bytes=stored.size_bytes, sha256=stored.sha256
     )
-
-
-def _warnings(report: dict[str, Any], counts: HoleCounts) -> list[str]:
-    """Collect the report's warnings; a refused hole is one, whether or not the report says so in words."""
-    warnings = [str(text) for text in report["warnings"]]
-    if counts.refused and not warnings:
-        noun = "hole was" if counts.refused == 1 else "holes were"
-        warnings.append(f"{counts.refused} {noun} refused and left open; the report says why")
-    return warnings

@@ -4,9 +4,21 @@ from pathlib import PurePath
 from typing import Any, get_args
 
 from jobkit.meshes import MeshSource
-from jobkit.schema import SELF, CnnMethod, DictionaryMethod, Format, JobSpec, OutputFormat, SmoothMethod
+from jobkit.schema import (
+    SELF,
+    CnnMethod,
+    Denoising,
+    DictionaryMethod,
+    Format,
+    JobSpec,
+    OutputFormat,
+    RegionBox,
+    ResultFormat,
+    SmoothMethod,
+)
+from shared_rules.tasks import DONE
 from worker.engine.limits import EngineLimits
-from worker.engine.request import MESH_FOLDER, EngineRequest
+from worker.engine.request import MESH_FOLDER, REFERENCE_FOLDER, EngineRequest
 
 # Formats that are read, but handed back as another one: a glTF with its side files is no single file.
 _WRITTEN_AS: dict[str, OutputFormat] = {"gltf": "glb"}
@@ -15,17 +27,19 @@ _DEFAULT_OUTPUT: OutputFormat = "ply"
 _FITTING_SHARE = 2 / 3
 
 
-def source_name(source: MeshSource) -> str:
+def source_name(source: MeshSource, folder: str = MESH_FOLDER) -> str:
     """Name the mesh file so that its suffix states the format, which the reader goes by.
 
     It lies in a folder of its own: a glTF may name files beside it, and there must be none.
     """
     suffix = source.format or _suffix(source.filename)
-    return f"{MESH_FOLDER}/source.{suffix}" if suffix else f"{MESH_FOLDER}/source"
+    return f"{folder}/source.{suffix}" if suffix else f"{folder}/source"
 
 
-def output_format(spec: JobSpec, source: MeshSource) -> OutputFormat:
+def output_format(spec: JobSpec, source: MeshSource) -> ResultFormat:
     """Return the format that the job hands back: the one asked for, else that of the upload."""
+    if spec.task == "encode":
+        return "qpz"
     if spec.output.format is not None:
         return spec.output.format
     format_name = source.format or _suffix(source.filename)
@@ -34,7 +48,9 @@ def output_format(spec: JobSpec, source: MeshSource) -> OutputFormat:
     return next((form for form in get_args(OutputFormat) if form == format_name), _DEFAULT_OUTPUT)
 
 
-def repair_request(spec: JobSpec, source: MeshSource, model: str, limits: EngineLimits) -> EngineRequest:
+def job_request(
+    spec: JobSpec, source: MeshSource, model: str, limits: EngineLimits, reference: MeshSource | None = None
+) -> EngineRequest:
     """Translate a job.
 
     Parameters
@@ -46,17 +62,21 @@ def repair_request(spec: JobSpec, source: MeshSource, model: str, limits: Engine
         `smooth`, `self`, `self-network`, or the path of the pinned version's file.
     limits : EngineLimits
         Of the worker; the spec may only lower them.
+    reference : MeshSource, optional
+        The mesh that the job learns from.
     """
     tighter = tighter_limits(limits, spec)
     return EngineRequest(
-        task="repair",
+        task="repair" if spec.task == "fill" else spec.task,
         source=source_name(source),
-        output=f"repaired.{output_format(spec, source)}",
+        output=f"{DONE[spec.task]}.{output_format(spec, source)}",
         model=model,
-        options=method_options(spec, tighter.time_s),
+        options=method_options(spec, tighter.time_s) if spec.task == "fill" else task_options(spec),
         limits=tighter,
         with_preview=spec.output.preview,
         with_close_ups=spec.output.closeups,
+        reference="" if reference is None else source_name(reference, REFERENCE_FOLDER),
+        missing=None if spec.restore is None else spec.restore.missing.model_dump(),
     )
 
 
@@ -66,7 +86,7 @@ def inspect_request(source: MeshSource, limits: EngineLimits) -> EngineRequest:
 
 
 def method_options(spec: JobSpec, time_s: float) -> dict[str, Any]:
-    """Return the options as `quadpatch.options.RepairOptions.from_dict` reads them.
+    """Return the options of a fill as `quadpatch.options.RepairOptions.from_dict` reads them.
 
     Parameters
     ----------
@@ -82,6 +102,28 @@ def method_options(spec: JobSpec, time_s: float) -> dict[str, Any]:
         fitting = spec.method.fitting
         options["network"] = {"steps": fitting.steps, "seconds": min(fitting.seconds, _FITTING_SHARE * time_s)}
     return options
+
+
+def task_options(spec: JobSpec) -> dict[str, Any]:
+    """Return the options of another task as `from_dict` of its options reads them; lengths are in mesh units."""
+    options: dict[str, Any] = {"seed": spec.seed}
+    if not isinstance(spec.method, SmoothMethod):
+        options["patches"] = spec.method.patches.model_dump()
+    if spec.task == "denoise":
+        denoising = spec.denoise or Denoising()
+        options |= denoising.model_dump(exclude={"reference"}) | {"region": _region(denoising)}
+    if spec.restore is not None:
+        options["base"] = spec.restore.base
+    if spec.encode is not None:
+        options |= spec.encode.model_dump()
+    return options
+
+
+def _region(denoising: Denoising) -> dict[str, Any] | str | None:
+    """Say where vertices may move: in a box, or where a property says so."""
+    if isinstance(denoising.region, RegionBox):
+        return denoising.region.model_dump(exclude={"kind"})
+    return None if denoising.region is None else denoising.region.name
 
 
 def tighter_limits(limits: EngineLimits, spec: JobSpec) -> EngineLimits:

@@ -1,7 +1,7 @@
 """Rows of jobs, found and turned into what clients see."""
 
-from sqlalchemy import select
-from sqlalchemy.orm import Session
+from sqlalchemy import ColumnElement, or_, select
+from sqlalchemy.orm import InstrumentedAttribute, Session
 
 from jobkit.database.expiry import expiry
 from jobkit.database.tables import JobRow
@@ -16,6 +16,11 @@ def existing_job(session: Session, job_id: str, *, locked: bool = False) -> JobR
     if row is None:
         raise JobNotFoundError(f"there is no job {job_id}")
     return row
+
+
+def names_mesh(mesh_id: str | InstrumentedAttribute[str]) -> ColumnElement[bool]:
+    """Return the condition on a job that it is about the mesh, or learns from it."""
+    return or_(JobRow.mesh_id == mesh_id, JobRow.reference_id == mesh_id)
 
 
 def to_job(row: JobRow, retention_days: float = 0) -> Job:

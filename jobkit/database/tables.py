@@ -46,18 +46,21 @@ class MeshRow(Base):
 
 
 class JobRow(Base):
-    """A repair. This row is authoritative; the queue is a hint.
+    """A job. This row is authoritative; the queue is a hint.
 
     `attempt` fences and never falls; `forgiven` says how many attempts ended for reasons that lie outside of the job (a
     drained worker, a store that refused writes) and don't count towards `max_attempts`. A queued job that waits for
     such a reason to pass is not started before `not_before`. `queued_at` is when it last began to wait. `mesh_name` is
-    the name of the file that was uploaded for this job: the mesh itself may have another one later.
+    the name of the file that was uploaded for this job: the mesh itself may have another one later. `task` and
+    `reference_id`, the mesh that it learns from, are those of the spec.
     """
 
     __tablename__ = "jobs"
     id: Mapped[str] = mapped_column(String(40), primary_key=True)
     mesh_id: Mapped[str] = mapped_column(String(64), ForeignKey("meshes.id"))
     mesh_name: Mapped[str | None] = mapped_column(String(255))
+    task: Mapped[str] = mapped_column(String(16), default="fill", server_default="fill")
+    reference_id: Mapped[str | None] = mapped_column(String(64), ForeignKey("meshes.id"))
     state: Mapped[str] = mapped_column(String(32))
     attempt: Mapped[int] = mapped_column(default=0)
     max_attempts: Mapped[int]
@@ -87,6 +90,7 @@ class JobRow(Base):
     __table_args__ = (
         Index(None, "state", "id"),
         Index(None, "mesh_id"),
+        Index(None, "reference_id"),
         Index(None, "finished_at"),
         Index(None, "checked_at", "finished_at"),
     )
@@ -214,11 +218,12 @@ class LeaderRow(Base):
 
 
 class StageRow(Base):
-    """How often a stage has run in published repairs, and how long in all."""
+    """How often a stage has run in published jobs of a task, and how long in all."""
 
     __tablename__ = "stages"
     stage: Mapped[str] = mapped_column(String(64), primary_key=True)
     method: Mapped[str] = mapped_column(String(32), primary_key=True)
+    task: Mapped[str] = mapped_column(String(16), primary_key=True, default="fill")
     count: Mapped[int] = mapped_column(BigInteger)
     seconds: Mapped[float]
 

@@ -1,8 +1,9 @@
 """Estimates of how long jobs still take, from past jobs of their size, and their positions in the queue.
 
-A past job is similar if its model is of the same kind and its mesh of about the same size: the median of their seconds
-for each byte, times the bytes, is the estimate. A kind or size with too few past jobs has no estimate. A job without
-one counts as if it never freed its worker, so that estimates of the jobs behind it are rather too long.
+A past job is similar if its task is the same, its model of the same kind and its mesh of about the same size: the
+median of their seconds for each byte, times the bytes, is the estimate. A kind or size with too few past jobs has no
+estimate. A job without one counts as if it never freed its worker, so that estimates of the jobs behind it are rather
+too long.
 """
 
 import heapq
@@ -37,7 +38,7 @@ _NEVER = math.inf
 
 @dataclass(frozen=True)
 class PastJob:
-    """How long a job took that succeeded; `kind` is that of its model."""
+    """How long a job took that succeeded; `kind` is its task with the kind of its model."""
 
     kind: str
     size_bytes: int
@@ -249,7 +250,7 @@ def read_queue_estimate(session: Session, rates: Rates) -> tuple[dict[str, int],
 
 
 def _kinds_and_sizes(*columns: Any) -> Select[*tuple[Any, ...]]:
-    kind = JobRow.model["kind"].as_string().label("kind")
+    kind = JobRow.task.concat(" ").concat(JobRow.model["kind"].as_string()).label("kind")
     return select(JobRow.id, kind, MeshRow.size_bytes, *columns).join(MeshRow, MeshRow.id == JobRow.mesh_id)
 
 

@@ -76,7 +76,7 @@ class Jobs:
         IdempotencyError
             If the key came before with another request.
         MeshNotFoundError, ModelNotFoundError
-            If the mesh, or the version of the model, is not there.
+            If the mesh, its reference or the version of the model is not there.
         """
         try:
             return self._create(new, idempotency)
@@ -175,14 +175,14 @@ class Jobs:
         with self._database.write() as session:
             if idempotency is not None and (earlier := self._earlier_job(session, idempotency)) is not None:
                 return earlier, False
-            mesh = session.get(MeshRow, new.spec.mesh_id)
-            if mesh is None:
-                raise MeshNotFoundError(f"there is no mesh {new.spec.mesh_id}")
+            mesh = _existing_mesh(session, new.spec.mesh_id)
+            if new.spec.reference_id is not None:
+                _existing_mesh(session, new.spec.reference_id)
             _lock_model(session, new.model)
             row = _new_row(new, mesh.filename)
             session.add(row)
             session.flush()
-            append_event(session, row.id, "queued", row.created_at, {"state": row.state})
+            append_event(session, row.id, "queued", row.created_at, {"state": row.state, "task": row.task})
             remember(session, idempotency, job_id=row.id)
             return self._show(row), True
 
@@ -194,6 +194,13 @@ class Jobs:
         if earlier is None or earlier.job_id is None:
             return None
         return self._show(existing_job(session, earlier.job_id))
+
+
+def _existing_mesh(session: Session, mesh_id: str) -> MeshRow:
+    mesh = session.get(MeshRow, mesh_id)
+    if mesh is None:
+        raise MeshNotFoundError(f"there is no mesh {mesh_id}")
+    return mesh
 
 
 def _lock_model(session: Session, model: ResolvedModel) -> None:
@@ -212,6 +219,8 @@ def _new_row(new: NewJob, latest_name: str | None) -> JobRow:
         id=new_job_id(),
         mesh_id=new.spec.mesh_id,
         mesh_name=new.spec.mesh_name or latest_name,
+        task=new.spec.task,
+        reference_id=new.spec.reference_id,
         state=JobState.QUEUED.value,
         attempt=0,
         max_attempts=new.max_attempts,

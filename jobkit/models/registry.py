@@ -21,7 +21,7 @@ from jobkit.errors import ModelKindError, NameTakenError, RowConflictError
 from jobkit.models.errors import ModelDeprecatedError
 from jobkit.models.header import artifact_format, dictionary_card, to_wire_card
 from jobkit.models.network_header import check_network, read_network_card
-from jobkit.models.rows import check_proven, resolved_row, to_alias, to_model, to_version, version_row
+from jobkit.models.rows import check_proven, resolved_row, row_of_bytes, to_alias, to_model, to_version, version_row
 from jobkit.schema import SELF, Alias, Model, ModelKind, ModelList, ModelState, ModelVersion
 from jobkit.storage.base import CHUNK_BYTES, ObjectStore, StoredObject
 from jobkit.storage.removals import assure
@@ -142,6 +142,13 @@ class Registry:
         """
         with self._database.read() as session:
             row = resolved_row(session, reference)
+            check_proven(row)
+            return to_version(session, row)
+
+    def with_sha256(self, sha256: str, name: str) -> ModelVersion:
+        """Return a version of these bytes, for a job; raises as `usable`. `name` is what they were called elsewhere."""
+        with self._database.read() as session:
+            row = row_of_bytes(session, sha256, name)
             check_proven(row)
             return to_version(session, row)
 

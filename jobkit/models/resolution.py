@@ -5,6 +5,8 @@ from jobkit.models.registry import Registry
 from jobkit.schema import (
     SELF,
     CnnMethod,
+    DictionaryMethod,
+    EncodedFacts,
     Fitting,
     Method,
     ModelKind,
@@ -52,6 +54,30 @@ def resolve_method(registry: Registry, method: Method) -> ResolvedModel:
     version = _of_kind(registry, method.model, "dictionary")
     _check_recipe(version, method.recipe)
     return _pinned(method.model, version)
+
+
+def resolve_decoding(registry: Registry, method: DictionaryMethod, encoded: EncodedFacts) -> ResolvedModel:
+    """Pin the dictionary that a `.qpz` file was encoded with.
+
+    Raises
+    ------
+    ModelNotFoundError
+        If the file names a dictionary that is not registered here.
+    ModelKindError
+        If the method names another one.
+    ModelNotProvenError, ModelRefusedError
+        If the version is not to be used.
+    """
+    if encoded.model_sha256 is None:
+        return ResolvedModel(requested=method.model, kind="self")
+    if method.model == SELF:
+        return _pinned(SELF, registry.with_sha256(encoded.model_sha256, str(encoded.model)))
+    named = _of_kind(registry, method.model, "dictionary")
+    if named.sha256 != encoded.model_sha256:
+        raise ModelKindError(
+            f"the file was encoded with {encoded.model}; {named.name}@{named.version} is another dictionary"
+        )
+    return _pinned(method.model, named)
 
 
 def _of_kind(registry: Registry, reference: str, kind: ModelKind) -> ModelVersion:

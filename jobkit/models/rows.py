@@ -45,6 +45,22 @@ def resolved_row(session: Session, reference: str) -> ModelRow:
     return row
 
 
+def row_of_bytes(session: Session, sha256: str, name: str) -> ModelRow:
+    """Return a version of these bytes: one that is ready, where there are several.
+
+    Raises
+    ------
+    ModelNotFoundError
+        If none is registered; `name` says what they were called elsewhere.
+    """
+    is_ready = case((ModelRow.state == ModelState.READY.value, 1), else_=0)
+    query = select(ModelRow).where(ModelRow.sha256 == sha256)
+    row = session.scalars(query.order_by(is_ready.desc(), ModelRow.name, ModelRow.version.desc()).limit(1)).first()
+    if row is None:
+        raise ModelNotFoundError(f"no model here has the bytes of {name}, sha256 {sha256}")
+    return row
+
+
 def check_proven(row: ModelRow) -> None:
     """Raise ModelNotProvenError or ModelRefusedError where the version may not be used."""
     reference = f"{row.name}@{row.version}"

@@ -4,6 +4,7 @@ Tested in `tests/jobkit/schema/test_spec.py`.
 """
 
 from jobkit.schema.base import Request, Response, rfc3339
+from jobkit.schema.conflicts import conflict_of
 from jobkit.schema.jobs import (
     Event,
     EventPage,
@@ -18,8 +19,21 @@ from jobkit.schema.jobs import (
     Plan,
     PlannedHole,
     ResultFile,
+    ResultFormat,
 )
-from jobkit.schema.meshes import BoundingBox, Hole, Mesh, MeshFacts, MeshLinks, MeshProblem
+from jobkit.schema.meshes import BoundingBox, EncodedFacts, Hole, Mesh, MeshFacts, MeshLinks, MeshProblem
+from jobkit.schema.methods import (
+    DEFAULT_MODEL,
+    DEFAULT_NETWORK,
+    SELF,
+    CnnMethod,
+    DictionaryMethod,
+    Fitting,
+    Method,
+    PatchOptions,
+    Recipe,
+    SmoothMethod,
+)
 from jobkit.schema.models import (
     Alias,
     AliasTarget,
@@ -36,27 +50,30 @@ from jobkit.schema.models import (
 )
 from jobkit.schema.problems import PROBLEM_MEDIA_TYPE, FieldError, Problem
 from jobkit.schema.spec import (
-    DEFAULT_MODEL,
-    DEFAULT_NETWORK,
-    SELF,
-    CnnMethod,
-    DictionaryMethod,
-    Fitting,
     Format,
     HoleRule,
     HoleSelection,
     JobSpec,
     Limits,
-    Method,
     Output,
     OutputFormat,
-    PatchOptions,
-    Recipe,
     RepairSpec,
-    SmoothMethod,
-    conflict_of,
+    identity_of,
 )
 from jobkit.schema.states import TRANSITIONS, JobState, MeshState, ModelState
+from jobkit.schema.tasks import (
+    Denoising,
+    Encoding,
+    Missing,
+    MissingAsNan,
+    MissingByIndex,
+    MissingByProperty,
+    Region,
+    RegionBox,
+    RegionByProperty,
+    RestorationBase,
+    Restoring,
+)
 from jobkit.schema.webhooks import (
     Delivery,
     DeliveryDetail,
@@ -76,6 +93,7 @@ from jobkit.schema.webhooks import (
 )
 from shared_rules.hole_selection import HoleAction, HoleKind
 from shared_rules.stages import STAGES
+from shared_rules.tasks import TASKS, Task
 
 __all__ = [
     "DEFAULT_MODEL",
@@ -83,6 +101,7 @@ __all__ = [
     "PROBLEM_MEDIA_TYPE",
     "SELF",
     "STAGES",
+    "TASKS",
     "TRANSITIONS",
     "Alias",
     "AliasTarget",
@@ -94,9 +113,12 @@ __all__ = [
     "DeliveryPage",
     "DeliveryState",
     "DeliveryTry",
+    "Denoising",
     "Deprecation",
     "DeprecationReason",
     "DictionaryMethod",
+    "EncodedFacts",
+    "Encoding",
     "Event",
     "EventPage",
     "EventType",
@@ -126,6 +148,10 @@ __all__ = [
     "Message",
     "MessageType",
     "Method",
+    "Missing",
+    "MissingAsNan",
+    "MissingByIndex",
+    "MissingByProperty",
     "Model",
     "ModelCard",
     "ModelKind",
@@ -142,12 +168,19 @@ __all__ = [
     "PlannedHole",
     "Problem",
     "Recipe",
+    "Region",
+    "RegionBox",
+    "RegionByProperty",
     "RepairSpec",
     "Request",
     "ResolvedModel",
     "Response",
+    "RestorationBase",
+    "Restoring",
     "ResultFile",
+    "ResultFormat",
     "SmoothMethod",
+    "Task",
     "Webhook",
     "WebhookChange",
     "WebhookEvent",
@@ -155,5 +188,6 @@ __all__ = [
     "WebhookList",
     "WebhookWithSecret",
     "conflict_of",
+    "identity_of",
     "rfc3339",
 ]

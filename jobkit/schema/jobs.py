@@ -13,7 +13,10 @@ from jobkit.schema.models import ResolvedModel
 from jobkit.schema.spec import JobSpec, Limits, OutputFormat
 from jobkit.schema.states import JobState
 from shared_rules.hole_selection import HoleAction
+from shared_rules.tasks import FILL, Task
 
+# What a job hands back: a mesh in a format of its own choice, or an encoded surface.
+ResultFormat = OutputFormat | Literal["qpz"]
 FileRole = Literal["result", "report", "preview", "closeups"]
 
 
@@ -21,7 +24,7 @@ class JobError(Response):
     """Why a job, or an attempt, failed."""
 
     code: str = Field(description="Stable code.", examples=["time_limit_exceeded"])
-    message: str = Field(description="A sentence for people.", examples=["the repair took longer than 120 s"])
+    message: str = Field(description="A sentence for people.", examples=["the work took longer than 120 s"])
     stage: str | None = Field(default=None, description="Stage of the method that failed.", examples=["inpaint"])
     retryable: bool = Field(default=False, description="Whether the same job may succeed another time.")
 
@@ -47,13 +50,32 @@ class ResultFile(Response):
 
 
 class JobResult(Response):
-    """Facts of a finished repair."""
+    """Facts of a finished job. Lengths are in mesh units; what a task does not count is null."""
 
-    format: OutputFormat = Field(description="Format of the repaired mesh.", examples=["ply"])
+    format: ResultFormat = Field(description="Format of what came back; `qpz` from `encode`.", examples=["ply"])
     holes: HoleCounts = Field(default_factory=HoleCounts, description="Verdicts over all holes.")
     new_vertices: int = Field(default=0, ge=0, description="Vertices that were added.", examples=[2110])
     new_triangles: int = Field(default=0, ge=0, description="Triangles that were added.", examples=[4800])
-    seconds: float = Field(default=0.0, ge=0, description="Wall-clock seconds of the repair.", examples=[14.2])
+    restored_vertices: int | None = Field(
+        default=None, ge=0, description="Of `restore`: missing vertices that got a position.", examples=[1200]
+    )
+    moved_vertices: int | None = Field(
+        default=None, ge=0, description="Of `denoise`: vertices that were moved.", examples=[85_000]
+    )
+    shift_95: float | None = Field(
+        default=None,
+        ge=0,
+        description="Of `denoise`: 95 of 100 moved vertices were moved no farther than this, in mesh units.",
+        examples=[0.03],
+    )
+    max_error: float | None = Field(
+        default=None,
+        ge=0,
+        description="How far the decoded surface lies from the scan at most, in mesh units: as measured by `encode`, "
+        "as promised in the file that `decode` read.",
+        examples=[0.0098],
+    )
+    seconds: float = Field(default=0.0, ge=0, description="Wall-clock seconds of the job.", examples=[14.2])
     warnings: list[str] = Field(default_factory=list, description="Sentences for people.")
     files: list[ResultFile] = Field(default_factory=list, description="What can be fetched.")
 
@@ -67,24 +89,24 @@ class JobLinks(Response):
 
     self: str = Field(description="This job.")
     events: str = Field(description="Its event log.")
-    mesh: str = Field(description="The mesh it repairs.")
+    mesh: str = Field(description="The mesh it works on.")
     rerun: str = Field(description="POST here to run the same spec again.")
     cancel: str | None = Field(default=None, description="POST here to cancel.")
-    result: str | None = Field(default=None, description="The repaired mesh.")
+    result: str | None = Field(default=None, description="The repaired mesh, or what else the task makes.")
     report: str | None = Field(default=None, description="The JSON report.")
     preview: str | None = Field(default=None, description="The before/after picture.")
     closeups: str | None = Field(default=None, description="Pictures of the chosen holes, a ZIP file.")
 
 
 class Job(Response):
-    """A repair, from the promise to the result."""
+    """A job, from the promise to the result."""
 
     id: JobId
     state: JobState = Field(description="Where it stands.", examples=["running"])
     attempt: int = Field(ge=0, description="Attempts started so far.", examples=[1])
     max_attempts: int = Field(ge=1, description="Attempts before the job is given up.", examples=[3])
     stage: str | None = Field(default=None, description="Stage of the method at work.", examples=["inpaint"])
-    percent: float = Field(ge=0, le=100, description="Share of the whole repair that is done.", examples=[62.5])
+    percent: float = Field(ge=0, le=100, description="Share of the whole job that is done.", examples=[62.5])
     queue_position: int | None = Field(
         default=None, ge=1, description="Its place among the jobs that wait, from 1; null once it runs.", examples=[3]
     )
@@ -101,7 +123,7 @@ class Job(Response):
     mesh_id: MeshId
     mesh_name: str | None = Field(
         default=None,
-        description="Name of the file that it repairs, after which its result is named; null: the sender gave none.",
+        description="Name of the file that it works on, after which its result is named; null: the sender gave none.",
         examples=["face000.ply"],
     )
     model: ResolvedModel = Field(description="The model version it is pinned to.")
@@ -167,8 +189,12 @@ class Plan(Response):
     """What a job would do; nothing was started."""
 
     mesh_id: MeshId
+    task: Task = Field(default=FILL, description="The task that it would do.", examples=["fill"])
+    summary: str = Field(default="", description="What it would do, for people.", examples=["fill 38 of 39 holes"])
     model: ResolvedModel = Field(description="The model version it would be pinned to.")
-    holes: list[PlannedHole] = Field(description="All holes of the mesh, widest first.")
+    holes: list[PlannedHole] = Field(
+        description="All holes of the mesh, widest first; empty where the task is not `fill`."
+    )
     is_exact: bool = Field(
         default=True,
         description="False with a `weld_tolerance` other than `auto`: the job finds the holes anew, and these are not "

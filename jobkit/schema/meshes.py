@@ -67,18 +67,38 @@ class Hole(Response):
         return values
 
 
+class EncodedFacts(Response):
+    """What the header of a `.qpz` file says."""
+
+    max_error: float = Field(
+        ge=0, description="How far the decoded surface lies from the scan at most, in mesh units.", examples=[0.01]
+    )
+    keeps_connectivity: bool = Field(description="Whether the vertices and triangles of the scan come back.")
+    model: str | None = Field(
+        default=None,
+        description="The dictionary that it was encoded with, as that was called then; null: the file holds it.",
+        examples=["general-dictionary@1"],
+    )
+    model_sha256: str | None = Field(default=None, description="sha256 of that dictionary's file, in hex.")
+
+
 class MeshFacts(Response):
-    """What the analysis found."""
+    """What the analysis found. Of a `.qpz` file, whose header alone is read, null is what decoding would show."""
 
     format: Format = Field(description="Format that the file was read as.", examples=["ply"])
     unit: str | None = Field(
         default=None, description="Length unit that the file states; null: it states none.", examples=["millimeter"]
     )
-    vertices: int = Field(ge=0, description="Vertices in the file.", examples=[85_182])
-    triangles: int = Field(ge=0, description="Triangles, polygons cut.", examples=[168_702])
-    bounding_box: BoundingBox = Field(description="Box around all vertices.")
-    diagonal: float = Field(ge=0, description="Diagonal of the bounding box, in mesh units.", examples=[3.46])
-    mean_edge_length: float = Field(ge=0, description="Mean length of an edge, in mesh units.", examples=[0.02])
+    vertices: int | None = Field(default=None, ge=0, description="Vertices in the file.", examples=[85_182])
+    triangles: int | None = Field(default=None, ge=0, description="Triangles, polygons cut.", examples=[168_702])
+    bounding_box: BoundingBox | None = Field(default=None, description="Box around all vertices.")
+    diagonal: float | None = Field(
+        default=None, ge=0, description="Diagonal of the bounding box, in mesh units.", examples=[3.46]
+    )
+    mean_edge_length: float | None = Field(
+        default=None, ge=0, description="Mean length of an edge, in mesh units.", examples=[0.02]
+    )
+    encoded: EncodedFacts | None = Field(default=None, description="What a `.qpz` file says of itself; else null.")
     holes: list[Hole] = Field(description="Boundary loops, widest first.")
     warnings: list[str] = Field(
         default_factory=list, description="What the file holds more than once, or the wrong way round, for people."

@@ -4,20 +4,17 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, model_validator
 
-from jobkit.schema.base import REFERENCE_PATTERN, TEXT_PATTERN, WHOLE, MeshId, Request
-from shared_rules.hole_selection import MODEL_FILLS_ONLY, Cap, HoleKind, RuleAction, names_fills
+from jobkit.schema.base import TEXT_PATTERN, WHOLE, MeshId, Request
+from jobkit.schema.methods import DEFAULT_MODEL, SELF, DictionaryMethod, Method
+from jobkit.schema.tasks import Denoising, Encoding, Restoring
+from shared_rules.hole_selection import Cap, HoleKind, RuleAction
+from shared_rules.tasks import FILL, Task
 
-Format = Literal["ply", "stl", "obj", "off", "glb", "gltf", "3mf"]
+# `qpz` is what the task `encode` hands back and `decode` reads; it is a mesh that is no list of triangles.
+Format = Literal["ply", "stl", "obj", "off", "glb", "gltf", "3mf", "qpz"]
 OutputFormat = Literal["ply", "stl", "obj", "off", "glb", "3mf"]
-DEFAULT_MODEL = "default"
-DEFAULT_NETWORK = "default-network"
-SELF = "self"
-Recipe = Literal["default", "paper"]
 
-Resolution = Annotated[int, Field(ge=8, le=128), WHOLE]
-Overlap = Annotated[int, Field(ge=0, le=8), WHOLE]
 HoleId = Annotated[int, Field(ge=0, le=2**31 - 1), WHOLE]
-FittingSteps = Annotated[int, Field(ge=1, le=100_000), WHOLE]
 MemoryMb = Annotated[int, Field(ge=256, le=1_048_576), WHOLE]
 Seed = Annotated[int, Field(ge=0, le=2**32 - 1), WHOLE]
 Text = Annotated[str, Field(max_length=200, pattern=TEXT_PATTERN)]
@@ -30,80 +27,6 @@ def _name_property_pattern(schema: dict[str, Any]) -> None:
     """Say that other keys are refused; patternProperties alone would let them pass."""
     ((_, values),) = schema.pop("patternProperties").items()
     schema.update(propertyNames={"pattern": _METADATA_KEY}, additionalProperties=values)
-
-
-class PatchOptions(Request):
-    """How patches are laid out. Null means: chosen from the mesh's edge length and the sizes of its holes."""
-
-    length: float | None = Field(
-        default=None, gt=0, le=1e12, description="Side of a patch, in mesh units.", examples=[4.5]
-    )
-    resolution: Resolution | None = Field(default=None, description="Bins along one side of a patch.", examples=[24])
-    overlap: Overlap | None = Field(
-        default=None,
-        description="k of the paper: every quad carries its centre patch and 4 k offset ones.",
-        examples=[2],
-    )
-
-
-class DictionaryMethod(Request):
-    """Sparse coding over a dictionary of patches."""
-
-    method: Literal["dictionary"] = Field(description="Sparse coding over a dictionary.", examples=["dictionary"])
-    model: str = Field(
-        default=DEFAULT_MODEL,
-        pattern=REFERENCE_PATTERN,
-        description="`name@version`, `name` (its latest version), an alias, or `self`: learn a dictionary from the "
-        "undamaged part of the uploaded mesh.",
-        examples=["self"],
-    )
-    recipe: Recipe = Field(
-        default="default",
-        description="How the dictionary is put to use: `default`, or `paper`, exactly as in the paper that the method "
-        "follows. `paper` needs `self` or a dictionary learned for it.",
-        examples=["default"],
-    )
-    patches: PatchOptions = Field(default_factory=PatchOptions, description="How patches are laid out.")
-
-
-class Fitting(Request):
-    """How long a network is fitted to the mesh itself; goes with the model `self` alone."""
-
-    steps: FittingSteps = Field(default=1000, description="At most so many steps, of 64 patches each.", examples=[1000])
-    seconds: float = Field(
-        default=600.0,
-        gt=0,
-        le=86_400,
-        description="At most so long, and at most two thirds of the job's time limit. Where this ends before the steps "
-        "do, another run may give other bytes.",
-        examples=[300.0],
-    )
-
-
-class CnnMethod(Request):
-    """A convolutional network."""
-
-    method: Literal["cnn"] = Field(description="A convolutional network.", examples=["cnn"])
-    model: str = Field(
-        default=DEFAULT_NETWORK,
-        pattern=REFERENCE_PATTERN,
-        description="`name@version`, `name` (its latest version), an alias, or `self`: fit the shipped network to the "
-        "undamaged part of the uploaded mesh, which takes minutes.",
-        examples=["self"],
-    )
-    fitting: Fitting = Field(
-        default_factory=Fitting, description="How long `self` may take; refused with any other model."
-    )
-    patches: PatchOptions = Field(default_factory=PatchOptions, description="How patches are laid out.")
-
-
-class SmoothMethod(Request):
-    """No learned model: triangulate, refine and fair every hole (thin plate)."""
-
-    method: Literal["smooth"] = Field(description="Thin-plate fill without a model.", examples=["smooth"])
-
-
-Method = Annotated[DictionaryMethod | CnnMethod | SmoothMethod, Field(discriminator="method")]
 
 
 HoleIds = Annotated[list[HoleId], Field(min_length=1, max_length=100_000)]
@@ -178,7 +101,10 @@ class Output(Request):
     """What the job hands back."""
 
     format: OutputFormat | None = Field(
-        default=None, description="Format of the repaired mesh; null: that of the upload.", examples=["ply"]
+        default=None,
+        description="Format of the mesh that comes back; null: that of the upload, or `ply` for what was "
+        "decoded. The task `encode` hands back `.qpz` only.",
+        examples=["ply"],
     )
     preview: bool = Field(default=True, description="Whether to draw a before/after picture.")
     closeups: bool = Field(
@@ -195,15 +121,30 @@ class Limits(Request):
     memory_mb: MemoryMb | None = Field(default=None, description="Memory of the engine, in MiB.", examples=[2048])
 
 
-def default_method() -> DictionaryMethod:
-    """Return the method of a job that names none."""
-    return DictionaryMethod(method="dictionary")
+def _default_method(fields: dict[str, Any]) -> DictionaryMethod:
+    """Return the method of a job that names none: tasks other than `fill` go by what the mesh itself teaches."""
+    model = DEFAULT_MODEL if fields.get("task") == FILL else SELF
+    return DictionaryMethod(method="dictionary", model=model)
 
 
 class RepairSpec(Request):
     """What to do with a mesh."""
 
-    method: Method = Field(default_factory=default_method, description="How holes are filled.")
+    task: Task = Field(
+        default=FILL,
+        description="`fill` closes holes; `restore` gives missing vertices a position; `denoise` takes noise from "
+        "positions; `encode` compresses the surface into a `.qpz` file, and `decode` brings it back.",
+        examples=["fill"],
+    )
+    method: Method = Field(
+        default_factory=_default_method,
+        description="How patches are completed or coded. `encode` and `decode` go by a dictionary, `denoise` by one or "
+        "`smooth`. Left out, it is a dictionary: the model `default` where the task is `fill`, else `self`. For "
+        "`decode`, `self` means the dictionary that the file holds or names.",
+    )
+    restore: Restoring | None = Field(default=None, description="Options of the task `restore`, which needs them.")
+    denoise: Denoising | None = Field(default=None, description="Options of the task `denoise`.")
+    encode: Encoding | None = Field(default=None, description="Options of the task `encode`, which needs them.")
     holes: HoleSelection = Field(default_factory=HoleSelection, description="Which holes are filled.")
     weld_tolerance: Tolerance = Field(
         default="auto",
@@ -231,20 +172,6 @@ class RepairSpec(Request):
         return self
 
 
-def conflict_of(spec: RepairSpec) -> str | None:
-    """Say in a sentence which options of a job exclude each other; None where none do.
-
-    It is asked where a job is made, and not part of reading a spec: jobs that were stored before a rule came up are
-    still read.
-    """
-    if spec.weld_tolerance != "auto" and any(rule.ids is not None for rule in spec.holes.rules):
-        return "ids of holes.rules name holes found with the weld_tolerance auto: drop one of the two"
-    is_paper = isinstance(spec.method, DictionaryMethod) and spec.method.recipe == "paper"
-    if is_paper and names_fills(spec.holes):
-        return MODEL_FILLS_ONLY
-    return None
-
-
 class JobSpec(RepairSpec):
     """A whole job: a mesh, and what to do with it."""
 
@@ -255,3 +182,21 @@ class JobSpec(RepairSpec):
         "same bytes may come as several files.",
         examples=["face000.ply"],
     )
+
+    @property
+    def reference_id(self) -> str | None:
+        """Id of the mesh that the job learns from, None where it needs none."""
+        return None if self.denoise is None else self.denoise.reference
+
+
+# Fields that came after the first release of the contract.
+_LATER_FIELDS = {"task", "restore", "denoise", "encode"}
+
+
+def identity_of(spec: JobSpec) -> str:
+    """Return the JSON text by which two requests for the same thing are known as such.
+
+    It is what versions wrote that knew no task but `fill`: a request that is repeated across an upgrade stays the same.
+    """
+    is_fill = all(getattr(spec, name) == JobSpec.model_fields[name].default for name in _LATER_FIELDS)
+    return spec.model_dump_json(exclude=_LATER_FIELDS if is_fill else None)

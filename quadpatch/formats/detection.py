@@ -2,7 +2,7 @@
 
 import re
 
-from quadpatch.errors import FormatError, ReadError
+from quadpatch.errors import EncodedMeshError, FormatError, ReadError
 from quadpatch.formats.stl_layout import is_binary_stl, is_binary_stl_with_more
 from quadpatch.formats.text import decode_text
 
@@ -11,6 +11,8 @@ KNOWN = ("ply", "stl", "obj", "off", "glb", "gltf", "3mf")
 _OFF = re.compile(rb"(ST)?C?N?4?n?OFF(?![^\s])")
 _OBJ_LINE = re.compile(rb"^[ \t]*(v|vt|vn|f|mtllib)[ \t]+[^\s]", re.MULTILINE)
 _LOOK_AT = 1 << 16
+# How an encoded mesh begins.
+QPZ_MAGIC = b"QPZ\x1a"
 
 
 def detect_format(data: bytes, suffix: str) -> str:
@@ -33,7 +35,7 @@ def detect_format(data: bytes, suffix: str) -> str:
     ReadError
         If the file is empty.
     FormatError
-        If it is in no known format.
+        If it is in no known format; EncodedMeshError if it is a `.qpz` file.
     """
     if re.search(rb"[^\0\s]", data) is None:
         raise ReadError("the file is empty")
@@ -44,6 +46,8 @@ def detect_format(data: bytes, suffix: str) -> str:
         found = "stl"
     if found is None:
         raise FormatError(f"this is none of the formats that are read: {', '.join(KNOWN)}")
+    if found == "qpz":
+        raise EncodedMeshError("this is a .qpz file: decode it first")
     if found in _UNREAD:
         raise FormatError(_UNREAD[found])
     return found
@@ -62,6 +66,8 @@ def _by_magic(data: bytes) -> str | None:
         return "ply"
     if data[:4] == b"glTF":
         return "glb"
+    if data[:4] == QPZ_MAGIC:
+        return "qpz"
     if data[:4] == b"PK\x03\x04":
         # The names of the entries stand uncompressed in the archive's directory at its end.
         return "3mf" if b".model" in data[-_LOOK_AT:] or b".model" in data[:_LOOK_AT] else "zip"

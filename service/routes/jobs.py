@@ -69,7 +69,7 @@ async def create_job(
     key: IdempotencyKey = None,
     prefer: PreferHeader = None,
 ) -> Response:
-    """Repair a mesh. `{"mesh_id": …}` alone is enough."""
+    """Start a job. `{"mesh_id": …}` alone is enough: it fills the holes of the mesh."""
     if dry_run:
         return json_response(await run_in_threadpool(plan, services, spec))
     return await answer_submission(services, Submission(spec, principal, key), prefer)

@@ -9,7 +9,7 @@ from starlette.responses import Response
 from jobkit.errors import JobHasNoResultError, JobNotFinishedError, ObjectNotFoundError, ResultMissingError
 from jobkit.schema import FileRole, Job
 from jobkit.storage.base import result_key
-from service.content import OCTETS, Content, content_response, repaired_name
+from service.content import OCTETS, Content, content_response, result_name
 from service.routes.common import BINARY, CONDITIONAL, JobIdPath, not_modified, problems
 from service.services import Services, ServicesDep
 from service.strict_validation import StrictRoute
@@ -38,7 +38,7 @@ def get_result(
     services: ServicesDep,
     job_id: JobIdPath,
 ) -> Response:
-    """Fetch the repaired mesh."""
+    """Fetch the repaired mesh, or what else the task of the job makes."""
     return _file_response(request, services, job_id, "result", OCTETS)
 
 
@@ -53,7 +53,7 @@ def get_report(
     services: ServicesDep,
     job_id: JobIdPath,
 ) -> Response:
-    """Fetch the report: what was found, filled and left open, hole by hole, and why."""
+    """Fetch the report: what was found, filled and left open, hole by hole, and why, or what else the task did."""
     return _file_response(request, services, job_id, "report", "application/json")
 
 
@@ -102,7 +102,7 @@ def _file_response(
     mesh = services.meshes.get(job.mesh_id)
     suffixes = {"report": ".json", "preview": ".png", "closeups": "-closeups.zip"}
     suffix = suffixes.get(role) or (f".{job.result.format}" if job.result else "")
-    name = repaired_name(job.mesh_name or mesh.filename, mesh.id, suffix)
+    name = result_name(job.mesh_name or mesh.filename, mesh.id, suffix, job.spec.task)
     key = result_key(job_id, job.attempt, file.name)
     try:
         return content_response(request, services, Content(key, file.sha256, file.size_bytes, name, media_type))

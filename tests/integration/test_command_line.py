@@ -58,6 +58,19 @@ def test_the_suffix_of_the_output_says_its_format(
     assert (tmp_path / "out.mesh").read_bytes().startswith(b"ply")
 
 
+def test_a_scan_is_encoded_and_brought_back(
+    run: Callable[..., Result], relief_file: Callable[[str], Path], tmp_path: Path
+) -> None:
+    scan, encoded, again = relief_file("float.ply"), tmp_path / "scan.qpz", tmp_path / "again.stl"
+    done = run("encode", scan, "-o", encoded, "--max-error", "0.01")
+    assert done.exit_code == ExitCode.OK, done.stderr
+    assert f"float.ply: encoded in {encoded.stat().st_size:,} bytes, no farther than 0.0" in done.stderr
+    assert encoded.stat().st_size < scan.stat().st_size / 10
+    done = run("decode", encoded, "-o", again)
+    assert done.exit_code == ExitCode.OK, done.stderr
+    assert again.stat().st_size > encoded.stat().st_size
+
+
 def test_json_on_stdout_is_the_job(
     run: Callable[..., Result], relief_file: Callable[[str], Path], tmp_path: Path
 ) -> None:

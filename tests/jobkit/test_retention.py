@@ -1,4 +1,5 @@
 import threading
+from dataclasses import replace
 from datetime import timedelta
 
 import pytest
@@ -19,7 +20,7 @@ from jobkit.jobs.attempts import Attempts
 from jobkit.jobs.jobs import Jobs, NewJob
 from jobkit.meshes import Meshes
 from jobkit.retention import BATCH, delete_job, delete_mesh, expire_jobs, expire_meshes, pin_job, pin_mesh
-from jobkit.schema import Job, Mesh
+from jobkit.schema import Denoising, Job, JobSpec, Mesh
 from jobkit.storage.base import ObjectStore
 from tests.jobkit.fixtures import DAY, AgingStore, KilledError, age_rows, fail, finish, keys_in, upload
 
@@ -80,6 +81,31 @@ def test_a_mesh_goes_only_after_the_jobs_that_name_it(database: Database, store:
     delete_mesh(database, mesh_id)
     with pytest.raises(MeshNotFoundError):
         delete_mesh(database, mesh_id)
+
+
+def test_a_reference_is_kept_as_long_as_a_job_that_learns_from_it(
+    database: Database, store: ObjectStore, new_job: NewJob
+) -> None:
+    reference = upload(database, store, b"clean\n")
+    spec = JobSpec(mesh_id=new_job.spec.mesh_id, task="denoise", denoise=Denoising(reference=reference.id))
+    job = Jobs(database).create(replace(new_job, spec=spec))[0]
+    age_rows(database, 40 * DAY)
+    finish(database, store, job.id)
+    assert Meshes(database, 30).get(reference.id).expires_at is None
+    assert expire_meshes(database, 30, utc_now() + 99 * DAY) == 0
+    with pytest.raises(MeshInUseError, match=r"^1 job names mesh"):
+        delete_mesh(database, reference.id)
+    delete_job(database, store, job.id)
+    assert expire_meshes(database, 30, utc_now() + 29 * DAY) == 0
+    assert expire_meshes(database, 30, utc_now() + 31 * DAY) == 2
+
+
+def test_a_job_whose_reference_is_gone_is_not_made(database: Database, store: ObjectStore, new_job: NewJob) -> None:
+    reference = upload(database, store, b"clean\n")
+    spec = JobSpec(mesh_id=new_job.spec.mesh_id, task="denoise", denoise=Denoising(reference=reference.id))
+    delete_mesh(database, reference.id)
+    with pytest.raises(MeshNotFoundError, match=reference.id):
+        Jobs(database).create(replace(new_job, spec=spec))
 
 
 def test_a_mesh_that_comes_back_at_once_has_its_bytes(database: Database, store: ObjectStore, mesh: Mesh) -> None:

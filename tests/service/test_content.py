@@ -5,7 +5,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from starlette.testclient import TestClient
 
-from service.content import content_disposition, repaired_name
+from jobkit.schema import TASKS
+from service.content import content_disposition, result_name
 
 DATA = bytes(range(256)) * 40
 
@@ -91,4 +92,9 @@ def test_a_name_in_another_script_is_whole_in_the_extended_parameter() -> None:
     [("scan.ply", "scan-repaired.stl"), ("a.b.ply", "a.b-repaired.stl"), (None, "mesh-ffffffffffff-repaired.stl")],
 )
 def test_a_result_is_named_after_its_upload(filename: str | None, expected: str) -> None:
-    assert repaired_name(filename, "f" * 64, ".stl") == expected
+    assert result_name(filename, "f" * 64, ".stl") == expected
+
+
+def test_the_name_of_a_result_says_what_was_done() -> None:
+    names = [result_name("scan.ply", "f" * 64, ".qpz", task) for task in TASKS]
+    assert names == [f"scan-{word}.qpz" for word in ("repaired", "restored", "denoised", "encoded", "decoded")]

@@ -94,12 +94,20 @@ def test_a_wrong_method_is_told_all_right_ones(client: TestClient, path: str, al
 
 
 def test_each_wrong_field_is_pointed_at(client: TestClient) -> None:
-    spec = {"mesh_id": "x", "method": {"method": "cnn", "patches": {"overlap": 99}}, "metadata": {"a/b": "1"}}
+    spec = {
+        "mesh_id": "x",
+        "method": {"method": "cnn", "patches": {"overlap": 99}},
+        "metadata": {"a/b": "1"},
+        "restore": {"missing": {"kind": "indices", "indices": [-1]}},
+        "denoise": {"region": {"kind": "property", "name": ""}},
+    }
     problem = client.post("/v1/jobs", json=spec).json()
     assert {(error["location"], error["pointer"]) for error in problem["errors"]} == {
         ("body", "/mesh_id"),
         ("body", "/method/patches/overlap"),
         ("body", "/metadata/a~1b/[key]"),
+        ("body", "/restore/missing/indices/0"),
+        ("body", "/denoise/region/name"),
     }
     problem = client.get("/v1/jobs?limit=many&staet=queued").json()
     assert [(error["location"], error["pointer"]) for error in problem["errors"]] == [("query", "staet")]

@@ -16,7 +16,7 @@ from jobkit.database.clock import utc_now
 from jobkit.database.leadership import DISPATCHER, Leadership
 from jobkit.database.tables import JobRow
 from jobkit.jobs.stage_seconds import StageSeconds
-from jobkit.schema import HoleCounts, Job, JobError, JobResult, ModelVersion
+from jobkit.schema import TASKS, HoleCounts, Job, JobError, JobResult, ModelVersion
 from jobkit.settings import Settings
 from service.app import create_app
 from service.metrics import CACHE_S, StateCollector
@@ -88,8 +88,9 @@ def test_attempts_and_stages_are_added_up(services: Services, job_id: str) -> No
     found = figures(services)
     assert found[sample("attempts_total", outcome="requeued", code="worker_lost")] == 1
     assert found[sample("attempts_total", outcome="succeeded", code="")] == 1
-    assert found[sample("stage_duration_seconds_sum", stage="fill", method="smooth")] == 2.5
-    assert found[sample("stage_duration_seconds_count", stage="fill", method="smooth")] == 1
+    assert [found[sample("jobs_by_task", task=task)] for task in TASKS] == [1, 0, 0, 0, 0]
+    assert found[sample("stage_duration_seconds_sum", stage="fill", method="smooth", task="fill")] == 2.5
+    assert found[sample("stage_duration_seconds_count", stage="fill", method="smooth", task="fill")] == 1
 
 
 def test_who_leads_and_since_when_is_told(services: Services) -> None:

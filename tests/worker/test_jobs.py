@@ -71,6 +71,7 @@ def test_a_repair_goes_on_with_the_trace_of_its_request_and_has_a_span_for_each_
     assert attempt.attributes == {
         "quadpatch.job_id": job.id,
         "quadpatch.attempt": 1,
+        "quadpatch.task": "fill",
         "quadpatch.state": "succeeded",
     }
     assert {"stage fill", "stage judge", "stage write"} <= spans.keys()

@@ -1,15 +1,16 @@
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from jobkit.schema import STAGES
+from jobkit.schema import STAGES, TASKS, Task
 from worker.progress import Progress
 
 stages = st.sampled_from([*STAGES, "preview", "closeups", "something new"])
 
 
-@given(st.lists(st.tuples(stages, st.floats(allow_nan=False))))
-def test_the_percentage_never_falls_and_never_reaches_100(reports: list[tuple[str, float]]) -> None:
-    progress = Progress()
+@given(st.sampled_from(TASKS), st.lists(st.tuples(stages, st.floats(allow_nan=False))))
+def test_the_percentage_never_falls_and_never_reaches_100(task: Task, reports: list[tuple[str, float]]) -> None:
+    progress = Progress(task)
     seen = [0.0]
     for stage, fraction in reports:
         progress.reach(stage, fraction)
@@ -26,3 +27,11 @@ def test_every_stage_of_the_contract_moves_it_on() -> None:
         assert progress.stage == stage
         assert progress.percent > before
     assert progress.percent == 99.0
+
+
+@pytest.mark.parametrize("task", TASKS)
+def test_a_task_that_reaches_its_picture_is_all_but_done(task: Task) -> None:
+    progress = Progress(task)
+    for stage in ("read", "write", "preview"):
+        progress.reach(stage, 1.0)
+    assert progress.percent >= 95.0

@@ -1,3 +1,5 @@
+"""Also tests `worker.result_facts`."""
+
 import json
 from dataclasses import replace
 from pathlib import Path
@@ -11,6 +13,7 @@ from jobkit.storage.base import ObjectStore, StoredObject, result_key
 from worker.engine.limits import EngineLimits
 from worker.engine.request import EngineRequest
 from worker.failures import Failure
+from worker.result_facts import facts_of_task
 from worker.results import drop_result, missing_pictures, note_lost_pictures, store_result
 
 ATTEMPT = Attempt("job_01jd7z3v5qk8m2x4c6b8n0a9de", 2)
@@ -63,6 +66,30 @@ def test_files_lie_where_only_this_attempt_writes(tmp_path: Path, store: ObjectS
         assert store.size(result_key(ATTEMPT.job_id, 2, file.name)) == file.size_bytes
     assert (result.format, result.new_vertices, result.new_triangles, result.seconds) == ("stl", 3, 8, 1.5)
     assert result.warnings == []
+
+
+def test_the_result_of_a_task_tells_what_it_counted_and_nothing_of_holes(tmp_path: Path, store: ObjectStore) -> None:
+    error = {"promised": 0.3, "true_to_decoded": 0.2, "decoded_to_true": 0.25}
+    report = {"task": "encode", "max_error": error, "warnings": ["folded"], "counts": {"found": 9}}
+    (tmp_path / "report.json").write_text(json.dumps(report))
+    (tmp_path / "encoded.qpz").write_bytes(b"qpz")
+    request = replace(REQUEST, task="encode", output="encoded.qpz")
+    result = store_result(tmp_path, request, ATTEMPT, store, 1.5)
+    assert [(file.role, file.name) for file in result.files] == [("result", "encoded.qpz"), ("report", "report.json")]
+    assert (result.format, result.max_error, result.moved_vertices, result.warnings) == ("qpz", 0.25, None, ["folded"])
+    assert result.holes.found == 0
+
+
+def test_the_numbers_of_a_report_are_those_of_the_result() -> None:
+    restored = facts_of_task({"vertices": {"missing": 9, "restored": 7, "left": 2}, "warnings": ["2 are left"]})
+    assert (restored["restored_vertices"], restored["moved_vertices"], restored["warnings"]) == (
+        7,
+        None,
+        ["2 are left"],
+    )
+    denoised = facts_of_task({"moved_vertices": 5, "shift_95": 0.5, "warnings": []})
+    assert (denoised["moved_vertices"], denoised["shift_95"], denoised["max_error"]) == (5, 0.5, None)
+    assert facts_of_task({"max_error": 0.25, "warnings": []})["max_error"] == 0.25
 
 
 def test_a_result_without_a_picture_has_two_files(tmp_path: Path, store: ObjectStore) -> None:

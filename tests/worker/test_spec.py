@@ -4,15 +4,24 @@ import pytest
 
 import jobkit.schema
 import quadpatch.options
+import quadpatch.restoration.restore
 from jobkit.meshes import MeshSource
 from jobkit.models.resolution import PAPER_NORMALISATION
 from jobkit.schema import Fitting, JobSpec
+from quadpatch.compression.encode import EncodeOptions
+from quadpatch.denoising.denoise import DenoiseOptions
 from quadpatch.inpainters.model_file import RECIPES
 from quadpatch.options import HoleOptions, HoleRule, NetworkOptions, PatchOptions, RepairOptions
+from quadpatch.restoration.restore import RestoreOptions
 from worker.engine.limits import EngineLimits
-from worker.spec import inspect_request, method_options, output_format, repair_request, source_name
+from worker.spec import inspect_request, job_request, method_options, output_format, source_name, task_options
 
 MESH_ID = "0" * 64
+OPTIONS: dict[str, Any] = {
+    "restore": RestoreOptions,
+    "denoise": DenoiseOptions,
+    "encode": EncodeOptions,
+}
 LIMITS = EngineLimits(time_s=900.0, memory_mb=4096, n_threads=2)
 
 
@@ -72,7 +81,7 @@ def test_how_long_to_fit_a_network_reaches_the_method() -> None:
 
 def test_fitting_leaves_a_third_of_the_time_to_the_rest_of_the_job() -> None:
     job = spec(method={"method": "cnn", "model": "self"}, limits={"time_s": 90.0})
-    request = repair_request(job, source(), "self-network", LIMITS)
+    request = job_request(job, source(), "self-network", LIMITS)
     assert request.options["network"] == {"steps": NetworkOptions().steps, "seconds": pytest.approx(60.0)}
     RepairOptions.from_dict(request.options)
 
@@ -115,10 +124,75 @@ def test_a_filename_never_leads_out_of_the_folder() -> None:
 
 
 def test_a_job_can_lower_the_limits_and_never_raise_them() -> None:
-    tighter_limits = repair_request(spec(limits={"time_s": 10.0, "memory_mb": 512}), source(), "smooth", LIMITS)
-    raised = repair_request(spec(limits={"time_s": 5000.0, "memory_mb": 65536}), source(), "smooth", LIMITS)
+    tighter_limits = job_request(spec(limits={"time_s": 10.0, "memory_mb": 512}), source(), "smooth", LIMITS)
+    raised = job_request(spec(limits={"time_s": 5000.0, "memory_mb": 65536}), source(), "smooth", LIMITS)
     assert (tighter_limits.limits.time_s, tighter_limits.limits.memory_mb) == (10.0, 512)
     assert raised.limits == LIMITS
+
+
+TASKS: dict[str, dict[str, Any]] = {
+    "restore": {"restore": {"missing": {"kind": "nan"}}},
+    "denoise": {},
+    "encode": {"encode": {"max_error": 0.5, "keep_connectivity": True}},
+    "decode": {},
+}
+
+
+@pytest.mark.parametrize(
+    ("task", "asked", "output"),
+    [
+        ("restore", None, "restored.stl"),
+        ("restore", "ply", "restored.ply"),
+        ("denoise", None, "denoised.stl"),
+        ("encode", None, "encoded.qpz"),
+        ("decode", "obj", "decoded.obj"),
+    ],
+)
+def test_a_task_is_asked_of_the_engine_under_its_name(task: str, asked: str | None, output: str) -> None:
+    job = spec(task=task, **TASKS[task], output={"format": asked, "preview": False}, limits={"time_s": 9.0})
+    request = job_request(job, source("stl"), "self", LIMITS)
+    assert (request.task, request.output, request.with_preview, request.with_close_ups) == (task, output, False, False)
+    assert (request.limits.time_s, request.reference) == (9.0, "")
+
+
+def test_a_decoded_surface_is_a_ply_unless_another_format_is_asked_for() -> None:
+    assert output_format(spec(task="decode"), source("qpz", "scan.qpz")) == "ply"
+    assert source_name(source("qpz", "scan.qpz")) == "mesh/source.qpz"
+
+
+def test_every_option_of_a_task_reaches_the_method() -> None:
+    patches = {"length": 2.5, "resolution": 16, "overlap": 3}
+    method: dict[str, Any] = {"method": "dictionary", "model": "self", "patches": patches}
+    box = {"min": [0.0, 0.0, 0.0], "max": [1.0, 2.0, 3.0]}
+    options = {"noise": 0.1, "max_shift": 0.3, "region": {"kind": "box", **box}, "reference": "1" * 64}
+    job = spec(task="denoise", method=method, denoise=options, seed=7)
+    assert task_options(job) == {"noise": 0.1, "max_shift": 0.3, "region": box, "patches": patches, "seed": 7}
+    by_poisson = spec(task="restore", restore={"missing": {"kind": "nan"}, "base": "poisson"})
+    assert RestoreOptions.from_dict(task_options(by_poisson)) == RestoreOptions(base="poisson")
+    by_property = spec(task="denoise", denoise={"region": {"kind": "property", "name": "rough"}})
+    assert DenoiseOptions.from_dict(task_options(by_property)) == DenoiseOptions(region="rough")
+    method["patches"]["overlap"] = None
+    job = spec(task="encode", **TASKS["encode"], method=method)
+    assert task_options(job) == {"max_error": 0.5, "keep_connectivity": True, "patches": patches, "seed": 0}
+    for task, kind in OPTIONS.items():
+        kind.from_dict(task_options(spec(task=task, **TASKS[task])))
+
+
+def test_the_bases_of_a_restoration_are_those_of_the_method() -> None:
+    assert get_args(jobkit.schema.RestorationBase) == get_args(quadpatch.restoration.restore.Base)
+
+
+def test_a_reference_lies_in_a_folder_of_its_own() -> None:
+    request = job_request(spec(task="denoise"), source("stl"), "self", LIMITS, source("ply", "clean.ply"))
+    assert (request.source, request.reference) == ("mesh/source.stl", "reference/source.ply")
+
+
+@pytest.mark.parametrize(
+    "missing", [{"kind": "nan"}, {"kind": "property", "name": "lost"}, {"kind": "indices", "indices": [4, 7]}]
+)
+def test_the_engine_is_told_which_vertices_are_missing(missing: dict[str, Any]) -> None:
+    request = job_request(spec(task="restore", restore={"missing": missing}), source(), "self", LIMITS)
+    assert request.missing == missing
 
 
 def test_an_inspection_writes_no_mesh() -> None:
@@ -130,7 +204,7 @@ def test_each_picture_is_drawn_where_it_is_asked_for() -> None:
     for preview in (False, True):
         for closeups in (False, True):
             job = spec(output={"preview": preview, "closeups": closeups})
-            request = repair_request(job, source(), "smooth", LIMITS)
+            request = job_request(job, source(), "smooth", LIMITS)
             assert (request.with_preview, request.with_close_ups) == (preview, closeups)
-    default = repair_request(spec(), source(), "smooth", LIMITS)
+    default = job_request(spec(), source(), "smooth", LIMITS)
     assert (default.with_preview, default.with_close_ups) == (True, False)

@@ -80,6 +80,7 @@ def _library_folders() -> list[Path]:
 
 
 def _inputs(folder: Path, request: EngineRequest) -> list[Path]:
-    """Return the files outside the folder that the request names: the mesh, which may be linked, and the model."""
+    """Return the files outside the folder that the request names: meshes, which may be linked, and the model."""
     model = [Path(request.model)] if os.path.isabs(request.model) else []
-    return [(folder / request.source).resolve(), *model]
+    meshes = [name for name in (request.source, request.reference) if name]
+    return [*((folder / name).resolve() for name in meshes), *model]

@@ -9,7 +9,7 @@ from pathlib import Path
 from quadpatch.errors import QuadpatchError
 from worker.engine.confinement import confine
 from worker.engine.reports import Reporter
-from worker.engine.request import MESH_FOLDER, EngineRequest
+from worker.engine.request import MESH_FOLDER, REFERENCE_FOLDER, EngineRequest
 from worker.failures import Failure, from_os_error, over_memory
 
 
@@ -55,6 +55,6 @@ def _print_traceback() -> None:
 
 def _without_paths(message: str, folder: Path) -> str:
     """Take the worker's own folder out of a message that goes to a client."""
-    for prefix in (folder / MESH_FOLDER, folder):
+    for prefix in (folder / MESH_FOLDER, folder / REFERENCE_FOLDER, folder):
         message = message.replace(f"{prefix}{os.sep}", "").replace(str(prefix), "")
     return message

@@ -1,4 +1,4 @@
-"""The engine child: repairs or inspects a mesh, or proves a model, and reports the outcome.
+"""The engine child: works on or inspects a mesh, or proves a model, and reports the outcome.
 
 Untrusted meshes and models are parsed here and nowhere else, under limits, in a process that may be
 killed at any moment. It talks to the worker through one pipe, see `worker.engine.reports`. Results lie in the
@@ -13,11 +13,13 @@ from typing import Any
 from quadpatch.formats.output_files import write_whole
 from quadpatch.inpainters.proof import prove_model
 from quadpatch.options import RepairOptions
-from quadpatch.preview.drawing import add_close_up_archive, add_picture
-from quadpatch.repair import inspect_file, repair_and_keep
+from quadpatch.preview.drawing import add_close_up_archive, add_comparison, add_picture
+from quadpatch.repair import repair_and_keep
+from quadpatch.tasks.inspect import inspect_any
 from worker.engine.entry import run_confined
 from worker.engine.reports import Reporter
-from worker.engine.request import CLOSE_UPS_NAME, FACTS_NAME, PREVIEW_NAME, REPORT_NAME, EngineRequest
+from worker.engine.request import CLOSE_UPS_NAME, FACTS_NAME, PREVIEW_NAME, REPORT_NAME, EngineRequest, EngineTask
+from worker.engine.tasks import MESH_TASKS
 
 
 def run_request(folder: Path, descriptor: int) -> None:
@@ -43,7 +45,7 @@ def _repair(folder: Path, request: EngineRequest, reporter: Reporter) -> None:
 
 def _inspect(folder: Path, request: EngineRequest, reporter: Reporter) -> None:
     reporter.progress("read", 0.0)
-    _write_json(folder / FACTS_NAME, inspect_file(folder / request.source))
+    _write_json(folder / FACTS_NAME, inspect_any(folder / request.source))
 
 
 def _prove(_folder: Path, request: EngineRequest, reporter: Reporter) -> None:
@@ -51,8 +53,19 @@ def _prove(_folder: Path, request: EngineRequest, reporter: Reporter) -> None:
     prove_model(request.model, request.model_card)
 
 
-_TASKS: dict[str, Callable[[Path, EngineRequest, Reporter], None]] = {
+def _do_task(folder: Path, request: EngineRequest, reporter: Reporter) -> None:
+    done = MESH_TASKS[request.task](folder, request, reporter.progress)
+    _write_json(folder / REPORT_NAME, done.report)
+    reporter.delivered()
+    if request.with_preview:
+        reporter.progress("preview", 0.0)
+        add_comparison(done, folder / PREVIEW_NAME)
+        _write_json(folder / REPORT_NAME, done.report)
+
+
+_TASKS: dict[EngineTask, Callable[[Path, EngineRequest, Reporter], None]] = {
     "repair": _repair,
+    **dict.fromkeys(MESH_TASKS, _do_task),
     "inspect": _inspect,
     "prove": _prove,
 }

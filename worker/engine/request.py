@@ -4,8 +4,10 @@
 
     request.json     this request
     mesh/source.ply  the mesh, under a name that states its format, and nothing beside it
-    repaired.ply     the repaired mesh
-    report.json      what was done to every hole
+    reference/source.ply  the clean scan that denoising learns from, likewise
+    missing.json     numbers of the vertices to restore, where a list names them
+    repaired.ply     the repaired mesh; restored.ply, denoised.ply, encoded.qpz, decoded.ply of other tasks
+    report.json      what was done to every hole, or what else was done
     preview.png      the before/after picture
     closeups.zip     a picture of each chosen hole
     facts.json       what an inspection found
@@ -23,11 +25,15 @@ from worker.engine.limits import EngineLimits
 
 REQUEST_NAME = "request.json"
 MESH_FOLDER = "mesh"
+REFERENCE_FOLDER = "reference"
+MISSING_NAME = "missing.json"
 REPORT_NAME = "report.json"
 FACTS_NAME = "facts.json"
 PREVIEW_NAME = "preview.png"
 CLOSE_UPS_NAME = "closeups.zip"
 LOG_NAME = "engine.log"
+
+EngineTask = Literal["repair", "restore", "denoise", "encode", "decode", "inspect", "prove"]
 
 
 @dataclass(frozen=True)
@@ -36,25 +42,30 @@ class EngineRequest:
 
     Attributes
     ----------
-    task : "repair", "inspect" or "prove"
+    task : str
+        "repair" fills holes; the other tasks of a job have their own names; "inspect" and "prove" are no jobs.
     source : str
         Path of the mesh file in the request's folder; empty where a model is proven.
     limits : EngineLimits
     output : str
-        Name of the repaired file.
+        Name of the file to write.
     model : str
         As `quadpatch.repair.repair_file` takes it: `smooth`, `self` or the path of a model file.
     options : dict
-        As `quadpatch.options.RepairOptions.from_dict` takes it.
+        As `from_dict` of the task's options takes it, for a repair `quadpatch.options.RepairOptions`.
     model_card : dict or None
         Of a network, in place of the one in its file.
     with_preview : bool
         Whether to draw a before/after picture.
     with_close_ups : bool
         Whether to draw each chosen hole.
+    reference : str
+        Path of the clean scan in the request's folder; empty where nothing is learned from another mesh.
+    missing : dict or None
+        Which vertices to restore, as `jobkit.schema.Missing` says it.
     """
 
-    task: Literal["repair", "inspect", "prove"]
+    task: EngineTask
     source: str
     limits: EngineLimits
     output: str = ""
@@ -63,6 +74,8 @@ class EngineRequest:
     with_preview: bool = False
     with_close_ups: bool = False
     model_card: dict[str, Any] | None = None
+    reference: str = ""
+    missing: dict[str, Any] | None = None
 
     def save(self, folder: Path) -> None:
         """Write the request into its folder."""

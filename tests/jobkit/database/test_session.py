@@ -1,5 +1,5 @@
-"""Also tests `jobkit/migrations/versions/0001_first_tables.py` and
-`jobkit/migrations/versions/0002_leases_and_webhooks.py`."""
+"""Also tests `jobkit/migrations/versions/0001_first_tables.py`,
+`jobkit/migrations/versions/0002_leases_and_webhooks.py` and `jobkit/migrations/versions/0007_tasks_of_jobs.py`."""
 
 import multiprocessing
 import signal
@@ -68,12 +68,32 @@ def test_an_upgrade_keeps_the_rows_and_fills_what_is_new_and_so_does_the_way_bac
         job, mesh = session.get_one(JobRow, "job_a"), session.get_one(MeshRow, "m")
     assert (job.queued_at, job.forgiven, job.pinned, job.not_before) == (NOW, 0, False, None)
     assert job.mesh_name == "scan.ply"
+    assert (job.task, job.reference_id) == ("fill", None)
     assert (mesh.used_at, mesh.pinned) == (NOW, False)
     for revision in ("0001", "head"):
         database.migrate(revision)
         with database.engine.connect() as connection:
             counts = [connection.scalar(text(f"SELECT count(*) FROM {table}")) for table in FULL]
         assert counts == [1, 1, 1, 1, 1]
+    database.close()
+
+
+def test_sums_of_stages_come_through_an_upgrade_and_back(empty_url: str) -> None:
+    database = Database(empty_url)
+    database.migrate("0006")
+    rows = {"fill": ("fill", 2, 5.0), "denoise": ("learn", 1, 9.0)}
+    insert = "INSERT INTO stages (stage, method, {more}count, seconds) VALUES ('{0}', 'smooth', {task}{1}, {2})"
+    with database.engine.begin() as connection:
+        connection.execute(text(insert.format(*rows["fill"], more="", task="")))
+    database.migrate()
+    with database.engine.begin() as connection:
+        connection.execute(text(insert.format(*rows["denoise"], more="task, ", task="'denoise', ")))
+        found = connection.execute(text("SELECT task, stage, count, seconds FROM stages ORDER BY seconds")).all()
+    assert [tuple(row) for row in found] == [(task, *row) for task, row in rows.items()]
+    database.migrate("0006")
+    with database.engine.connect() as connection:
+        found = connection.execute(text("SELECT stage, count, seconds FROM stages")).all()
+    assert [tuple(row) for row in found] == [rows["fill"]]
     database.close()
 
 

@@ -1,4 +1,5 @@
 import math
+from dataclasses import replace
 from datetime import timedelta
 
 import pytest
@@ -151,6 +152,19 @@ def test_a_running_job_and_those_behind_it_are_foretold_from_past_ones(
     assert completed(estimates, jobs.get(running.id)).eta_s == pytest.approx(
         remaining_s[0] - 0.5 if remaining_s[0] else None
     )
+
+
+@pytest.mark.usefixtures("past")
+def test_jobs_of_one_task_foretell_nothing_about_another(
+    database: Database, new_job: NewJob, estimates: Estimates
+) -> None:
+    other_spec = new_job.spec.model_copy(update={"task": "denoise"})
+    jobs = [Jobs(database).create(replace(new_job, spec=spec))[0] for spec in (new_job.spec, other_spec)]
+    for job in jobs:
+        Attempts(database).start(job.id, "test", 60)
+    fill, denoise = (completed(estimates, Jobs(database).get(job.id)).eta_s for job in jobs)
+    assert fill == pytest.approx(100.0, abs=5.0)
+    assert denoise is None
 
 
 @pytest.mark.usefixtures("past")

@@ -11,15 +11,17 @@ from jobkit.errors import StaleAttemptError
 from jobkit.jobs.attempts import Attempts
 from jobkit.jobs.jobs import Jobs
 from jobkit.jobs.stage_seconds import StageSeconds, add_stages
-from jobkit.schema import Job, JobError, JobResult
+from jobkit.schema import TASKS, Job, JobError, JobResult
 
 RESULT = JobResult(format="ply", files=[])
 LOST = JobError(code="worker_lost", message="gone", retryable=True)
 
 
-def sums(database: Database) -> dict[tuple[str, str], tuple[int, float]]:
+def sums(database: Database) -> dict[tuple[str, str, str], tuple[int, float]]:
     with database.read() as session:
-        return {(row.stage, row.method): (row.count, row.seconds) for row in session.scalars(select(StageRow))}
+        return {
+            (row.stage, row.method, row.task): (row.count, row.seconds) for row in session.scalars(select(StageRow))
+        }
 
 
 def attempt_counts(database: Database) -> dict[tuple[str, str], int]:
@@ -32,6 +34,7 @@ repairs = st.lists(
         StageSeconds,
         st.sampled_from(["smooth", "dictionary"]),
         st.dictionaries(st.sampled_from(["read", "fill", "write"]), st.integers(0, 1000).map(float)),
+        st.sampled_from(TASKS),
     ),
     max_size=6,
 )
@@ -48,13 +51,14 @@ def shared_database(tmp_path_factory: pytest.TempPathFactory) -> Database:
 def test_sums_and_counts_are_those_of_all_repairs(shared_database: Database, repairs: Sequence[StageSeconds]) -> None:
     with shared_database.write() as session:
         session.execute(delete(StageRow))
-    expected: dict[tuple[str, str], tuple[int, float]] = {}
+    expected: dict[tuple[str, str, str], tuple[int, float]] = {}
     for repair in repairs:
         with shared_database.write() as session:
             add_stages(session, repair)
         for stage, seconds in repair.seconds.items():
-            count, total = expected.get((stage, repair.method), (0, 0.0))
-            expected[stage, repair.method] = (count + 1, total + seconds)
+            key = (stage, repair.method, repair.task)
+            count, total = expected.get(key, (0, 0.0))
+            expected[key] = (count + 1, total + seconds)
     assert sums(shared_database) == expected
 
 
@@ -68,7 +72,7 @@ def test_stages_are_added_with_the_result_and_only_with_it(database: Database, j
         attempts.publish(first, RESULT, stages)
     assert sums(database) == {}
     attempts.publish(second, RESULT, stages)
-    assert sums(database) == {("read", "smooth"): (1, 1.0), ("fill", "smooth"): (1, 2.5)}
+    assert sums(database) == {("read", "smooth", "fill"): (1, 1.0), ("fill", "smooth", "fill"): (1, 2.5)}
 
 
 def test_a_canceled_repair_adds_no_stages(database: Database, job: Job) -> None:

@@ -1,4 +1,4 @@
-"""Also tests `jobkit.schema.base`."""
+"""Also tests `jobkit.schema.base` and `jobkit.schema.methods`."""
 
 from typing import Any
 

@@ -1,0 +1,100 @@
+"""Which options of a job exclude each other.
+
+They are looked at where a job is made, and are no part of reading a spec: jobs that were stored before a rule came up
+are still read.
+
+Tested in `tests/jobkit/schema/test_tasks.py`.
+"""
+
+from collections.abc import Mapping
+
+from jobkit.schema.methods import SELF, CnnMethod, DictionaryMethod
+from jobkit.schema.spec import HoleSelection, RepairSpec
+from shared_rules.hole_selection import MODEL_FILLS_ONLY, names_fills
+from shared_rules.tasks import Task
+
+# The field of a spec that holds the options of a task; `fill` has fields of its own, `decode` has no options.
+OPTIONS_OF_TASKS = {"restore": "restore", "denoise": "denoise", "encode": "encode"}
+# The methods that a task takes.
+_METHODS: Mapping[Task, tuple[str, ...]] = {
+    "restore": ("dictionary", "cnn", "smooth"),
+    "denoise": ("dictionary", "smooth"),
+    "encode": ("dictionary",),
+    "decode": ("dictionary",),
+}
+# What such a task can't do without.
+_REQUIRED = {"restore": "restore.missing", "encode": "encode.max_error"}
+
+
+def conflict_of(spec: RepairSpec) -> str | None:
+    """Say in a sentence which options of a job exclude each other, or which one is missing; None where none does."""
+    return _conflict_of_fill(spec) if spec.task == "fill" else _conflict_of_task(spec)
+
+
+def _conflict_of_fill(spec: RepairSpec) -> str | None:
+    if spec.weld_tolerance != "auto" and any(rule.ids is not None for rule in spec.holes.rules):
+        return "ids of holes.rules name holes found with the weld_tolerance auto: drop one of the two"
+    is_paper = isinstance(spec.method, DictionaryMethod) and spec.method.recipe == "paper"
+    if is_paper and names_fills(spec.holes):
+        return MODEL_FILLS_ONLY
+    return _options_of_another_task(spec)
+
+
+def _conflict_of_task(spec: RepairSpec) -> str | None:
+    return (
+        _options_of_another_task(spec)
+        or _options_of_fill(spec)
+        or _missing_option(spec)
+        or _conflict_of_method(spec)
+        or _conflict_of_output(spec)
+    )
+
+
+def _options_of_another_task(spec: RepairSpec) -> str | None:
+    for task, name in OPTIONS_OF_TASKS.items():
+        if task != spec.task and getattr(spec, name) is not None:
+            return f"{name} holds options of the task {task}; the task of this job is {spec.task}"
+    return None
+
+
+def _options_of_fill(spec: RepairSpec) -> str | None:
+    given = {
+        "holes": spec.holes != HoleSelection(),
+        "weld_tolerance": spec.weld_tolerance != "auto",
+        "output.closeups": spec.output.closeups,
+    }
+    name = next((name for name, is_given in given.items() if is_given), None)
+    return None if name is None else f"{name} goes with the task fill; the task of this job is {spec.task}"
+
+
+def _missing_option(spec: RepairSpec) -> str | None:
+    name = OPTIONS_OF_TASKS.get(spec.task)
+    if spec.task in _REQUIRED and name is not None and getattr(spec, name) is None:
+        return f"the task {spec.task} needs {_REQUIRED[spec.task]}"
+    return None
+
+
+def _conflict_of_method(spec: RepairSpec) -> str | None:
+    method = spec.method
+    if method.method not in _METHODS[spec.task]:
+        return f"the task {spec.task} goes by {' or '.join(_METHODS[spec.task])}, not by the method {method.method}"
+    if isinstance(method, CnnMethod) and method.model == SELF:
+        return "a network can't be fitted to a mesh whose vertices are missing: name a model other than self"
+    has_reference = spec.denoise is not None and spec.denoise.reference is not None
+    if has_reference and not (isinstance(method, DictionaryMethod) and method.model == SELF):
+        return "denoise.reference takes the place of a model: leave method out, or say self"
+    return _conflict_of_dictionary(spec, method) if isinstance(method, DictionaryMethod) else None
+
+
+def _conflict_of_dictionary(spec: RepairSpec, method: DictionaryMethod) -> str | None:
+    if method.recipe != "default":
+        return f"recipes go with the task fill; the task of this job is {spec.task}"
+    if spec.task == "encode" and method.patches.overlap is not None:
+        return "patches of the task encode share their borders: leave method.patches.overlap out"
+    return None
+
+
+def _conflict_of_output(spec: RepairSpec) -> str | None:
+    if spec.task == "encode" and spec.output.format is not None:
+        return "the task encode hands back a .qpz file: leave output.format out"
+    return None

@@ -1,0 +1,93 @@
+"""How a job puts patches to use: the methods, their models and options.
+
+Tested in `tests/jobkit/schema/test_spec.py`.
+"""
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from jobkit.schema.base import REFERENCE_PATTERN, WHOLE, Request
+
+DEFAULT_MODEL = "default"
+DEFAULT_NETWORK = "default-network"
+SELF = "self"
+Recipe = Literal["default", "paper"]
+
+Resolution = Annotated[int, Field(ge=8, le=128), WHOLE]
+Overlap = Annotated[int, Field(ge=0, le=8), WHOLE]
+FittingSteps = Annotated[int, Field(ge=1, le=100_000), WHOLE]
+
+
+class PatchOptions(Request):
+    """How patches are laid out. Null means: chosen from the mesh's edge length and the sizes of its holes."""
+
+    length: float | None = Field(
+        default=None, gt=0, le=1e12, description="Side of a patch, in mesh units.", examples=[4.5]
+    )
+    resolution: Resolution | None = Field(default=None, description="Bins along one side of a patch.", examples=[24])
+    overlap: Overlap | None = Field(
+        default=None,
+        description="k of the paper: every quad carries its centre patch and 4 k offset ones.",
+        examples=[2],
+    )
+
+
+class DictionaryMethod(Request):
+    """Sparse coding over a dictionary of patches."""
+
+    method: Literal["dictionary"] = Field(description="Sparse coding over a dictionary.", examples=["dictionary"])
+    model: str = Field(
+        default=DEFAULT_MODEL,
+        pattern=REFERENCE_PATTERN,
+        description="`name@version`, `name` (its latest version), an alias, or `self`: learn a dictionary from the "
+        "undamaged part of the uploaded mesh.",
+        examples=["self"],
+    )
+    recipe: Recipe = Field(
+        default="default",
+        description="How the dictionary is put to use: `default`, or `paper`, exactly as in the paper that the method "
+        "follows. `paper` needs `self` or a dictionary learned for it.",
+        examples=["default"],
+    )
+    patches: PatchOptions = Field(default_factory=PatchOptions, description="How patches are laid out.")
+
+
+class Fitting(Request):
+    """How long a network is fitted to the mesh itself; goes with the model `self` alone."""
+
+    steps: FittingSteps = Field(default=1000, description="At most so many steps, of 64 patches each.", examples=[1000])
+    seconds: float = Field(
+        default=600.0,
+        gt=0,
+        le=86_400,
+        description="At most so long, and at most two thirds of the job's time limit. Where this ends before the steps "
+        "do, another run may give other bytes.",
+        examples=[300.0],
+    )
+
+
+class CnnMethod(Request):
+    """A convolutional network."""
+
+    method: Literal["cnn"] = Field(description="A convolutional network.", examples=["cnn"])
+    model: str = Field(
+        default=DEFAULT_NETWORK,
+        pattern=REFERENCE_PATTERN,
+        description="`name@version`, `name` (its latest version), an alias, or `self`: fit the shipped network to the "
+        "undamaged part of the uploaded mesh, which takes minutes.",
+        examples=["self"],
+    )
+    fitting: Fitting = Field(
+        default_factory=Fitting, description="How long `self` may take; refused with any other model."
+    )
+    patches: PatchOptions = Field(default_factory=PatchOptions, description="How patches are laid out.")
+
+
+class SmoothMethod(Request):
+    """No learned model: triangulate, refine and fair every hole (thin plate)."""
+
+    method: Literal["smooth"] = Field(description="Thin-plate fill without a model.", examples=["smooth"])
+
+
+Method = Annotated[DictionaryMethod | CnnMethod | SmoothMethod, Field(discriminator="method")]

@@ -1,0 +1,71 @@
+"""The tasks of a job besides filling holes, as an engine child does them: from file to file in its folder."""
+
+import json
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+from quadpatch.compression.encode import EncodeOptions
+from quadpatch.denoising.denoise import DenoiseOptions
+from quadpatch.model_choice import SELF
+from quadpatch.restoration.restore import RestoreOptions
+from quadpatch.tasks.decode import decode_file
+from quadpatch.tasks.denoise import denoise_file
+from quadpatch.tasks.encode import encode_file
+from quadpatch.tasks.restore import restore_file
+from quadpatch.tasks.result import TaskResult
+from quadpatch.types import Progress
+from worker.engine.request import MISSING_NAME, EngineRequest, EngineTask
+
+
+def _restore(folder: Path, request: EngineRequest, progress: Progress) -> TaskResult:
+    return restore_file(
+        folder / request.source,
+        folder / request.output,
+        _missing(folder, request.missing or {"kind": "nan"}),
+        request.model,
+        RestoreOptions.from_dict(request.options),
+        progress,
+        request.model_card,
+    )
+
+
+def _missing(folder: Path, missing: Mapping[str, Any]) -> str | Path:
+    """Say which vertices are missing, as `restore_file` takes it: a list goes into a file."""
+    if missing["kind"] == "property":
+        return f"property:{missing['name']}"
+    if missing["kind"] == "nan":
+        return "nan"
+    path = folder / MISSING_NAME
+    path.write_text(json.dumps(missing["indices"]), encoding="utf-8")
+    return path
+
+
+def _denoise(folder: Path, request: EngineRequest, progress: Progress) -> TaskResult:
+    return denoise_file(
+        folder / request.source,
+        folder / request.output,
+        request.model,
+        DenoiseOptions.from_dict(request.options),
+        progress,
+        folder / request.reference if request.reference else None,
+    )
+
+
+def _encode(folder: Path, request: EngineRequest, progress: Progress) -> TaskResult:
+    options = EncodeOptions.from_dict(request.options)
+    return encode_file(folder / request.source, folder / request.output, request.model, options, progress)
+
+
+def _decode(folder: Path, request: EngineRequest, progress: Progress) -> TaskResult:
+    # The file holds its dictionary, or names one that ships, unless the job is pinned to another one.
+    model = None if request.model == SELF else request.model
+    return decode_file(folder / request.source, folder / request.output, model, progress)
+
+
+MESH_TASKS: Mapping[EngineTask, Callable[[Path, EngineRequest, Progress], TaskResult]] = {
+    "restore": _restore,
+    "denoise": _denoise,
+    "encode": _encode,
+    "decode": _decode,
+}

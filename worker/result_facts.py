@@ -1,0 +1,48 @@
+"""The facts of a result that clients see, read out of an engine's report.
+
+Tested in `tests/worker/test_results.py`.
+"""
+
+from collections.abc import Mapping
+from typing import Any
+
+from jobkit.schema import HoleCounts
+
+
+def facts_of_fill(report: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the fields of `JobResult` that the report of a repair tells: verdicts, what was added, warnings."""
+    counts = HoleCounts.model_validate(report["counts"])
+    return {
+        "holes": counts,
+        "new_vertices": sum(hole.get("new_vertices", 0) for hole in report["holes"]),
+        "new_triangles": sum(hole.get("new_triangles", 0) for hole in report["holes"]),
+        "warnings": _warnings(report, counts),
+    }
+
+
+def facts_of_task(report: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the same of a report of another task: what it counts and measures, lengths in mesh units."""
+    return {
+        "restored_vertices": report.get("vertices", {}).get("restored"),
+        "moved_vertices": report.get("moved_vertices"),
+        "shift_95": report.get("shift_95"),
+        "max_error": _largest_error(report),
+        "warnings": [str(text) for text in report["warnings"]],
+    }
+
+
+def _largest_error(report: Mapping[str, Any]) -> float | None:
+    """Return the error of an encoded surface: the larger of both directions, or what the file promises."""
+    error = report.get("max_error")
+    if isinstance(error, Mapping):
+        return max(float(error["true_to_decoded"]), float(error["decoded_to_true"]))
+    return error
+
+
+def _warnings(report: Mapping[str, Any], counts: HoleCounts) -> list[str]:
+    """Collect the report's warnings; a refused hole is one, whether or not the report says so in words."""
+    warnings = [str(text) for text in report["warnings"]]
+    if counts.refused and not warnings:
+        noun = "hole was" if counts.refused == 1 else "holes were"
+        warnings.append(f"{counts.refused} {noun} refused and left open; the report says why")
+    return warnings
