@@ -7,12 +7,13 @@ import hashlib
 from pathlib import Path
 from typing import Any
 
-from quadpatch.errors import OptionError, TorchMissingError
+from quadpatch.errors import ModelError, OptionError, TorchMissingError
 from quadpatch.inpainters.dictionary import DictionaryInpainter, SelfDictionary
 from quadpatch.inpainters.inpainter import Inpainter
 from quadpatch.inpainters.model_file import Model, load_model, shipped_model
 from quadpatch.inpainters.paper_dictionary import HeightsInpainter, SelfHeights
 from quadpatch.options import DictionaryOptions, NetworkOptions, RepairOptions
+from quadpatch.sparse.dictionary import Dictionary
 from quadpatch.types import Progress
 
 SMOOTH = "smooth"
@@ -78,9 +79,25 @@ def choose_model(
     facts["sha256"] = hashlib.sha256(path.read_bytes()).hexdigest()
     if loaded.dictionary is None:
         return _network(path, options, network_card), facts
+    return _dictionary(loaded, loaded.dictionary, options), facts
+
+
+def _dictionary(loaded: Model, dictionary: Dictionary, options: RepairOptions) -> Inpainter:
+    """Take a dictionary for the recipe that it was learned for."""
     _check_recipe(loaded, options)
-    inpainter = HeightsInpainter if loaded.recipe == "paper" else DictionaryInpainter
-    return inpainter(loaded.dictionary), facts
+    if loaded.recipe == "paper":
+        return HeightsInpainter(dictionary, _length_share(loaded))
+    return DictionaryInpainter(dictionary)
+
+
+def _length_share(model: Model) -> float | None:
+    """Read how wide the patches were that a dictionary of heights was learned from."""
+    share = model.card.get("length_share")
+    if share is None:
+        return None
+    if isinstance(share, bool) or not isinstance(share, int | float) or not 0 < share <= 1:
+        raise ModelError(f"{model.path.name}: length_share must lie between 0 and 1; it is {share!r}")
+    return float(share)
 
 
 def _network(path: Path, options: RepairOptions, card: dict[str, Any] | None) -> Inpainter:

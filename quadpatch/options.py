@@ -20,6 +20,9 @@ _NESTED = ("holes", "patches", "dictionary", "network")
 # How a model's patches become surface: `default` is this project's own way, `paper` that of the paper, step by step.
 Recipe = Literal["default", "paper"]
 
+# The paper's two kinds of patches, in units of the object's longest side: 0.03 with 16 bins, 0.06 with 24.
+Preset = Literal["type1", "type2"]
+
 
 @dataclass(frozen=True)
 class HoleRule:
@@ -122,13 +125,20 @@ class PatchOptions:
         Bins along one side; a learned model brings its own.
     overlap : int, optional
         k of the paper: besides its centre, every quad carries 4 k offset patches.
+    preset : str, optional
+        `type1` or `type2`: length and resolution of the paper's two kinds of patches, in place of one's own.
     """
 
     length: float | None = None
     resolution: int | None = None
     overlap: int | None = None
+    preset: Preset | None = None
 
     def __post_init__(self) -> None:
+        if self.preset is not None:
+            _check_choice("patches.preset", self.preset, get_args(Preset))
+            if self.length is not None or self.resolution is not None:
+                raise OptionError("patches.preset says length and resolution: drop it, or drop these")
         _check_length("patches.length", self.length)
         _check_range("patches.resolution", self.resolution, RESOLUTION_RANGE)
         _check_range("patches.overlap", self.overlap, OVERLAP_RANGE)

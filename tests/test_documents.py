@@ -23,7 +23,7 @@ from quadpatch.calibration import calibration_set, error_model
 from quadpatch.filling import fill, triangulation
 from quadpatch.inpainters import dictionary, paper_dictionary
 from quadpatch.mesh import hole_kinds, slits
-from quadpatch.patches import ray_visibility, scale
+from quadpatch.patches import paper_layout, ray_visibility, scale
 from quadpatch.recipes import assessment, default, paper
 from quadpatch.report import VERDICTS
 from quadpatch.sparse import gaussian
@@ -179,7 +179,7 @@ NUMBERS_OF_THE_METHOD: dict[str, set[float]] = {
         error_model.PRIOR.factor,
     },
     "quadpatch/recipes/paper.py": {
-        paper.SMOOTHING_ITERATIONS,
+        paper_layout.SMOOTHING_ITERATIONS,
         paper.HOLES_PER_LENGTH,
         paper.LEAST_EDGES_PER_BIN,
         paper.RESOLUTION,
@@ -191,7 +191,7 @@ NUMBERS_OF_THE_METHOD: dict[str, set[float]] = {
         paper_dictionary.NONZERO,
         paper_dictionary.ITERATIONS,
         paper_dictionary.MAX_TRAINING_PATCHES,
-        100 * paper_dictionary.LEAST_KNOWN,
+        100 * paper_layout.LEAST_KNOWN,
     },
 }
 

@@ -8,9 +8,10 @@ import typer
 from rich.console import Console
 
 from quadpatch.errors import OptionError
-from quadpatch.options import Recipe
+from quadpatch.options import Preset, Recipe
+from quadpatch.patches.scale import PRESETS
 from quadpatch.sparse.ksvd import KsvdOptions
-from training.commands import corpus, network
+from training.commands import corpus, network, normalise
 from training.dictionary import USUAL, LearningOptions
 from training.run import Request, run
 from training.typed import command_line, refusals
@@ -31,12 +32,15 @@ def dictionary(  # noqa: PLR0913 - one parameter for each option of the command 
     output: Annotated[Path | None, typer.Option(help="File to write; NAME.safetensors if not given.")] = None,
     recipe: Annotated[Recipe, typer.Option(help="Of the repairs that it is for: our way, or the paper's.")] = "default",
     atoms: Annotated[int | None, typer.Option(min=2, help="Atoms; 256, or 500 for the recipe paper.")] = None,
-    resolution: Annotated[int, typer.Option(min=8, max=128, help="Bins along one side of a patch.")] = 24,
+    resolution: Annotated[int | None, typer.Option(min=8, max=128, help="Bins along one side of a patch.")] = None,
     nonzero: Annotated[
         int | None, typer.Option(min=1, help="Atoms that one patch may use; 10, or 20 for the recipe paper.")
     ] = None,
     iterations: Annotated[int, typer.Option(min=1, help="Rounds of K-SVD.")] = 15,
     patch_length: Annotated[str, typer.Option(help="Side of the smallest patches in mesh units, or auto.")] = "auto",
+    preset: Annotated[
+        Preset | None, typer.Option(help="The paper's patches: 0.03 of the longest side in 16 bins, or 0.06 in 24.")
+    ] = None,
     overlap: Annotated[int, typer.Option(min=0, max=8, help="Every quad carries 4 k offset patches.")] = 1,
     procedural: Annotated[int, typer.Option(min=0, help="Procedural reliefs of each pattern to learn from.")] = 0,
     holdout: Annotated[list[str] | None, typer.Option(help="Mesh (file name without suffix) to measure on.")] = None,
@@ -48,13 +52,15 @@ def dictionary(  # noqa: PLR0913 - one parameter for each option of the command 
     console = Console(stderr=True)
     with refusals(console):
         usual = USUAL[recipe]
-        patches = replace(usual.recipe, resolution=resolution, length=_length(patch_length), overlap=overlap)
+        bins = resolution or (PRESETS[preset][1] if preset else usual.recipe.resolution)
+        patches = replace(usual.recipe, resolution=bins, length=_length(patch_length), overlap=overlap, preset=preset)
         ksvd = KsvdOptions(atoms or usual.ksvd.n_atoms, nonzero or usual.ksvd.n_nonzero, iterations)
         options = LearningOptions(patches, ksvd, procedural, seed=seed)
         file = output or Path(f"{name}.safetensors")
         run(Request(name, meshes, holdout or [], options, command_line(), file, curve, register), console)
 
 
+app.command()(normalise)
 app.command()(corpus)
 app.command()(network)
 

@@ -34,7 +34,8 @@ class Plan:
     n_dense : int
         Units of a dense layer in the middle; 0: none.
     has_skips : bool
-        Whether what a strided convolution gives is added to what its mirror takes.
+        Whether what a strided convolution gives, the last one aside, is added to what the strided layer of the decoder
+        gives that has the same size.
     """
 
     resolution: int
@@ -99,11 +100,10 @@ class Autoencoder(nn.Module):
             values = torch.relu(convolution(values))
             if self.plan.has_skips and layer.stride == 2:
                 carried.append(values)
-        values = self.dense(values)
-        following = [layer.stride for layer in self.plan.decoder[1:]]
-        for next_stride, convolution in zip(following, self.decoder, strict=False):
+        values, carried = self.dense(values), carried[:-1]
+        for layer, convolution in zip(self.plan.decoder[:-1], self.decoder[:-1], strict=True):
             values = convolution(values)
-            if carried and next_stride == 2:
+            if carried and layer.stride == 2:
                 values = values + carried.pop()
             values = torch.relu(values)
         logits: Tensor = self.decoder[-1](values)

@@ -1,7 +1,7 @@
 """Cutting the patches of meshes and of procedural reliefs into a corpus on disk.
 
-For the recipe `paper` a patch is the array `heights`, float32: heights over the plane of the patch less the mean of the
-known bins, in patch lengths, 0 in unknown bins; and the array `known`, bool. Not float16: its steps reach 1.2e-4 of the
+For the recipe `paper` a patch is the array `heights`, float32: heights over the plane of the patch, in patch lengths, 0
+in unknown bins; and the array `known`, bool. Not float16: its steps reach 1.2e-4 of the
 patch length where relief is deepest, as much as the least relief that is worth learning (`LEAST_RELIEF`), and mapped
 files need no memory that it would save. For the recipe `residual` see `training.training_pairs`.
 """
@@ -16,7 +16,7 @@ import numpy as np
 from quadpatch.errors import OptionError
 from quadpatch.mesh.measures import mean_edge_length
 from quadpatch.patches import residual_input
-from quadpatch.patches.normalisation import HEIGHTS, mean_free
+from quadpatch.patches.normalisation import HEIGHTS
 from quadpatch.types import Progress, TriangleMesh, no_progress
 from training import training_pairs
 from training.corpus import PatchRecipe, cut_patches, read_mesh
@@ -151,15 +151,9 @@ def build_corpus(
 def cut_heights(mesh: TriangleMesh, options: CorpusOptions, rng: np.random.Generator) -> Arrays:
     """Cut the patches that the paper's networks learn from: see the head of this module."""
     base = options.edges * mean_edge_length(mesh)
-    none = np.zeros((0, options.resolution, options.resolution), np.float32)
-    heights, known = [none], [none > 0.0]
-    for length in (scale * base for scale in options.scales):
-        recipe = PatchRecipe(options.resolution, length, (1.0,), options.overlap, options.places, HEIGHTS)
-        patches = cut_patches(mesh, recipe, rng)
-        centred, _ = mean_free(patches.detail, patches.known)
-        heights.append((centred.reshape(patches.detail.shape) / length).astype(np.float32))
-        known.append(patches.known)
-    return {"heights": np.concatenate(heights), "known": np.concatenate(known)}
+    recipe = PatchRecipe(options.resolution, base, options.scales, options.overlap, options.places, HEIGHTS)
+    patches = cut_patches(mesh, recipe, rng)
+    return {"heights": patches.detail.astype(np.float32), "known": patches.known}
 
 
 def cut_training_pairs(mesh: TriangleMesh, options: CorpusOptions, rng: np.random.Generator) -> Arrays:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from quadpatch.patches.normalisation import HEIGHTS, NORMALISATION
+from quadpatch.patches.scale import PRESETS
 from shared_rules.dictionary_file import Card
 from training.dictionary import Learned, LearningOptions
 from training.patterns import PATTERNS
@@ -21,7 +22,7 @@ INTENDED_USE = (
 
 _SIGNALS = {
     NORMALISATION: "heights over the base surface (smoothed as patches are wide), mean removed, over their deviation",
-    HEIGHTS: "heights over the plane of the patch, mean removed: the paper's own recipe",
+    HEIGHTS: "heights over the plane of the patch, in its lengths: the paper's own recipe",
 }
 
 
@@ -91,7 +92,9 @@ def dictionary_card(
     recipe, ksvd = options.recipe, options.ksvd
     procedural = {"patterns": sorted(PATTERNS), "n_each": options.n_procedural, "seed": options.seed}
     scales = ", ".join(f"{scale:g}" for scale in recipe.scales)
+    share = PRESETS[recipe.preset][0] if recipe.preset else None
     base = f"{recipe.length:g} mesh units" if recipe.length else "as wide as a repair's own, by mean edge length"
+    base = f"{share:g} of the longest side" if share else base
     parts = [f"{source.sha256} {source.name}" for source in trained_on]
     return {
         "name": name[0],
@@ -101,7 +104,8 @@ def dictionary_card(
             f"{learned.n_patches} patches of {len(trained_on)} meshes and "
             f"{options.n_procedural * len(PATTERNS)} procedural reliefs."
         ),
-        "length_rule": "auto",
+        "length_rule": base if share else "auto",
+        **({"length_share": share} if share else {}),
         "recipe": {
             "signal": _SIGNALS[recipe.normalisation],
             "training_patch_length": f"patches {base}; times {scales}",

@@ -1,4 +1,4 @@
-"""The commands `corpus` and `network`. The latter needs torch, which is an extra: nothing here imports it before.
+"""The commands `normalise`, `corpus` and `network`. The last needs torch, an extra: nothing here imports it before.
 
 Tested in `tests/training/test_network_run.py`.
 """
@@ -13,6 +13,7 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from training.build_corpus import EDGES, RESOLUTIONS, CorpusOptions, build_corpus
 from training.errors import MissingExtraError
+from training.normalise import normalise_dataset
 from training.sources import find_sources, split_holdout
 from training.typed import command_line, refusals
 
@@ -65,6 +66,27 @@ def corpus(  # noqa: PLR0913 - one parameter for each option of the command line
             entries = written.meshes(split)
             console.print(f"{split}: {sum(m['count'] for m in entries)} patches of {len(entries)} meshes and reliefs")
         console.print(f"wrote {output}, sha256 {written.sha256}", highlight=False, soft_wrap=True)
+
+
+def normalise(
+    meshes: Annotated[list[Path], typer.Argument(help="Meshes to normalise; a folder stands for all meshes in it.")],
+    *,
+    output: Annotated[Path, typer.Option(help="Folder to write; empty, or not there yet.")],
+    edge: Annotated[float, typer.Option(min=1e-4, max=0.5, help="Common edge length; the longest side is 1.")] = 0.01,
+) -> None:
+    """Scale meshes into the unit cube, bring them to one edge length, and write them as PLY with a manifest."""
+    console = Console(stderr=True)
+    with refusals(console):
+        columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())
+        with Progress(*columns, console=console) as bars:
+            bar = bars.add_task("", total=1.0)
+            written = normalise_dataset(
+                find_sources(meshes),
+                edge,
+                output,
+                lambda name, fraction: bars.update(bar, description=name, completed=fraction),
+            )
+        console.print(f"wrote {len(written)} meshes to {output}", highlight=False, soft_wrap=True)
 
 
 def network(  # noqa: PLR0913 - one parameter for each option of the command line

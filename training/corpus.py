@@ -13,15 +13,18 @@ import numpy as np
 from quadpatch.errors import NoQuadsError
 from quadpatch.filling.fill import close_flat
 from quadpatch.formats.reading import read_scan
-from quadpatch.mesh.measures import mean_edge_length
-from quadpatch.mesh.raycast import RayScene
+from quadpatch.mesh.measures import longest_side, mean_edge_length
 from quadpatch.mesh.smoothing import laplacian_smooth
 from quadpatch.mesh.weld import weld
+from quadpatch.options import PatchOptions, Preset
 from quadpatch.patches.folding import is_unfolded
-from quadpatch.patches.height_map import sample_height_maps
 from quadpatch.patches.layout import lay_out, patchify, take
 from quadpatch.patches.normalisation import HEIGHTS, NORMALISATION, to_signals
-from quadpatch.patches.scale import EDGES_PER_BIN, PatchScale, base_surface_iterations
+from quadpatch.patches.paper_layout import cut_patches as cut_patches_as_paper
+from quadpatch.patches.paper_layout import learnable, smooth_for_quads
+from quadpatch.patches.scale import EDGES_PER_BIN, PatchScale, base_surface_iterations, preset_scale
+from quadpatch.recipes.paper import LEAST_EDGES_PER_BIN
+from quadpatch.recipes.paper import RESOLUTION as USUAL_RESOLUTION
 from quadpatch.types import BoolArray, FloatArray, Patches, TriangleMesh
 
 # Patches that vary less than this part of their side show noise, not a pattern worth an atom.
@@ -50,6 +53,8 @@ class PatchRecipe:
         At most so many places of one mesh, drawn at random, so that a large scan does not drown a small one.
     normalisation : str
         How signals are made of them, one of `quadpatch.patches.normalisation.NORMALISATIONS`.
+    preset : str or None
+        Of the paper, in place of a length: a share of the longest side of each mesh.
     """
 
     resolution: int = 24
@@ -58,11 +63,15 @@ class PatchRecipe:
     overlap: int = 1
     max_seeds: int = 1000
     normalisation: str = NORMALISATION
+    preset: Preset | None = None
 
-    @property
-    def over_base_surface(self) -> bool:
-        """Whether detail is over the base surface; the paper's own recipe codes heights over the plane of the patch."""
-        return self.normalisation != HEIGHTS
+    def base_length(self, mesh: TriangleMesh) -> float:
+        """Side of the smallest patches of a mesh, in its units."""
+        options = preset_scale(PatchOptions(self.length, preset=self.preset), longest_side(mesh))
+        edges = (
+            LEAST_EDGES_PER_BIN * USUAL_RESOLUTION if self.normalisation == HEIGHTS else EDGES_PER_BIN * self.resolution
+        )
+        return options.length or edges * mean_edge_length(mesh)
 
 
 @dataclass(frozen=True)
@@ -72,7 +81,8 @@ class TrainingPatches:
     Attributes
     ----------
     detail : (n, N, N) float64
-        Over the base surface, or over the plane of the patch; in mesh units, 0 in unknown bins.
+        Over the base surface, in mesh units; for the paper's recipe over the plane of the patch, in patch lengths, so
+        that meshes of any unit go together. 0 in unknown bins.
     known : (n, N, N) bool
     """
 
@@ -120,8 +130,9 @@ def cut_patches(mesh: TriangleMesh, recipe: PatchRecipe, rng: np.random.Generato
     TrainingPatches
         None where the mesh is too small to carry one.
     """
-    edge_length = mean_edge_length(mesh)
-    length = recipe.length or EDGES_PER_BIN * recipe.resolution * edge_length
+    if recipe.normalisation == HEIGHTS:
+        return _cut_heights(mesh, recipe, rng)
+    edge_length, length = mean_edge_length(mesh), recipe.base_length(mesh)
     try:
         base_surface = _base_surface(mesh, length, edge_length)
         seeds = lay_out(base_surface, PatchScale(length / QUADS_PER_LENGTH, recipe.resolution, recipe.overlap))
@@ -135,15 +146,23 @@ def cut_patches(mesh: TriangleMesh, recipe: PatchRecipe, rng: np.random.Generato
     cut = []
     for side in (scale * length for scale in recipe.scales):
         scale = PatchScale(side, recipe.resolution, recipe.overlap)
-        if recipe.over_base_surface:
-            # As in a repair, wider patches lie over a smoother base surface.
-            under = base_surface if side == length else _base_surface(mesh, side, edge_length)
-            sampled = patchify(unfilled, under, seeds, scale)
-            cut.append(_worth_learning(sampled.patches, sampled.base_heights))
-        else:
-            nothing_invented = np.zeros(len(mesh.triangles), dtype=np.bool_)
-            patches = sample_height_maps(RayScene(mesh), mesh, nothing_invented, seeds, side, recipe.resolution)
-            cut.append(_worth_learning(patches, np.zeros_like(patches.heights)))
+        # As in a repair, wider patches lie over a smoother base surface.
+        under = base_surface if side == length else _base_surface(mesh, side, edge_length)
+        sampled = patchify(unfilled, under, seeds, scale)
+        cut.append(_worth_learning(sampled.patches, sampled.base_heights))
+    return TrainingPatches.joined(cut, recipe.resolution)
+
+
+def _cut_heights(mesh: TriangleMesh, recipe: PatchRecipe, rng: np.random.Generator) -> TrainingPatches:
+    """Cut patches as a repair by the paper's recipe does: quads as wide as patches, over one smoothed mesh."""
+    smoothed, cut = smooth_for_quads(mesh), []
+    for side in (scale * recipe.base_length(mesh) for scale in recipe.scales):
+        scale = PatchScale(side, recipe.resolution, recipe.overlap)
+        try:
+            patches = learnable(cut_patches_as_paper(mesh, smoothed, scale, rng, recipe.max_seeds))
+        except NoQuadsError:
+            continue
+        cut.append(TrainingPatches(patches.heights / side, patches.known))
     return TrainingPatches.joined(cut, recipe.resolution)
 
 

@@ -4,6 +4,7 @@ Everything random follows from one seed, so the same meshes and options give the
 processor and the same numpy: elsewhere matrix products may round differently).
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -11,7 +12,7 @@ import numpy as np
 from quadpatch.errors import StageError
 from quadpatch.inpainters import paper_dictionary
 from quadpatch.options import Recipe
-from quadpatch.patches.normalisation import HEIGHTS, NORMALISATIONS
+from quadpatch.patches.normalisation import HEIGHTS, NORMALISATION, to_signals
 from quadpatch.sparse.dictionary import Dictionary
 from quadpatch.sparse.ksvd import KsvdOptions, OnIteration, masked_ksvd
 from quadpatch.types import FloatArray, Progress, no_progress
@@ -113,15 +114,37 @@ def learn_dictionary(
     if len(patches) < ksvd.n_atoms:
         raise StageError(f"the meshes give {len(patches)} patches; {ksvd.n_atoms} atoms need at least as many")
     patches = turn_at_random(patches, np.random.default_rng([options.seed, 1]))
-    signals, _ = NORMALISATIONS[options.recipe.normalisation](patches.detail, patches.known)
-    known = patches.known.reshape(signals.shape)
-    if options.recipe.normalisation == HEIGHTS:
-        # As a whole, not patch by patch: it changes no atom, and errors mean the same in every unit of length.
-        signals = signals / np.sqrt((signals[known] ** 2).mean())
     rng = np.random.default_rng([options.seed, 2])
-    atoms, errors = masked_ksvd(signals, known, ksvd, rng, on_iteration)
+    atoms, errors, n_patches = LEARNERS[options.recipe.normalisation](patches, ksvd, rng, on_iteration)
     dictionary = Dictionary(_in_file_precision(atoms), options.recipe.resolution, ksvd.n_nonzero)
-    return Learned(dictionary, errors, len(patches), _measure(dictionary, holdout, options, progress))
+    return Learned(dictionary, errors, n_patches, _measure(dictionary, holdout, options, progress))
+
+
+# Atoms, errors by iteration, and how many patches took part.
+Atoms = tuple[FloatArray, FloatArray, int]
+Learner = Callable[[TrainingPatches, KsvdOptions, np.random.Generator, OnIteration | None], Atoms]
+
+
+def _learn_detail(
+    patches: TrainingPatches, ksvd: KsvdOptions, rng: np.random.Generator, on_iteration: OnIteration | None
+) -> Atoms:
+    """Learn the atoms of detail."""
+    signals, _ = to_signals(patches.detail, patches.known)
+    return *masked_ksvd(signals, patches.known.reshape(signals.shape), ksvd, rng, on_iteration), len(patches)
+
+
+def _learn_heights(
+    patches: TrainingPatches, ksvd: KsvdOptions, rng: np.random.Generator, on_iteration: OnIteration | None
+) -> Atoms:
+    """Learn the atoms of heights as a repair by the paper's recipe does from one mesh."""
+    learned = paper_dictionary.learn_atoms(patches.detail, patches.known, ksvd, rng, on_iteration)
+    if learned is None or learned.dictionary.n_atoms < ksvd.n_atoms:
+        raise StageError(f"too few of the patches show relief for {ksvd.n_atoms} atoms")
+    return learned.dictionary.atoms, learned.errors, learned.n_patches
+
+
+# What learns from patches, by what model cards call their signals.
+LEARNERS: dict[str, Learner] = {NORMALISATION: _learn_detail, HEIGHTS: _learn_heights}
 
 
 def _measure(

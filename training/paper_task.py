@@ -1,7 +1,7 @@
 """Training the paper's networks: clean patches out of holed ones (section 5 of the paper).
 
-Heights are scaled as `quadpatch.inpainters.onnx_network` scales them in a repair: less the mean of the bins that can be
-seen, `low`..`high` of the training set becoming 0..0.83, bins that can't be seen 1.
+Heights are scaled as `quadpatch.inpainters.onnx_network` scales them in a repair: `low`..`high` of the training set
+become 0..0.83, bins that can't be seen 1.
 
 The loss is the binary cross-entropy against the clean patch over all bins that were measured, less the entropy of the
 clean patch itself. That part is none of the network's doing and has no gradient, but it is nearly all of the
@@ -18,7 +18,7 @@ import torch
 from torch import Tensor, nn
 from torch.nn import functional
 
-from quadpatch.inpainters.onnx_network import PaperScale
+from quadpatch.inpainters.onnx_network import RAW_HEIGHTS, PaperScale
 from quadpatch.types import IntArray
 from training.architectures import Architecture
 from training.holes import N_TURNS, Holes, draw_holes, turn
@@ -28,8 +28,6 @@ from training.task import Batch
 # Limits of the scale: heights beyond are cut off. The outermost bins of all stand for folds and spikes.
 PERCENTILES = (0.25, 99.75)
 MAX_SCALE_PATCHES = 5000
-# What model cards call it.
-NORMALISATION = "heights-mean-range"
 # Validation is the same for every run, so that runs with several seeds can be compared.
 VALIDATION_SEED = 20_190_325
 MAX_VALIDATION_PATCHES = 2048
@@ -64,7 +62,7 @@ class PaperTask:
             "height_low": scale.low,
             "height_high": scale.high,
             "scaled_high": scale.scaled_high,
-            "normalisation": NORMALISATION,
+            "normalisation": RAW_HEIGHTS,
         }
 
     def build(self) -> nn.Module:
@@ -102,10 +100,8 @@ class PaperTask:
         heights = turn(torch.from_numpy(arrays["heights"]).to(device, torch.float32), turns)
         known = turn(torch.from_numpy(arrays["known"]).to(device), turns)
         visible = known & holes.cut(self.architecture.resolution, device)
-        count = visible.sum(dim=(1, 2)).clamp(min=1)
-        mean = torch.where(visible, heights, 0.0).sum(dim=(1, 2)) / count
         scale = self.scale
-        scaled = (heights - mean[:, None, None] - scale.low) / (scale.high - scale.low) * scale.scaled_high
+        scaled = (heights - scale.low) / (scale.high - scale.low) * scale.scaled_high
         clean = scaled.clamp(0.0, scale.scaled_high)
         inputs = torch.where(visible, clean, 1.0)
         return inputs[:, None], clean[:, None], known[:, None]

@@ -12,6 +12,7 @@ from typing import Any
 
 from quadpatch.errors import OptionError, ReadError
 
+MANIFEST = "manifest.json"
 SUFFIXES = (".ply", ".stl", ".obj", ".off", ".glb", ".gltf", ".3mf")
 
 
@@ -83,12 +84,13 @@ def corpus_sha256(parts: list[str]) -> str:
 def _source(path: Path) -> Source:
     entry = _manifest(path.parent).get(path.stem, {})
     origin = "/".join(str(entry[key]) for key in ("source_repo", "source_path") if entry.get(key))
+    origin = origin or str(entry.get("origin", ""))
     digest = hashlib.sha256(path.read_bytes()).hexdigest()
     return Source(path.stem, path, digest, str(entry.get("licence", "")), origin)
 
 
 def _manifest(folder: Path) -> dict[str, dict[str, Any]]:
-    path = folder / "manifest.json"
+    path = folder / MANIFEST
     if not path.is_file():
         return {}
     try:

@@ -11,6 +11,7 @@ experiments
     patch-length  the paper's local dictionary and our `self`, by the ratio of hole to patch
     shapes        the paper's global dictionary, by the number of shapes that it was learned from
     networks      the paper's networks, trained on the spot, beside its dictionaries
+    network-order the same networks by equal data, batch and steps, a rate found for each, and two seeds
 """
 
 import argparse
@@ -18,8 +19,9 @@ import sys
 from pathlib import Path
 
 from benchmarks.quality.bench import RADII, Bench, BenchError
+from benchmarks.quality.code_version import method_sha256
 from benchmarks.quality.measurement import Method
-from benchmarks.quality.network_options import PROTOCOLS, Budget, NetworkOptions
+from benchmarks.quality.network_options import PROTOCOLS, Budget, NetworkOptions, Order
 from benchmarks.quality.own_meshes import own_shapes
 from benchmarks.quality.results import ALL_KINDS, OF_THE_METHOD, Results
 from benchmarks.quality.session import EXPERIMENTS, REPAIR, Session
@@ -70,6 +72,7 @@ def _add_network_options(parser: argparse.ArgumentParser) -> None:
     networks.add_argument("--protocol", action="append", choices=PROTOCOLS, help="repeat for more; default local")
     networks.add_argument("--minutes", type=float, help=f"of training, each; default {usual.budget.minutes}")
     networks.add_argument("--steps", type=int, help="of training, each, at most; without --minutes the only limit")
+    networks.add_argument("--batch", type=int, default=Order.batch, help="patches in a step (network-order)")
     networks.add_argument("--threads", type=int, default=usual.budget.threads, help="for training; default 1")
 
 
@@ -79,7 +82,7 @@ def _open(arguments: argparse.Namespace) -> Session:
     fresh = ALL_KINDS if arguments.fresh_all else OF_THE_METHOD if arguments.fresh else ()
     return Session(
         bench=bench,
-        results=Results(arguments.output / "results", fresh),
+        results=Results(arguments.output / "results", fresh, method_sha256()),
         every=own_shapes(bench, arguments.meshes, arguments.output) if arguments.meshes else bench.shapes(),
         names=arguments.mesh or [],
         radii=RADII if ALL in radii else radii,
@@ -95,7 +98,8 @@ def _network_options(arguments: argparse.Namespace) -> NetworkOptions:
     is_endless = arguments.minutes is None and arguments.steps is None
     minutes = usual.budget.minutes if is_endless else arguments.minutes
     budget = Budget(minutes, arguments.steps, arguments.threads)
-    return NetworkOptions(arguments.arch or usual.architectures, arguments.protocol or usual.protocols, budget)
+    order = Order(steps=arguments.steps or Order.steps, batch=arguments.batch, threads=arguments.threads)
+    return NetworkOptions(arguments.arch or usual.architectures, arguments.protocol or usual.protocols, budget, order)
 
 
 if __name__ == "__main__":

@@ -9,11 +9,12 @@ import hashlib
 import importlib.util
 import json
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+from quadpatch.patches.paper_layout import smooth_for_quads
 from quadpatch.types import TriangleMesh
 
 RADII = ("0.015", "0.025", "0.035")
@@ -75,6 +76,7 @@ class Bench:
 
     folder: Path
     script: ModuleType
+    _smoothed: dict[Path, TriangleMesh] = field(default_factory=dict)
 
     @classmethod
     def open(cls, folder: Path) -> "Bench":
@@ -109,6 +111,12 @@ class Bench:
     def read(self, path: Path) -> TriangleMesh:
         """Read a PLY as the bench reads it."""
         return TriangleMesh(*self.script.read_ply(path))
+
+    def smoothed(self, path: Path) -> TriangleMesh:
+        """Read a PLY and smooth it as the paper's recipe does, which takes a minute; what was smoothed is kept."""
+        if path not in self._smoothed:
+            self._smoothed[path] = smooth_for_quads(self.read(path))
+        return self._smoothed[path]
 
     def write(self, path: Path, mesh: TriangleMesh) -> None:
         """Write a PLY as the bench writes it: float32."""

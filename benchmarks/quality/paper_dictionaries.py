@@ -20,9 +20,10 @@ from quadpatch.inpainters.paper_dictionary import GLOBAL_ATOMS, LOCAL_ATOMS, lea
 from quadpatch.mesh.measures import mean_edge_length
 from quadpatch.model_choice import SELF
 from quadpatch.options import DictionaryOptions, PatchOptions
-from quadpatch.patches.normalisation import HEIGHTS, mean_free
+from quadpatch.patches.normalisation import HEIGHTS, raw_heights
+from quadpatch.patches.paper_layout import cut_patches, learnable
 from quadpatch.patches.scale import PatchScale
-from quadpatch.recipes.paper import cut_heights, paper_scale
+from quadpatch.recipes.paper import paper_scale
 from quadpatch.sparse.dictionary import Dictionary
 from quadpatch.sparse.omp import masked_omp
 from quadpatch.types import BoolArray, FloatArray
@@ -109,18 +110,17 @@ class Learner:
         cache_key = (shape.sha256, scale)
         if cache_key not in self._cut:
             self._cut = {key: cut for key, cut in self._cut.items() if key[1] == scale}
-            patches = cut_heights(self.bench.read(shape.truth), scale)
+            truth, smoothed = self.bench.read(shape.truth), self.bench.smoothed(shape.truth)
+            patches = learnable(cut_patches(truth, smoothed, scale, np.random.default_rng(SEED)))
             self._cut[cache_key] = patches.heights, patches.known
         return self._cut[cache_key]
 
 
 def _coding_error(heights: FloatArray, known: BoolArray, dictionary: Dictionary) -> float:
     """Mean absolute difference between known heights and what their codes make of them."""
-    signals, centred = mean_free(heights, known)
+    signals, _ = raw_heights(heights, known)
     flat = known.reshape(signals.shape)
-    coded = (
-        masked_omp(signals, flat, dictionary.atoms, dictionary.n_nonzero) @ dictionary.atoms.T + centred.mean[:, None]
-    )
+    coded = masked_omp(signals, flat, dictionary.atoms, dictionary.n_nonzero) @ dictionary.atoms.T
     return float(np.abs(coded - heights.reshape(signals.shape))[flat].mean())
 
 

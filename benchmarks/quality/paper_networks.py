@@ -4,7 +4,6 @@ As with the paper's dictionaries, they are trained on meshes that are for measur
 folder and are never published.
 """
 
-import ast
 import hashlib
 import json
 import time
@@ -19,13 +18,14 @@ import torch
 from torch import nn
 
 from benchmarks.quality.bench import Bench, Shape
+from benchmarks.quality.code_version import code_sha256, method_sha256
 from benchmarks.quality.measurement import Method
-from benchmarks.quality.network_options import Budget
+from benchmarks.quality.network_options import Budget, Pace
 from benchmarks.quality.results import NETWORKS, Key, Results
-from quadpatch.inpainters.paper_dictionary import MIN_TRAINING_PATCHES, is_learnable
-from quadpatch.patches.normalisation import mean_free
+from quadpatch.inpainters.paper_dictionary import MIN_TRAINING_PATCHES
+from quadpatch.patches.folding import is_unfolded
+from quadpatch.patches.paper_layout import LEAST_KNOWN, cut_patches
 from quadpatch.patches.scale import PatchScale
-from quadpatch.recipes.paper import cut_heights
 from quadpatch.types import IntArray, Patches
 from training import autoencoder, holes, paper_task, trainer
 from training.architectures import Architecture
@@ -40,7 +40,7 @@ SEED = 0
 # paper's own protocol, where training and test share the mesh.
 HELD_OUT_EVERY = 20
 # Minutes on a CPU are few steps: many small ones come furthest. Patches in a step, and learning rate, by resolution.
-_PACE = {24: (16, 5e-3), 100: (4, 1e-3)}
+_PACE = {24: Pace(16, 5e-3), 100: Pace(4, 1e-3)}
 # Each costs a look at all held-out patches.
 _N_VALIDATIONS = 10
 _CODE = (autoencoder, holes, paper_task, trainer)
@@ -73,7 +73,12 @@ class NetworkTrainer:
     _cut: dict[tuple[str, PatchScale], Arrays] = field(default_factory=dict)
 
     def train(
-        self, name: str, shapes: Sequence[Shape], scale: PatchScale, architecture: Architecture
+        self,
+        name: str,
+        shapes: Sequence[Shape],
+        scale: PatchScale,
+        architecture: Architecture,
+        pace: Pace | None = None,
     ) -> TrainedNetwork | None:
         """Train on the patches of undamaged meshes, or take what was kept; None where they have too few.
 
@@ -86,7 +91,10 @@ class NetworkTrainer:
             Of the repair; the network brings its own resolution.
         architecture : Architecture
             For the recipe `paper`.
+        pace : Pace, optional
+            None takes what comes furthest in minutes on a CPU: many small steps.
         """
+        pace = pace or _PACE[architecture.resolution]
         budget, label = self.budget, f"{architecture.name}-{name}"
         fine = replace(scale, resolution=architecture.resolution)
         key: Key = {
@@ -96,11 +104,13 @@ class NetworkTrainer:
             "minutes": budget.minutes or 0.0,
             "steps": budget.steps or 0,
             "threads": budget.threads,
-            "seed": SEED,
+            "seed": pace.seed,
+            "batch": pace.batch,
+            "rate": pace.rate,
             "sources_sha256": json.dumps({shape.name: shape.sha256 for shape in shapes}),
-            "code_sha256": _code_sha256(),
+            "code_sha256": code_sha256(Path(str(module.__file__)) for module in _CODE) + method_sha256(),
         }
-        facts = self.results.get(NETWORKS, key, lambda: self._train(key, shapes, fine, architecture))
+        facts = self.results.get(NETWORKS, key, lambda: self._train(key, shapes, fine, (architecture, pace)))
         if not facts["file"]:
             return None
         options = {"recipe": "paper", "patches": {"length": fine.length, "overlap": fine.overlap}}
@@ -110,24 +120,29 @@ class NetworkTrainer:
         """Cut the patches of an undamaged mesh, in the order of their seeds: `heights` in patch lengths, `known`."""
         wanted = (shape.sha256, scale)
         if wanted not in self._cut:
-            self._cut[wanted] = _arrays(cut_heights(self.bench.read(shape.truth), scale))
+            truth, smoothed = self.bench.read(shape.truth), self.bench.smoothed(shape.truth)
+            self._cut[wanted] = _arrays(cut_patches(truth, smoothed, scale, np.random.default_rng(SEED)))
         return self._cut[wanted]
 
+    def with_budget(self, budget: Budget) -> "NetworkTrainer":
+        """Return the same trainer, patches that were cut included, for another budget."""
+        return replace(self, budget=budget)
+
     def _train(
-        self, key: Key, shapes: Sequence[Shape], scale: PatchScale, architecture: Architecture
+        self, key: Key, shapes: Sequence[Shape], scale: PatchScale, what: tuple[Architecture, Pace]
     ) -> dict[str, Any]:
+        architecture, pace = what
         train, held_out = _split([self.patches(shape, scale) for shape in shapes])
         if len(train) < MIN_TRAINING_PATCHES or not len(held_out):
             return {"file": None}
         digest = hashlib.sha256(json.dumps(dict(key), sort_keys=True).encode()).hexdigest()
         task = PaperTask(architecture, train, held_out, paper_scale(train), digest)
-        batch, rate = _PACE[architecture.resolution]
         options = TrainOptions(
             steps=self.budget.steps,
             minutes=self.budget.minutes,
-            batch=batch,
-            rate=rate,
-            seed=SEED,
+            batch=pace.batch,
+            rate=pace.rate,
+            seed=pace.seed,
             n_validations=_N_VALIDATIONS,
             patience=_N_VALIDATIONS,
         )
@@ -176,7 +191,7 @@ def _split(cut: Sequence[Arrays]) -> tuple[PatchSet, PatchSet]:
     for arrays in cut:
         is_held_out = np.zeros(len(arrays["known"]), bool)
         is_held_out[held_out_rows(len(is_held_out))] = True
-        good = is_learnable(arrays["known"])
+        good = arrays["known"].mean(axis=(1, 2)) >= LEAST_KNOWN
         for part, which in ((train, good & ~is_held_out), (held_out, good & is_held_out)):
             if which.any():
                 part.append({name: array[which] for name, array in arrays.items()})
@@ -184,19 +199,10 @@ def _split(cut: Sequence[Arrays]) -> tuple[PatchSet, PatchSet]:
 
 
 def _arrays(patches: Patches) -> Arrays:
-    """Bring heights into the form of a corpus: see `training.build_corpus`."""
-    centred, _ = mean_free(patches.heights, patches.known)
-    return {
-        "heights": (centred.reshape(patches.heights.shape) / patches.length).astype(np.float32),
-        "known": patches.known,
-    }
-
-
-def _code_sha256() -> str:
-    """Hash of the code that a trained network follows from; comments don't count."""
-    files = [__file__, *(str(module.__file__) for module in _CODE)]
-    trees = [ast.dump(ast.parse(Path(file).read_text("utf-8"))) for file in files]
-    return hashlib.sha256("\n".join(trees).encode()).hexdigest()
+    """Bring heights into the form of a corpus, see `training.build_corpus`; where they fold, no bin counts as known."""
+    known = patches.known & is_unfolded(patches)[:, None, None]
+    heights = np.where(known, patches.heights / patches.length, 0.0)
+    return {"heights": heights.astype(np.float32), "known": known}
 
 
 @contextmanager

@@ -1,7 +1,7 @@
 """Results that are kept: an experiment that was cut short goes on where it stopped.
 
-One JSON file per result, named by what was measured and with all of that inside. The code is no part of it: after a
-change of the code, ask for fresh results.
+One JSON file per result, named by what was measured and with all of that inside, the version of the code included:
+after a change of the method, its results are measured again.
 """
 
 import hashlib
@@ -22,10 +22,19 @@ Key = Mapping[str, str | int | float]
 
 @dataclass
 class Results:
-    """A folder of results; of the kinds that are `fresh`, those of earlier runs don't count."""
+    """A folder of results of one version of the code; those of earlier runs don't count for the kinds that are `fresh`.
+
+    Attributes
+    ----------
+    folder : Path
+    fresh : collection of str
+    code : str
+        Hash of the method's code; results of the peers don't depend on it.
+    """
 
     folder: Path
     fresh: Collection[str] = ()
+    code: str = ""
     _made: set[Path] = field(default_factory=set)
 
     def get(self, kind: str, key: Key, compute: Callable[[], dict[str, Any]]) -> dict[str, Any]:
@@ -40,6 +49,8 @@ class Results:
         compute : callable
             Gives the result, JSON-ready.
         """
+        if kind != PEERS:
+            key = {**key, "code_sha256": key.get("code_sha256", self.code)}
         path = self.folder / kind / f"{_name(key)}.json"
         if path.is_file() and (kind not in self.fresh or path in self._made):
             kept: dict[str, Any] = json.loads(path.read_text())

@@ -141,6 +141,20 @@ def _networks(session: Session) -> None:
     session.publish(networks_experiment(networks, cases, options, session.is_drawing))
 
 
+def _network_order(session: Session) -> None:
+    from benchmarks.quality.network_experiment import Networks, find_architectures  # noqa: PLC0415  see above
+    from benchmarks.quality.network_order import network_order_experiment  # noqa: PLC0415
+    from benchmarks.quality.paper_networks import NetworkTrainer  # noqa: PLC0415
+
+    options = session.networks
+    architectures = find_architectures(options.architectures)
+    cases = session.cases(session.radii)
+    paper = session.paper(len(cases) * len(architectures) * len(options.order.seeds))
+    trainer = NetworkTrainer(session.bench, session.results, session.output / "networks", options.budget)
+    networks = Networks(paper, trainer, session.every, architectures)
+    session.publish(network_order_experiment(networks, cases, options.order))
+
+
 EXPERIMENTS: dict[str, Callable[[Session], None]] = {
     REPAIR: _repair,
     "dictionaries": _dictionaries,
@@ -148,4 +162,5 @@ EXPERIMENTS: dict[str, Callable[[Session], None]] = {
     "patch-length": _patch_length,
     "shapes": _shapes,
     "networks": _networks,
+    "network-order": _network_order,
 }

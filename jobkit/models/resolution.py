@@ -17,7 +17,7 @@ from jobkit.schema import (
 )
 
 # What cards of dictionaries that were learned for the recipe `paper` say of their normalisation.
-PAPER_NORMALISATION = "heights-mean"
+PAPER_NORMALISATION = "heights"
 
 
 def resolve_method(registry: Registry, method: Method) -> ResolvedModel:

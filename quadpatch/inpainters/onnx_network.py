@@ -3,8 +3,10 @@
 A network file carries its facts in its ONNX metadata under `card`, a JSON
 object with `kind` = `autoencoder`, `patch_resolution` N and `recipe`:
 
-- `paper`: one channel of heights less the mean of the known bins, scaled so that `height_low`..`height_high` (in patch
-  lengths) becomes 0..`scaled_high`, unknown bins 1; the output is the clean patch in the same scale.
+- `paper`: one channel of heights, scaled so that `height_low`..`height_high` (in patch lengths) becomes
+  0..`scaled_high`, unknown bins 1; the output is the clean patch in the same scale. Heights are over the plane of the
+  patch through the smoothed surface; networks whose `normalisation` is `heights-mean-range` see them less the mean of
+  the known bins.
 - `residual`: two channels and an answer as in `quadpatch.patches.residual_input`.
 
 Sessions must not cross a fork: create the inpainter in the process that uses it.
@@ -24,6 +26,9 @@ from quadpatch.patches.residual_input import CHANNELS, corrected, network_input
 from quadpatch.types import BoolArray, FloatArray, Patches
 
 RECIPES = ("paper", "residual")
+# What cards call the heights of paper networks: as they are, or less the mean of the known bins.
+RAW_HEIGHTS = "heights-range"
+CENTRED_HEIGHTS = "heights-mean-range"
 MAX_RESOLUTION = 128
 # Patches in one run: enough to keep two cores busy, small enough for wide networks' activations.
 BATCH = 64
@@ -37,6 +42,7 @@ class PaperScale:
     low: float
     high: float
     scaled_high: float = 0.83
+    is_centred: bool = False
 
 
 @dataclass(frozen=True)
@@ -93,18 +99,21 @@ class AutoencoderInpainter:
     def predict(self, patches: Patches, base_heights: FloatArray) -> FloatArray:
         """See `Inpainter`."""
         if self.scale is not None:
-            return self._predict_heights(patches, self.scale)
+            return self._predict_heights(patches, base_heights, self.scale)
         seen = network_input(patches, base_heights)
         return corrected(patches, seen.deviation, self.answer(seen.channels))
 
-    def _predict_heights(self, patches: Patches, scale: PaperScale) -> FloatArray:
-        mean = _mean_of_known(patches.heights, patches.known)[:, None, None]
+    def _predict_heights(self, patches: Patches, base_heights: FloatArray, scale: PaperScale) -> FloatArray:
+        # The paper's seeds lie on the smoothed surface; those of the default recipe in the planes of quads.
+        level = (_mean_of_known(patches.heights, patches.known) if scale.is_centred else _at_centre(base_heights))[
+            :, None, None
+        ]
         span = (scale.high - scale.low) * patches.length
         low = scale.low * patches.length
-        scaled = (patches.heights - mean - low) / span * scale.scaled_high
+        scaled = (patches.heights - level - low) / span * scale.scaled_high
         scaled = np.where(patches.known, np.clip(scaled, 0.0, scale.scaled_high), 1.0)
         clean = self.answer(scaled[:, None].astype(np.float32))
-        return mean + low + clean / scale.scaled_high * span
+        return level + low + clean / scale.scaled_high * span
 
     def answer(self, inputs: "np.ndarray[Any, np.dtype[np.float32]]") -> FloatArray:
         """Run (n, c, N, N) float32 in batches: (n, N, N) float64."""
@@ -134,7 +143,10 @@ def _card(session: ort.InferenceSession, name: str) -> dict[str, Any]:
 
 def _paper_scale(card: dict[str, Any], name: str) -> PaperScale:
     try:
-        scale = PaperScale(float(card["height_low"]), float(card["height_high"]), float(card.get("scaled_high", 0.83)))
+        # Cards from before there were two kinds say nothing.
+        is_centred = card.get("normalisation", CENTRED_HEIGHTS) == CENTRED_HEIGHTS
+        scaled_high = float(card.get("scaled_high", 0.83))
+        scale = PaperScale(float(card["height_low"]), float(card["height_high"]), scaled_high, is_centred)
     except (KeyError, TypeError, ValueError) as error:
         raise ModelError(f"{name}: the card lacks height_low and height_high") from error
     if not (np.isfinite([scale.low, scale.high]).all() and scale.low < scale.high and 0 < scale.scaled_high <= 1):
@@ -154,4 +166,11 @@ def _check_shapes(session: ort.InferenceSession, channels: int, resolution: int,
 def _mean_of_known(values: FloatArray, known: BoolArray) -> FloatArray:
     count = np.maximum(known.sum(axis=(1, 2)), 1)
     mean: FloatArray = np.where(known, values, 0.0).sum(axis=(1, 2)) / count
+    return mean
+
+
+def _at_centre(maps: FloatArray) -> FloatArray:
+    """Mean (n,) of the two by two bins around the centre of each map."""
+    middle = maps.shape[-1] // 2
+    mean: FloatArray = maps[:, middle - 1 : middle + 1, middle - 1 : middle + 1].mean(axis=(1, 2))
     return mean

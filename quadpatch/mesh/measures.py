@@ -19,3 +19,10 @@ def diagonal(mesh: TriangleMesh) -> float:
     if not len(mesh.triangles):
         return 0.0
     return float(np.linalg.norm(np.ptp(mesh.vertices[mesh.triangles].reshape(-1, 3), axis=0)))
+
+
+def longest_side(mesh: TriangleMesh) -> float:
+    """Longest side of the bounding box of all vertices that a triangle uses, in mesh units; the paper's unit."""
+    if not len(mesh.triangles):
+        return 0.0
+    return float(np.ptp(mesh.vertices[mesh.triangles].reshape(-1, 3), axis=0).max())

@@ -14,6 +14,7 @@ M. Kazhdan, H. Hoppe, "Screened Poisson surface reconstruction", ACM Transaction
 M. Garland, P. Heckbert, "Surface simplification using quadric error metrics", SIGGRAPH, 1997.
 """
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -36,7 +37,7 @@ def two_step_smooth(mesh: TriangleMesh, n_iterations: int) -> TriangleMesh:
     Returns
     -------
     TriangleMesh
-        New vertices, the very same triangles.
+        New vertices, the very same triangles. Vertices that no triangle uses stay where they are.
 
     Raises
     ------
@@ -45,7 +46,11 @@ def two_step_smooth(mesh: TriangleMesh, n_iterations: int) -> TriangleMesh:
     """
     if not len(mesh.triangles):
         return mesh
-    vertices, _ = _filtered(mesh, "apply_coord_two_steps_smoothing", stepsmoothnum=n_iterations)
+    # The filter drops vertices without a triangle, and then loses count of the others.
+    used, compact = np.unique(mesh.triangles, return_inverse=True)
+    used_alone = TriangleMesh(mesh.vertices[used], compact.reshape(-1, 3))
+    vertices = mesh.vertices.copy()
+    vertices[used], _ = _filtered(used_alone, "apply_coord_two_steps_smoothing", stepsmoothnum=n_iterations)
     return TriangleMesh(vertices, mesh.triangles)
 
 
@@ -131,6 +136,27 @@ def split_edges(mesh: TriangleMesh, edge_length: float) -> TriangleMesh:
     return TriangleMesh(
         *_filtered(mesh, "meshing_surface_subdivision_midpoint", iterations=n_rounds, threshold=threshold)
     )
+
+
+def write_ply(mesh: TriangleMesh, path: Path) -> None:
+    """Write a mesh as binary PLY with coordinates in double precision.
+
+    Raises
+    ------
+    StageError
+        If the file can't be written.
+    """
+    library = _library()
+    meshes = library.MeshSet(verbose=False)
+    meshes.add_mesh(library.Mesh(mesh.vertices, mesh.triangles))
+    plain = dict.fromkeys(
+        ("save_vertex_quality", "save_vertex_color", "save_vertex_normal", "save_face_color", "save_wedge_texcoord"),
+        False,
+    )
+    try:
+        meshes.save_current_mesh(str(path), binary=True, **plain)
+    except library.PyMeshLabException as error:
+        raise StageError(f"MeshLab can't write {path.name}: {error}") from error
 
 
 def _longest_edge(mesh: TriangleMesh) -> float:

@@ -61,10 +61,36 @@ def vertices_in_patches(vertices: Vertices, vertex_normals: FloatArray, patches:
     # Loop over chunks, not vertices.
     found = []
     for start in range(0, len(vertices), _CHUNK):
-        near = cKDTree(vertices[start : start + _CHUNK]).sparse_distance_matrix(anchors, radius, output_type="ndarray")
-        pairs = np.lexsort((near["j"], near["i"]))
-        vertex, patch = near["i"][pairs].astype(np.int64) + start, near["j"][pairs].astype(np.int64)
-        found.append(_shown(vertices, vertex_normals, patches, vertex, patch))
+        vertex, patch = _near(cKDTree(vertices[start : start + _CHUNK]), anchors, radius)
+        found.append(_shown(vertices, vertex_normals, patches, vertex + start, patch))
+    return _joined(found)
+
+
+def vertices_in_balls(vertices: Vertices, vertex_normals: FloatArray, patches: Patches) -> Connectivity:
+    """Find all patches whose ball holds a vertex: the paper's connectivity, which needs no surface in the patch.
+
+    A patch holds a vertex if it lies over its square, in the ball around its seed that goes through the corners of the
+    square, and its normal looks along z.
+
+    Parameters
+    ----------
+    vertices : (n, 3) float64
+    vertex_normals : (n, 3) float64
+        Unit normals; a vertex with a zero normal is in no patch.
+    patches : Patches
+
+    Returns
+    -------
+    Connectivity
+    """
+    if len(patches) == 0 or len(vertices) == 0:
+        return _joined([])
+    anchors, found = cKDTree(patches.origins), []
+    # Loop over chunks, not vertices.
+    for start in range(0, len(vertices), _CHUNK):
+        tree = cKDTree(vertices[start : start + _CHUNK])
+        vertex, patch = _near(tree, anchors, patches.length * np.sqrt(0.5))
+        found.append(_over(vertices, vertex_normals, patches, vertex + start, patch)[0])
     return _joined(found)
 
 
@@ -110,23 +136,37 @@ def _gather(maps: FloatArray, connectivity: Connectivity) -> FloatArray:
     return np.asarray(upper * (1 - down) + lower * down)
 
 
+def _near(vertices: cKDTree, anchors: cKDTree, radius: float) -> tuple[IntArray, IntArray]:
+    """Pairs (k,) of a vertex and an anchor that lie no further apart than a radius; sorted."""
+    near = vertices.sparse_distance_matrix(anchors, radius, output_type="ndarray")
+    pairs = np.lexsort((near["j"], near["i"]))
+    return near["i"][pairs].astype(np.int64), near["j"][pairs].astype(np.int64)
+
+
 def _shown(
     vertices: Vertices, normals: FloatArray, patches: Patches, vertex: IntArray, patch: IntArray
 ) -> Connectivity:
     """Keep the pairs whose vertex lies on what the patch shows."""
+    candidates, height = _over(vertices, normals, patches, vertex, patch)
+    surface = bilinear(patches.heights, candidates, patches.seen)
+    is_close = np.abs(height - surface) <= _TOLERANCE_BINS * patches.length / patches.resolution
+    is_seen = _gather(patches.seen.astype(np.float64), candidates) >= _LEAST_SEEN
+    # A comparison with NaN is false: where no bin saw anything there is nothing to be close to.
+    kept = np.flatnonzero(is_close & is_seen)
+    return Connectivity(candidates.vertex[kept], candidates.patch[kept], candidates.row[kept], candidates.column[kept])
+
+
+def _over(
+    vertices: Vertices, normals: FloatArray, patches: Patches, vertex: IntArray, patch: IntArray
+) -> tuple[Connectivity, FloatArray]:
+    """Keep the pairs whose vertex lies over the square and looks along z; with the heights of the vertices."""
     is_facing = np.einsum("ij,ij->i", normals[vertex], patches.frames[patch, 2]) > LEAST_FACING
     vertex, patch = vertex[is_facing], patch[is_facing]
     local = np.einsum("nij,nj->ni", patches.frames[patch], vertices[vertex] - patches.origins[patch])
     is_over = np.abs(local[:, :2]).max(axis=1, initial=0.0) <= patches.length / 2
     vertex, patch, local = vertex[is_over], patch[is_over], local[is_over]
     bins = local[:, :2] * (patches.resolution / patches.length) + (patches.resolution - 1) / 2
-    candidates = Connectivity(vertex, patch, bins[:, 1], bins[:, 0])
-    surface = bilinear(patches.heights, candidates, patches.seen)
-    is_close = np.abs(local[:, 2] - surface) <= _TOLERANCE_BINS * patches.length / patches.resolution
-    is_seen = _gather(patches.seen.astype(np.float64), candidates) >= _LEAST_SEEN
-    # A comparison with NaN is false: where no bin saw anything there is nothing to be close to.
-    kept = np.flatnonzero(is_close & is_seen)
-    return Connectivity(vertex[kept], patch[kept], bins[kept, 1], bins[kept, 0])
+    return Connectivity(vertex, patch, bins[:, 1], bins[:, 0]), local[:, 2]
 
 
 def _joined(parts: list[Connectivity]) -> Connectivity:

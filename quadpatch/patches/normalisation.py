@@ -15,8 +15,8 @@ from quadpatch.types import BoolArray, FloatArray
 # What model cards call this normalisation; a model made with another one can't be used here.
 NORMALISATION = "detail-mean-spread"
 
-# The same for dictionaries of the paper's own recipe: heights over the plane of the patch, less their mean.
-HEIGHTS = "heights-mean"
+# The same for dictionaries of the paper's own recipe: heights over the plane of the patch, as they are.
+HEIGHTS = "heights"
 
 # A standard deviation this small against the heights themselves is rounding, not relief.
 FLAT = 1e-9
@@ -72,7 +72,7 @@ def to_signals(detail: FloatArray, known: BoolArray, least_deviation: float = 0.
 
 
 def from_signals(signals: FloatArray, scaling: Scaling) -> FloatArray:
-    """Undo `to_signals` or `mean_free`.
+    """Undo `to_signals` or `raw_heights`.
 
     Parameters
     ----------
@@ -92,8 +92,10 @@ def from_signals(signals: FloatArray, scaling: Scaling) -> FloatArray:
     return detail.reshape(n_patches, resolution, resolution)
 
 
-def mean_free(heights: FloatArray, known: BoolArray) -> tuple[FloatArray, Scaling]:
-    """Take the mean of the known bins out of every patch: all that the paper's own recipe does to heights.
+def raw_heights(heights: FloatArray, known: BoolArray) -> tuple[FloatArray, Scaling]:
+    """Leave the heights of patches as they are: the signals of the paper's own recipe.
+
+    Less the mean of the known bins, no atom could carry a level, and the level inside a hole would be that of its rim.
 
     Parameters
     ----------
@@ -107,17 +109,16 @@ def mean_free(heights: FloatArray, known: BoolArray) -> tuple[FloatArray, Scalin
     signals : (n_patches, N * N) float64
         In mesh units; 0 in unknown bins.
     scaling : Scaling
-        For `from_signals`; its deviation is 1, a pure number.
+        For `from_signals`; its mean is 0 and its deviation 1, a pure number.
     """
+    # Written out, because -1 has no meaning for no patch at all.
     shape = len(heights), heights.shape[1] * heights.shape[2]
-    flat_known = known.reshape(shape)
-    values = np.where(flat_known, heights.reshape(shape), 0.0)
-    mean = values.sum(axis=1) / np.maximum(flat_known.sum(axis=1), 1)
-    return np.where(flat_known, values - mean[:, None], 0.0), Scaling(mean, np.ones(len(heights)))
+    signals = np.where(known.reshape(shape), heights.reshape(shape), 0.0)
+    return signals, Scaling(np.zeros(len(heights)), np.ones(len(heights)))
 
 
 # How signals are made, by what model cards call it. `from_signals` undoes them all.
 NORMALISATIONS: dict[str, Callable[[FloatArray, BoolArray], tuple[FloatArray, Scaling]]] = {
     NORMALISATION: to_signals,
-    HEIGHTS: mean_free,
+    HEIGHTS: raw_heights,
 }

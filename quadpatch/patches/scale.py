@@ -1,10 +1,10 @@
 """How large patches are: the automatic rule, and what the user or the model overrides."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from quadpatch.options import PatchOptions
+from quadpatch.options import PatchOptions, Preset
 
 # A patch must see about as much known surface around a hole as the hole is wide, also when its seed lies off centre.
 HOLES_PER_LENGTH = 1.8
@@ -57,6 +57,18 @@ def choose_scale(
     resolution = model_resolution or options.resolution or min(max(wanted, low), high)
     overlap = OVERLAP if options.overlap is None else options.overlap
     return PatchScale(float(length), int(resolution), overlap)
+
+
+# The paper's two kinds of patches: their side as a share of the object's longest side, and their bins.
+PRESETS: dict[Preset, tuple[float, int]] = {"type1": (0.03, 16), "type2": (0.06, 24)}
+
+
+def preset_scale(options: PatchOptions, longest_side: float) -> PatchOptions:
+    """Write out what a preset stands for on an object of a longest side (mesh units); without one, change nothing."""
+    if options.preset is None:
+        return options
+    share, resolution = PRESETS[options.preset]
+    return replace(options, length=share * longest_side, resolution=resolution, preset=None)
 
 
 def base_surface_iterations(length: float, edge_length: float) -> int:

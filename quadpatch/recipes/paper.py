@@ -2,12 +2,11 @@
 
 K. Sarkar, K. Varanasi, D. Stricker, "Learning Quadrangulated Patches For 3D Shape Processing", 2019. The stages stand
 here in the paper's order. What the default recipe adds has no place here: no fairing, no base surface under the
-heights, no calibration, no blend factor, no joining at the rim, no assessment.
-
-One thing differs. The paper places all vertices anew; here measured ones keep their bits, and only new ones are placed.
+heights, no calibration, no blend factor, no joining at the rim, no assessment. docs/paper.md goes through the paper and
+says where each part of it lies, and what differs.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -16,25 +15,25 @@ from quadpatch.calibration.training_pairs import TrainingSurface
 from quadpatch.errors import NoQuadsError, OptionError
 from quadpatch.filling.fairing import Energy
 from quadpatch.filling.faults import find_faults
-from quadpatch.filling.fill import close_flat
 from quadpatch.filling.filled_mesh import FilledMesh
+from quadpatch.filling.meshlab_closing import close_by_meshlab
 from quadpatch.inpainters.inpainter import FittedInpainter, Inpainter, UndamagedSurface
+from quadpatch.inpainters.paper_dictionary import HeightsInpainter
 from quadpatch.mesh.holes import Hole, Selection, find_holes, select_holes
-from quadpatch.mesh.measures import diagonal, mean_edge_length
-from quadpatch.mesh.raycast import RayScene
-from quadpatch.mesh.smoothing import laplacian_smooth
+from quadpatch.mesh.measures import diagonal, longest_side, mean_edge_length
 from quadpatch.options import PatchOptions, RepairOptions
-from quadpatch.patches.height_map import sample_height_maps
-from quadpatch.patches.layout import lay_out, pick_patches, seeds_near, take
-from quadpatch.patches.scale import PatchScale
+from quadpatch.patches.folding import is_unfolded
+from quadpatch.patches.layout import pick_patches, seeds_near, take
+from quadpatch.patches.paper_layout import learnable, measured_patches, seeds_on_surface, smooth_for_quads
+from quadpatch.patches.scale import PatchScale, preset_scale
 from quadpatch.patches.seeds import Seeds
 from quadpatch.recipes.assessment import agreement_of, count_new, measure_agreement, with_open_holes
 from quadpatch.recipes.result import Completion, HoleResult, Repair
 from quadpatch.recipes.verification import with_named_faults
 from quadpatch.reconstruction.displacement import rim_vertices
-from quadpatch.reconstruction.placement import place
+from quadpatch.reconstruction.placement import place, with_ring_means
 from quadpatch.stages import Stages
-from quadpatch.types import BoolArray, FloatArray, Patches, TriangleMesh, Triangles
+from quadpatch.types import FloatArray, Patches, TriangleMesh, Triangles
 from shared_rules.hole_selection import MODEL_FILLS_ONLY
 
 # The paper gives patch length, resolution and overlap for each of its objects. Where none are given, patches are twice
@@ -42,7 +41,6 @@ from shared_rules.hole_selection import MODEL_FILLS_ONLY
 HOLES_PER_LENGTH = 1.8
 RESOLUTION = 24
 OVERLAP = 2
-SMOOTHING_ITERATIONS = 30
 # Bins much finer than the mesh show its triangles.
 LEAST_EDGES_PER_BIN = 0.5
 
@@ -52,19 +50,16 @@ NO_FAIRING = EnergyBlend.of_one(Energy())
 
 @dataclass(frozen=True)
 class _Laid:
-    """Seeds over the whole base surface of a closed mesh."""
+    """Seeds on the smoothed surface of a closed mesh, and what samples the mesh there."""
 
     filled: FilledMesh
     seeds: Seeds
     scale: PatchScale
+    seed: int
 
-    def patches(self, which: BoolArray) -> Patches:
-        """Sample the heights at some of the seeds."""
-        mesh, scale = self.filled.mesh, self.scale
-        invented = self.filled.invented_triangles
-        return sample_height_maps(
-            RayScene(mesh), mesh, invented, take(self.seeds, which), scale.length, scale.resolution
-        )
+    def patches(self, which: Seeds) -> Patches:
+        """Sample the measured surface at some of the seeds; the closing is not looked at."""
+        return measured_patches(self.filled.measured, which, self.scale, np.random.default_rng(self.seed))
 
 
 def inpaint_as_paper(
@@ -106,13 +101,11 @@ def inpaint_as_paper(
         if any(action != "model" for action in selection.actions.values()):
             raise OptionError(MODEL_FILLS_ONLY)
     with stages.stage("fill"):
-        filled = close_flat(mesh, [hole.loop for hole in selection.chosen])
+        filled = close_by_meshlab(mesh, [hole.loop for hole in selection.chosen])
     completion, warnings = None, []
     if len(filled.vertex_hole):
-        diameters = [hole.diameter for hole in selection.chosen]
-        scale = paper_scale(diameters, mean_edge_length(mesh), options.patches, inpainter.resolution)
         try:
-            completion = _complete(filled, scale, inpainter, stages)
+            completion = _complete(filled, _scale(mesh, selection, options, inpainter), inpainter, options.seed, stages)
             if completion is None:
                 warnings.append("too little undamaged surface to learn from; the holes were closed, nothing more")
         except NoQuadsError as error:
@@ -125,43 +118,43 @@ def inpaint_as_paper(
     return Repair(placed, selection.chosen, results, NO_FAIRING, completion, warnings)
 
 
+def _scale(mesh: TriangleMesh, selection: Selection, options: RepairOptions, inpainter: Inpainter) -> PatchScale:
+    diameters = [hole.diameter for hole in selection.chosen]
+    patches, side = preset_scale(options.patches, longest_side(mesh)), longest_side(mesh)
+    scale = paper_scale(diameters, mean_edge_length(mesh), patches, inpainter.resolution)
+    share = inpainter.length_share if isinstance(inpainter, HeightsInpainter) else None
+    if share is None or patches.length is not None:
+        return scale
+    # As wide as in training, unless that is too narrow for the holes.
+    widest = HOLES_PER_LENGTH * float(np.percentile(diameters, 75))
+    return replace(scale, length=max(share * side, widest))
+
+
 def paper_scale(
     hole_diameters: list[float], edge_length: float, options: PatchOptions, model_resolution: int | None = None
 ) -> PatchScale:
     """Choose patch length, resolution and overlap where the user or the model doesn't; lengths in mesh units."""
     resolution = model_resolution or options.resolution or RESOLUTION
     # The finest networks show as much surface as the others, more finely: they were trained so.
-    least = LEAST_EDGES_PER_BIN * edge_length * (min(model_resolution, RESOLUTION) if model_resolution else resolution)
+    n_bins = min(model_resolution, RESOLUTION) if model_resolution else resolution
+    least = LEAST_EDGES_PER_BIN * edge_length * n_bins
     typical = float(np.percentile(hole_diameters, 75)) if hole_diameters else 0.0
     length = options.length or max(HOLES_PER_LENGTH * typical, least)
     return PatchScale(float(length), resolution, OVERLAP if options.overlap is None else options.overlap)
 
 
-def cut_heights(mesh: TriangleMesh, scale: PatchScale) -> Patches:
-    """Cut patches out of a whole mesh; none where it is too small to carry one."""
-    nothing = close_flat(mesh, [])
-    try:
-        laid = _lay_out(nothing, scale, Stages())
-    except NoQuadsError:
-        laid = _Laid(nothing, Seeds(np.zeros((0, 3)), np.zeros((0, 3, 3)), np.zeros(0, np.int64)), scale)
-    return laid.patches(np.ones(len(laid.seeds), bool))
-
-
-def _lay_out(filled: FilledMesh, scale: PatchScale, stages: Stages) -> _Laid:
-    """Smooth, quadrangulate, and give every quad its seeds (section 3.1 of the paper)."""
+def _complete(
+    filled: FilledMesh, scale: PatchScale, inpainter: Inpainter, seed: int, stages: Stages
+) -> Completion | None:
+    """Lay patches, complete those that see a hole, and place its vertices by them (sections 3 and 4 of the paper)."""
     with stages.stage("smooth"):
-        base_surface = laplacian_smooth(filled.mesh, SMOOTHING_ITERATIONS)
+        smoothed = smooth_for_quads(filled.mesh)
     with stages.stage("quadrangulate"):
-        return _Laid(filled, lay_out(base_surface, scale), scale)
-
-
-def _complete(filled: FilledMesh, scale: PatchScale, inpainter: Inpainter, stages: Stages) -> Completion | None:
-    """Complete the patches that see a hole, and place its vertices by them (sections 3 and 4 of the paper)."""
-    laid = _lay_out(filled, scale, stages)
-    near = seeds_near(laid.seeds, filled.mesh.vertices[filled.n_measured_vertices :], scale.length)
+        laid = _Laid(filled, seeds_on_surface(smoothed, scale), scale, seed)
     with stages.stage("patchify"):
-        patches = laid.patches(near)
-        patches = pick_patches(patches, np.asarray(patches.known.any(axis=(1, 2))))
+        near = seeds_near(laid.seeds, filled.mesh.vertices[filled.n_measured_vertices :], scale.length)
+        patches = laid.patches(take(laid.seeds, near))
+        patches = pick_patches(patches, is_unfolded(patches))
     fitted = _fitted(inpainter, laid, patches, stages)
     if fitted is None:
         return None
@@ -176,7 +169,7 @@ def _fitted(inpainter: Inpainter, laid: _Laid, patches: Patches, stages: Stages)
     if inpainter.resolution is not None:
         return inpainter.fitted_to(_undamaged(patches))
     with stages.stage("learn"):
-        return inpainter.fitted_to(_undamaged(laid.patches(np.ones(len(laid.seeds), bool))))
+        return inpainter.fitted_to(_undamaged(learnable(laid.patches(laid.seeds))))
 
 
 def _undamaged(patches: Patches) -> UndamagedSurface:
@@ -191,8 +184,9 @@ def _reconstruct(filled: FilledMesh, patches: Patches, predicted: FloatArray, sc
     rim, rim_hole = rim_vertices(filled)
     placed = place(filled, np.flatnonzero(filled.invented_vertices), patches, predicted)
     at_rim = place(filled, rim, patches, predicted)
-    agreement = measure_agreement(filled, placed, placed.mean, rim_hole, at_rim)
-    return Completion(placed.mean, agreement, agreement.coverage > 0, 1.0, None, scale, len(patches))
+    moves = with_ring_means(filled, placed)
+    agreement = measure_agreement(filled, placed, moves, rim_hole, at_rim)
+    return Completion(moves, agreement, agreement.coverage > 0, 1.0, None, scale, len(patches))
 
 
 def _results(

@@ -7,8 +7,11 @@ lifted by the predicted height; the vertex comes to lie at the plain mean of the
 import numpy as np
 
 from quadpatch.filling.filled_mesh import FilledMesh
+from quadpatch.mesh.averages import mean_by
+from quadpatch.mesh.harmonic import extend_harmonically
 from quadpatch.mesh.normals import vertex_normals
-from quadpatch.patches.connectivity import Connectivity, bilinear, vertices_in_patches
+from quadpatch.mesh.topology import directed_edges
+from quadpatch.patches.connectivity import Connectivity, bilinear, vertices_in_balls
 from quadpatch.reconstruction.displacement import Displacement
 from quadpatch.types import FloatArray, IntArray, Patches, Vertices
 
@@ -33,7 +36,7 @@ def place(filled: FilledMesh, vertices: IntArray, patches: Patches, predicted: F
     """
     positions = filled.mesh.vertices[vertices]
     normals = vertex_normals(filled.mesh.vertices, filled.mesh.triangles)[vertices]
-    return mean_moves(positions, vertices_in_patches(positions, normals, patches), patches, predicted)
+    return mean_moves(positions, vertices_in_balls(positions, normals, patches), patches, predicted)
 
 
 def mean_moves(positions: Vertices, seen: Connectivity, patches: Patches, predicted: FloatArray) -> Displacement:
@@ -64,3 +67,35 @@ def mean_moves(positions: Vertices, seen: Connectivity, patches: Patches, predic
     squared_deviation = ((moves - mean[seen.vertex]) ** 2).sum(axis=1)
     deviation = np.sqrt(np.bincount(seen.vertex, squared_deviation, minlength=len(positions)) / count)
     return Displacement(mean, deviation, overlap)
+
+
+def with_ring_means(filled: FilledMesh, placed: Displacement) -> FloatArray:
+    """Put new vertices that no patch sees at the mean of the vertices around them, in holes of which patches see some.
+
+    Parameters
+    ----------
+    filled : FilledMesh
+    placed : Displacement
+        Of all its new vertices.
+
+    Returns
+    -------
+    (n_invented_vertices, 3) float64
+        Displacements, in mesh units; zero in holes that no patch sees.
+    """
+    n_measured, hole = filled.n_measured_vertices, filled.vertex_hole
+    seen = placed.overlap > 0
+    is_seen_hole = mean_by(hole, seen.astype(np.float64), len(filled.disagreement)) > 0
+    wanted = ~seen & is_seen_hole[hole]
+    if not wanted.any():
+        return placed.mean
+    used, local = np.unique(directed_edges(filled.mesh.triangles[filled.n_measured_triangles :]), return_inverse=True)
+    new = np.flatnonzero(used >= n_measured)
+    positions = filled.mesh.vertices[used]
+    positions[new] += placed.mean[used[new] - n_measured]
+    known = np.ones(len(used), np.bool_)
+    known[new] = ~wanted[used[new] - n_measured]
+    means = extend_harmonically(local.reshape(-1, 2), known, positions)
+    moves = placed.mean.copy()
+    moves[used[new] - n_measured] = means[new] - filled.mesh.vertices[used[new]]
+    return moves

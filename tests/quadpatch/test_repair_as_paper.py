@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from quadpatch.errors import EmptyMeshError, OptionError
+from quadpatch.errors import EmptyMeshError, ModelError, OptionError
 from quadpatch.formats.reading import read_scan
 from quadpatch.inpainters.model_file import save_dictionary
 from quadpatch.options import DictionaryOptions, HoleOptions, PatchOptions, RepairOptions
@@ -26,7 +26,7 @@ PAPER = RepairOptions(patches=PatchOptions(0.4, 8), recipe="paper")
 
 @pytest.fixture(scope="module")
 def scan_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    mesh = punched(relief(80, 2.0, 0.03, 8), *PLACES, radius=0.13)
+    mesh = punched(relief(60, 2.0, 0.03, 8), *PLACES, radius=0.13)
     return write_ply(tmp_path_factory.mktemp("scan") / "relief.ply", mesh)
 
 
@@ -54,6 +54,29 @@ def test_a_file_is_repaired_by_the_paper_and_keeps_every_bit(scan_file: Path, tm
         assert (hole["confidence"], hole["expected_error"]) == (None, None)
     repair_file(scan_file, tmp_path / "again.ply", model, PAPER)
     assert (tmp_path / "again.ply").read_bytes() == (tmp_path / "out.ply").read_bytes()
+
+
+@pytest.mark.parametrize(("hole", "length"), [(None, 0.3 * 2.05), (0.5, 0.5)])
+def test_patches_are_as_wide_as_those_that_were_learned_from(
+    scan_file: Path, tmp_path: Path, hole: float | None, length: float
+) -> None:
+    """Unless a length is asked for, or the holes are too wide for them."""
+    path = tmp_path / "heights.safetensors"
+    atoms = np.random.default_rng(0).normal(size=(64, 20))
+    dictionary = Dictionary(atoms / np.linalg.norm(atoms, axis=0), 8, 3)
+    save_dictionary(path, dictionary, {"name": "mine", "length_share": 0.3}, HEIGHTS)
+    report = repair_file(
+        scan_file, tmp_path / "out.ply", path, RepairOptions(patches=PatchOptions(hole), recipe="paper")
+    )
+    assert report["patches"]["length"] == pytest.approx(length, rel=0.01)
+
+
+@pytest.mark.parametrize("share", [True, "wide", 0, 1.5])
+def test_a_share_that_is_none_is_refused(scan_file: Path, tmp_path: Path, share: object) -> None:
+    path = tmp_path / "heights.safetensors"
+    save_dictionary(path, Dictionary(np.eye(64)[:, :20], 8, 3), {"name": "mine", "length_share": share}, HEIGHTS)
+    with pytest.raises(ModelError, match="length_share must lie between 0 and 1"):
+        repair_file(scan_file, tmp_path / "out.ply", path, RepairOptions(recipe="paper"))
 
 
 def test_a_network_of_the_paper_places_new_vertices_by_either_recipe(scan_file: Path, tmp_path: Path) -> None:

@@ -68,7 +68,7 @@ def test_skips_carry_what_the_middle_of_the_network_loses() -> None:
         assert torch.equal(run(network, 100, 1), run(network, 100, 2)) is not passes
 
 
-def test_skips_lead_from_every_strided_convolution_to_its_mirror_and_are_added_before_the_activation() -> None:
+def test_two_skips_add_the_maps_of_50_and_25_bins_to_those_of_the_same_size_before_the_activation() -> None:
     network = build("long_12x_SC")
 
     def written_out(patches: Tensor) -> Tensor:
@@ -77,9 +77,9 @@ def test_skips_lead_from_every_strided_convolution_to_its_mirror_and_are_added_b
         at_50 = relu(a2(relu(a1(patches))))
         at_25 = relu(a4(relu(a3(at_50))))
         at_13 = relu(a6(relu(a5(at_25))))
-        values = relu(b2(relu(b1(at_13) + at_13)))
-        values = relu(b4(relu(b3(values) + at_25)))
-        answer: Tensor = b6(relu(b5(values) + at_50))
+        values = relu(b2(relu(b1(at_13))) + at_25)
+        values = relu(b4(relu(b3(values))) + at_50)
+        answer: Tensor = b6(relu(b5(values)))
         return answer
 
     patches = torch.rand(2, 1, 100, 100)

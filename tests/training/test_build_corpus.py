@@ -18,13 +18,12 @@ def relief() -> TriangleMesh:
     return relief_mesh("waves", np.random.default_rng(0), 50)
 
 
-def test_heights_are_centred_and_do_not_change_with_the_unit_of_length(relief: TriangleMesh) -> None:
+def test_heights_do_not_change_with_the_unit_of_length(relief: TriangleMesh) -> None:
     cut = cut_heights(relief, OPTIONS, np.random.default_rng(0))
     heights, known = cut["heights"].astype(np.float64), cut["known"]
     assert cut["heights"].dtype == np.float32
     assert 20 < len(heights) <= 80
     assert (heights[~known] == 0.0).all()
-    assert np.abs(heights.sum(axis=(1, 2)) / known.sum(axis=(1, 2))).max() < 1e-6
     larger = cut_heights(TriangleMesh(1024.0 * relief.vertices, relief.triangles), OPTIONS, np.random.default_rng(0))
     np.testing.assert_array_equal(larger["known"], known)
     np.testing.assert_allclose(larger["heights"], heights, atol=1e-5)

@@ -140,7 +140,7 @@ def test_a_dictionary_of_heights_is_learned_for_the_recipe_of_the_paper_and_repa
     output = train(monkeypatch, *shared, "--output", str(file))
     assert "error by iteration" in output
     model = load_model(file)
-    assert (model.recipe, model.card["normalisation"]) == ("paper", "heights-mean")
+    assert (model.recipe, model.card["normalisation"]) == ("paper", "heights")
     assert "heights over the plane of the patch" in model.card["recipe"]["signal"]
     assert "times 1" in model.card["recipe"]["training_patch_length"]
     assert model.card["metrics"]["scan_n_patches"] > 10

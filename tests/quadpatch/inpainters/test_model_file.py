@@ -54,7 +54,7 @@ def test_writing_what_was_read_gives_the_same_bytes(tmp_path: Path) -> None:
     assert first.read_bytes() == second.read_bytes()
 
 
-@pytest.mark.parametrize(("normalisation", "recipe"), [("detail-mean-spread", "default"), ("heights-mean", "paper")])
+@pytest.mark.parametrize(("normalisation", "recipe"), [("detail-mean-spread", "default"), ("heights", "paper")])
 def test_the_normalisation_of_a_dictionary_says_which_recipe_it_is_for(
     tmp_path: Path, normalisation: str, recipe: str
 ) -> None:

@@ -1,6 +1,7 @@
 """Networks, built here node by node, so that what they must answer is known exactly."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -59,6 +60,25 @@ def test_paper_network_sees_one_in_every_unknown_bin(tmp_path: Path) -> None:
     mean = np.array([h[k].mean() for h, k in zip(patches.heights, patches.known, strict=True)])
     unknown = np.where(patches.known, np.nan, predicted - mean[:, None, None])
     np.testing.assert_allclose(unknown[~patches.known], -0.5 + 1 / 0.83, atol=1e-6)
+
+
+def test_raw_heights_go_into_a_network_as_they_are(tmp_path: Path) -> None:
+    raw = {**PAPER, "normalisation": "heights-range"}
+    inpainter = AutoencoderInpainter.load(write_network(tmp_path / "copy.onnx", raw, 1))
+    patches = waves(4)
+    predicted = inpainter.predict(patches, np.zeros_like(patches.heights))
+    np.testing.assert_allclose(predicted[patches.known], patches.heights[patches.known], atol=1e-6)
+    np.testing.assert_allclose(predicted[~patches.known], -0.5 + 1 / 0.83, atol=1e-6)
+
+
+def test_raw_heights_are_over_the_smoothed_surface_at_the_centre_of_the_patch(tmp_path: Path) -> None:
+    raw = {**PAPER, "normalisation": "heights-range"}
+    inpainter = AutoencoderInpainter.load(write_network(tmp_path / "copy.onnx", raw, 1))
+    patches = waves(4)
+    low = replace(patches, heights=patches.heights - 7.0)
+    predicted = inpainter.predict(low, np.full_like(patches.heights, -7.0))
+    base = inpainter.predict(patches, np.zeros_like(patches.heights))
+    np.testing.assert_allclose(predicted, base - 7.0, atol=1e-6)
 
 
 def test_residual_network_of_zeros_changes_nothing(tmp_path: Path) -> None:

@@ -2,13 +2,13 @@ import numpy as np
 import pytest
 
 from quadpatch.inpainters.paper_dictionary import (
-    LEAST_KNOWN,
     MIN_TRAINING_PATCHES,
     NONZERO,
     HeightsInpainter,
     learn_heights,
 )
 from quadpatch.options import DictionaryOptions
+from quadpatch.patches.paper_layout import LEAST_KNOWN
 from quadpatch.sparse.dictionary import Dictionary
 from quadpatch.types import BoolArray, FloatArray, Patches
 
@@ -48,8 +48,8 @@ def learned() -> HeightsInpainter:
 
 
 def test_a_relief_that_was_learned_is_continued_into_the_unknown(learned: HeightsInpainter) -> None:
-    truth, known = waves(50, seed=9) + 3.0, with_hole(50)
-    flat = np.where(known, truth, 3.0)
+    truth, known = waves(50, seed=9), with_hole(50)
+    flat = np.where(known, truth, 0.0)
     predicted = learned.predict(as_patches(flat, known))
     error, floor = (np.abs(guess - truth)[~known].mean() for guess in (predicted, flat))
     assert error < 0.1 * floor
@@ -65,13 +65,21 @@ def test_neither_unknown_bins_nor_the_base_heights_are_looked_at(learned: Height
     assert (one == other).all()
 
 
-def test_the_completed_patch_is_few_atoms_plus_the_mean_of_the_known_bins() -> None:
+def test_a_level_is_learned_and_completed_like_any_other_shape() -> None:
+    """Heights are coded as they are, so that the level inside a hole is a matter of atoms."""
+    levels = np.random.default_rng(0).uniform(-2, 2, (60, 1, 1)) * np.ones((60, N, N))
+    found = learn(levels, np.ones(levels.shape, bool), atoms=2, nonzero=1)
+    assert found is not None
+    known = with_hole(60)
+    np.testing.assert_allclose(found.predict(as_patches(np.where(known, levels, 0.0), known)), levels, atol=1e-12)
+
+
+def test_the_completed_patch_is_few_atoms() -> None:
     """With all atoms to choose from but one to use, the answer is a projection that one can write down."""
     atoms = np.eye(N * N)
     heights, known = np.zeros((1, N, N)), np.ones((1, N, N), bool)
     heights[0, 3, 4], heights[0, 0, 0], known[0, 0, 0] = 10.0, 99.0, False
-    mean = 10.0 / (N * N - 1)
-    expected = np.full((1, N, N), mean)
+    expected = np.zeros((1, N, N))
     expected[0, 3, 4] = 10.0
     predicted = HeightsInpainter(Dictionary(atoms, N, 1)).predict(as_patches(heights, known))
     np.testing.assert_allclose(predicted, expected, atol=1e-12)
@@ -86,7 +94,7 @@ def test_deep_patches_weigh_more_than_shallow_ones() -> None:
     mixed = np.concatenate([deep, shallow])
     found = learn(mixed, np.ones(mixed.shape, bool), atoms=2, nonzero=1)
     assert found is not None
-    wave = (np.sin(9 * row) - np.sin(9 * row).mean()).ravel()
+    wave = np.sin(9 * row).ravel()
     assert np.abs(wave @ found.dictionary.atoms).max() == pytest.approx(np.linalg.norm(wave), rel=1e-6)
 
 

@@ -25,6 +25,17 @@ def test_two_step_smoothing_leaves_the_input_and_its_place_alone() -> None:
     assert (mesh.vertices == before).all()
 
 
+def test_smoothing_takes_what_scans_hold() -> None:
+    ball = sphere(2)
+    vertices = np.concatenate([ball.vertices, [[5.0, 5.0, 5.0], [0.0, 0.0, 2.0]]])
+    n = len(ball.vertices)
+    extra = [ball.triangles[0], ball.triangles[0][::-1], [0, 0, 1], [*ball.triangles[0][:2], n + 1]]
+    mesh = TriangleMesh(vertices, np.concatenate([ball.triangles, np.array(extra)]))
+    smooth = two_step_smooth(mesh, 3)
+    assert np.isfinite(smooth.vertices).all()
+    assert (smooth.vertices[n] == 5.0).all()
+
+
 def test_smoothing_nothing_gives_nothing() -> None:
     empty = TriangleMesh(np.zeros((0, 3)), np.zeros((0, 3), np.int64))
     assert two_step_smooth(empty, 3) is empty

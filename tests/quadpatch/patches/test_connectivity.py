@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -5,7 +7,7 @@ from hypothesis import strategies as st
 
 from quadpatch.mesh.normals import vertex_normals
 from quadpatch.mesh.raycast import RayScene
-from quadpatch.patches.connectivity import Connectivity, bilinear, vertices_in_patches
+from quadpatch.patches.connectivity import Connectivity, bilinear, vertices_in_balls, vertices_in_patches
 from quadpatch.patches.height_map import bin_centres, sample_height_maps
 from quadpatch.patches.seeds import Seeds
 from quadpatch.types import BoolArray, FloatArray, Patches, TriangleMesh
@@ -147,3 +149,25 @@ def test_without_patches_or_vertices_there_are_no_pairs() -> None:
     no_seeds = Seeds(np.zeros((0, 3)), np.zeros((0, 3, 3)), np.zeros(0, dtype=np.int64))
     assert len(connect(mesh, patches_of(mesh, no_seeds)).vertex) == 0
     assert len(vertices_in_patches(np.zeros((0, 3)), np.zeros((0, 3)), flat_patch()).vertex) == 0
+
+
+def test_the_papers_connectivity_asks_for_the_ball_and_the_square_and_for_no_surface() -> None:
+    mesh = wave()
+    normals = vertex_normals(mesh.vertices, mesh.triangles)
+    seen = patches_of(mesh, upright_seeds(np.random.default_rng(0), 30))
+    blind = replace(seen, seen=np.zeros_like(seen.seen), known=np.zeros_like(seen.known))
+    found = vertices_in_balls(mesh.vertices, normals, blind)
+    held = np.zeros((30, len(mesh.vertices)), dtype=bool)
+    held[found.patch, found.vertex] = True
+    places = local(mesh, seen)
+    in_ball = np.linalg.norm(places, axis=2) <= LENGTH * np.sqrt(0.5)
+    np.testing.assert_array_equal(held, (np.abs(places[:, :, :2]) <= LENGTH / 2).all(axis=2) & in_ball)
+    assert (np.diff(found.vertex) >= 0).all()
+
+
+def test_a_ball_holds_no_vertex_of_the_back_of_a_wall() -> None:
+    mesh = wave()
+    normals = vertex_normals(mesh.vertices, mesh.triangles)
+    patches = patches_of(mesh, upright_seeds(np.random.default_rng(0), 5))
+    assert len(vertices_in_balls(mesh.vertices, -normals, patches).vertex) == 0
+    assert len(vertices_in_balls(np.zeros((0, 3)), np.zeros((0, 3)), patches).vertex) == 0

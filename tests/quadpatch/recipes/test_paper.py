@@ -4,23 +4,18 @@ from typing import Self
 import numpy as np
 import pytest
 
-from quadpatch.filling.fill import close_flat
+from quadpatch.filling.meshlab_closing import close_by_meshlab
 from quadpatch.inpainters.inpainter import UndamagedSurface
 from quadpatch.inpainters.paper_dictionary import LOCAL_ATOMS, HeightsInpainter, SelfHeights, learn_heights
 from quadpatch.mesh.distance import distance_to_mesh
 from quadpatch.mesh.raycast import RayScene
+from quadpatch.mesh.smoothing import laplacian_smooth, neighbour_average
 from quadpatch.options import DictionaryOptions, HoleOptions, PatchOptions, RepairOptions
 from quadpatch.patches.height_map import sample_height_maps
+from quadpatch.patches.paper_layout import cut_patches, learnable, smooth_for_quads
 from quadpatch.patches.scale import PatchScale
 from quadpatch.patches.seeds import Seeds
-from quadpatch.recipes.paper import (
-    NO_FAIRING,
-    OVERLAP,
-    RESOLUTION,
-    cut_heights,
-    inpaint_as_paper,
-    paper_scale,
-)
+from quadpatch.recipes.paper import NO_FAIRING, OVERLAP, RESOLUTION, inpaint_as_paper, paper_scale
 from quadpatch.recipes.result import Repair
 from quadpatch.sparse.dictionary import Dictionary
 from quadpatch.stages import Stages
@@ -28,7 +23,7 @@ from quadpatch.types import FloatArray, Patches, TriangleMesh
 from tests.quadpatch.shapes import bumpy_plate, open_grid, punched, relief, sphere
 
 PLACES = [(x, y, 0.0) for x in (-0.5, 0.1, 0.55) for y in (-0.45, 0.05, 0.5)]
-WHOLE = relief(110, 2.0, 0.03, 10)
+WHOLE = relief(70, 2.0, 0.03, 8)
 RELIEF = punched(WHOLE, *PLACES, radius=0.1)
 OPTIONS = RepairOptions(patches=PatchOptions(0.3, 16), recipe="paper", dictionary=DictionaryOptions(60, 20))
 
@@ -54,9 +49,15 @@ class Truth:
         return np.where(true.seen, true.heights, patches.heights)
 
 
+def cut(mesh: TriangleMesh, scale: PatchScale) -> Patches:
+    # Smoothed as a repair smooths: the level of raw heights is that over the smoothed surface.
+    smoothed = smooth_for_quads(mesh) if mesh is WHOLE else laplacian_smooth(mesh, 30)
+    return learnable(cut_patches(mesh, smoothed, scale, np.random.default_rng(0)))
+
+
 def learned(scale: PatchScale, options: DictionaryOptions, *meshes: TriangleMesh) -> HeightsInpainter:
     """Learn one dictionary from the patches of whole meshes: the paper's local (one) and global (many) ones."""
-    parts = [cut_heights(mesh, scale) for mesh in meshes]
+    parts = [cut(mesh, scale) for mesh in meshes]
     heights, known = np.concatenate([part.heights for part in parts]), np.concatenate([part.known for part in parts])
     inpainter = learn_heights(heights, known, options, np.random.default_rng(0))
     assert inpainter is not None
@@ -74,7 +75,7 @@ def new_vertices(repair: Repair) -> FloatArray:
 
 def closed(repair: Repair, mesh: TriangleMesh) -> FloatArray:
     """New vertices where the closing puts them."""
-    filled = close_flat(mesh, [hole.loop for hole in repair.chosen])
+    filled = close_by_meshlab(mesh, [hole.loop for hole in repair.chosen])
     return filled.mesh.vertices[filled.n_measured_vertices :]
 
 
@@ -100,7 +101,7 @@ def test_measured_vertices_and_triangles_are_a_bit_exact_prefix(repaired: Repair
 
 def test_true_heights_put_every_vertex_on_the_true_surface() -> None:
     """Reconstruction is exact but for the bilinear reading of bins and the mean over patches of different tilt."""
-    whole = sphere(5)
+    whole = sphere(4)
     mesh = punched(whole, (0, 0, 1), (1, 0, 0), (0, -1, 0), radius=0.2)
     repair = inpaint_as_paper(mesh, Truth(whole, 24), RepairOptions())
     assert repair.completion is not None
@@ -108,13 +109,13 @@ def test_true_heights_put_every_vertex_on_the_true_surface() -> None:
     assert agreement is not None
     assert (agreement.coverage == 1).all()
     error, before = (np.abs(np.linalg.norm(v, axis=1) - 1) for v in (new_vertices(repair), closed(repair, mesh)))
-    assert error.mean() < before.mean() / 20
-    assert error.max() < before.max() / 3
-    assert agreement.rim_misfit.max() < 0.1 * agreement.departure.min()
+    assert error.mean() < before.mean() / 10
+    assert np.quantile(error, 0.98) < before.max() / 3
+    assert agreement.rim_misfit.max() < 0.3 * agreement.departure.min()
 
 
 def test_nothing_is_faired_gated_or_joined() -> None:
-    """A dictionary of one constant atom codes no mean-free patch: each is a plane at the height of its known bins."""
+    """A dictionary of one constant atom codes a patch as a plane at the mean height of its known bins."""
     atoms = np.full((256, 1), 1 / 16)
     mesh = punched(sphere(4), (0, 0, 1), radius=0.3)
     repair = inpaint_as_paper(mesh, HeightsInpainter(Dictionary(atoms, 16, 1)), RepairOptions())
@@ -179,7 +180,7 @@ def test_a_dictionary_of_the_undamaged_mesh_does_no_worse_than_one_of_the_punche
 
 def test_dictionaries_have_as_many_atoms_as_asked_for_or_as_there_are_patches() -> None:
     scale = PatchScale(0.4, 8, 2)
-    n_patches = len(cut_heights(relief(60), scale))
+    n_patches = len(cut(relief(60), scale))
     assert learned(scale, DictionaryOptions(), relief(60)).dictionary.n_atoms == min(LOCAL_ATOMS, n_patches)
     many = relief(60), bumpy_plate(60, 2.0), relief(60, waves=4)
     assert learned(scale, DictionaryOptions(LOCAL_ATOMS + 20), *many).dictionary.n_atoms == LOCAL_ATOMS + 20
@@ -187,10 +188,6 @@ def test_dictionaries_have_as_many_atoms_as_asked_for_or_as_there_are_patches() 
     assert (three.dictionary.n_atoms, three.dictionary.n_nonzero, three.resolution) == (3, 2, 8)
     again = learned(scale, DictionaryOptions(3, 2), relief(60))
     assert again.dictionary.atoms.tobytes() == three.dictionary.atoms.tobytes()
-
-
-def test_a_mesh_too_small_for_a_patch_gives_none() -> None:
-    assert len(cut_heights(open_grid(3), PatchScale(1e6, 8, 1))) == 0
 
 
 def test_a_mesh_too_small_to_learn_from_is_closed_with_a_warning() -> None:
@@ -203,14 +200,19 @@ def test_a_mesh_too_small_to_learn_from_is_closed_with_a_warning() -> None:
     assert verdicts(repair)[1] == ("filled_smooth", "geometry")
 
 
-def test_a_hole_that_no_patch_sees_stays_as_it_was_closed() -> None:
+def test_new_vertices_that_no_patch_sees_lie_at_the_mean_of_their_ring() -> None:
     """Patches so narrow that many lie inside the hole: without a known bin they have nothing to go by."""
     mesh = punched(bumpy_plate(50, 2.0), (-0.5, -0.5, 0), (0.5, 0.4, 0), radius=0.25)
     options = RepairOptions(patches=PatchOptions(length=0.1, overlap=0))
     repair = inpaint_as_paper(mesh, Truth(bumpy_plate(50, 2.0), 8), options)
     assert repair.completion is not None
-    still = (new_vertices(repair) == closed(repair, mesh)).all(axis=1)
-    assert 0.2 < still.mean() < 1
+    agreement = repair.completion.agreement
+    assert agreement is not None
+    assert ((agreement.coverage > 0) & (agreement.coverage < 0.8)).all()
+    filled = repair.filled
+    average = neighbour_average(filled.mesh.triangles, len(filled.mesh.vertices))
+    from_ring = np.linalg.norm(average @ filled.mesh.vertices - filled.mesh.vertices, axis=1)
+    assert (from_ring[filled.n_measured_vertices :] < 1e-9).mean() > 0.1
 
 
 def test_a_mesh_without_holes_comes_back() -> None:
@@ -246,3 +248,11 @@ def test_the_finest_networks_see_as_much_surface_as_the_others() -> None:
     coarse, fine = (paper_scale([0.1], 1.0, PatchOptions(), n) for n in (RESOLUTION, 100))
     assert fine == PatchScale(coarse.length, 100, coarse.overlap)
     assert paper_scale([0.1], 1.0, PatchOptions(resolution=48)).length == 2 * coarse.length
+
+
+def test_presets_are_the_papers_two_kinds_of_patches_in_units_of_the_longest_side() -> None:
+    mesh = punched(sphere(4, 5.0), (0, 0, 5.0), radius=0.8)
+    repair = inpaint_as_paper(mesh, Truth(sphere(4, 5.0), 24), RepairOptions(patches=PatchOptions(preset="type2")))
+    assert repair.completion is not None
+    assert repair.completion.scale.length == pytest.approx(0.6)
+    assert repair.completion.scale.resolution == 24
