@@ -49,7 +49,7 @@ from client.repairing import repair as run_repair
 from client.screen import Screen
 from client.tables import print_holes, print_jobs, print_models
 from client.task_commands import decode, denoise, encode, restore
-from jobkit.schema import JobState, Recipe
+from jobkit.schema import JobState, Preset, Recipe
 
 app = typer.Typer(
     name="quadpatch-client",
@@ -75,7 +75,7 @@ def repair(  # noqa: PLR0913 - one parameter per option of the command line
     ] = None,
     recipe: Annotated[
         Recipe | None,
-        typer.Option(help="How a dictionary is put to use: our way, or exactly the paper's.", show_default="default"),
+        typer.Option(help="How the model is put to use: our way, or exactly the paper's.", show_default="default"),
     ] = None,
     max_diameter: MaxDiameterOption = None,
     max_perimeter: MaxPerimeterOption = None,
@@ -95,6 +95,14 @@ def repair(  # noqa: PLR0913 - one parameter per option of the command line
     overlap: Annotated[
         int | None,
         typer.Option(help="k: a quad carries 1 + 4 k patches.", show_default="auto", rich_help_panel=_PATCHES),
+    ] = None,
+    preset: Annotated[
+        Preset | None,
+        typer.Option(
+            help="The paper's patches: 0.03 of the longest side in 16 bins, or 0.06 in 24.",
+            show_default="none",
+            rich_help_panel=_PATCHES,
+        ),
     ] = None,
     fit_steps: Annotated[
         int | None,
@@ -125,7 +133,9 @@ def repair(  # noqa: PLR0913 - one parameter per option of the command line
             source=mesh,
             output=output,
             holes=HoleChoice(max_diameter, max_perimeter, all_but_largest, hole, include_borders, cap, rule),
-            method=MethodChoice(method, model, patch_length, resolution, overlap, recipe, fit_steps, fit_seconds),
+            method=MethodChoice(
+                method, model, patch_length, resolution, overlap, recipe, fit_steps, fit_seconds, preset
+            ),
             rest={
                 "seed": seed,
                 "weld_tolerance": tolerance(weld_tolerance),

@@ -9,7 +9,7 @@ import typer
 from pydantic import ValidationError
 
 from client.errors import UsageError
-from jobkit.schema import SELF, JobSpec, OutputFormat, Recipe, conflict_of
+from jobkit.schema import SELF, JobSpec, OutputFormat, Preset, Recipe, conflict_of
 from shared_rules.rule_text import RuleTextError, read_rule
 
 DEFAULT_URL = "http://127.0.0.1:8000"
@@ -144,6 +144,7 @@ class MethodChoice:
     recipe: Recipe | None = None
     fit_steps: int | None = None
     fit_seconds: float | None = None
+    preset: Preset | None = None
 
 
 def make_spec(mesh_id: str, holes: HoleChoice, method: MethodChoice, **rest: Any) -> JobSpec:
@@ -176,17 +177,15 @@ def tolerance(word: str | None) -> float | str | None:
 
 
 def _method(choice: MethodChoice) -> dict[str, Any]:
-    patches = _given({"length": choice.length, "resolution": choice.resolution, "overlap": choice.overlap})
+    patches = _given({name: getattr(choice, name) for name in ("length", "resolution", "overlap", "preset")})
     fitting = _given({"steps": choice.fit_steps, "seconds": choice.fit_seconds})
     if choice == MethodChoice():
         return {}  # the service has a default of its own for each task
-    if choice.method != "dictionary" and choice.recipe is not None:
-        raise UsageError(f"the method {choice.method!r} takes no recipe; recipes go with dictionaries")
     if fitting and (choice.method, choice.model) != ("cnn", SELF):
         raise UsageError("only the method 'cnn' with the model 'self' fits a network; others take no time to fit")
     if choice.method == "smooth":
-        if choice.model is not None or patches:
-            raise UsageError("the method 'smooth' takes no model and no patch options")
+        if choice.model is not None or choice.recipe is not None or patches:
+            raise UsageError("the method 'smooth' takes no model, no recipe and no patch options")
         return {"method": "smooth"}
     rest = _given({"model": choice.model, "recipe": choice.recipe, "fitting": fitting})
     return {"method": choice.method, "patches": patches, **rest}

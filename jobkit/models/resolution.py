@@ -3,6 +3,10 @@
 from jobkit.errors import ModelKindError, NoNetworkError
 from jobkit.models.registry import Registry
 from jobkit.schema import (
+    DEFAULT_MODEL,
+    DEFAULT_NETWORK,
+    DEFAULT_PAPER_MODEL,
+    DEFAULT_PAPER_NETWORK,
     SELF,
     CnnMethod,
     DictionaryMethod,
@@ -18,6 +22,7 @@ from jobkit.schema import (
 
 # What cards of dictionaries that were learned for the recipe `paper` say of their normalisation.
 PAPER_NORMALISATION = "heights"
+_OF_THE_PAPER = {DEFAULT_MODEL: DEFAULT_PAPER_MODEL, DEFAULT_NETWORK: DEFAULT_PAPER_NETWORK}
 
 
 def resolve_method(registry: Registry, method: Method) -> ResolvedModel:
@@ -45,15 +50,21 @@ def resolve_method(registry: Registry, method: Method) -> ResolvedModel:
                 "no network is registered; upload one with POST /v1/models/{name}/versions, "
                 "or use the method 'dictionary' or 'smooth'"
             )
-        network = _of_kind(registry, method.model, "autoencoder")
+        network = _of_kind(registry, _reference(method), "autoencoder")
+        _check_network_recipe(network, method.recipe)
         if method.fitting != Fitting():
             raise ModelKindError(
                 f"{network.name}@{network.version} is taken as it is; fitting goes with the model {SELF} only"
             )
         return _pinned(method.model, network)
-    version = _of_kind(registry, method.model, "dictionary")
+    version = _of_kind(registry, _reference(method), "dictionary")
     _check_recipe(version, method.recipe)
     return _pinned(method.model, version)
+
+
+def _reference(method: DictionaryMethod | CnnMethod) -> str:
+    """Return the reference of a method's model: with the recipe `paper`, the defaults are others."""
+    return _OF_THE_PAPER.get(method.model, method.model) if method.recipe == "paper" else method.model
 
 
 def resolve_decoding(registry: Registry, method: DictionaryMethod, encoded: EncodedFacts) -> ResolvedModel:
@@ -89,12 +100,28 @@ def _of_kind(registry: Registry, reference: str, kind: ModelKind) -> ModelVersio
     return version
 
 
+def learned_for(version: ModelVersion) -> Recipe:
+    """Return the recipe that a model was learned for, by its card."""
+    card = version.card
+    is_paper = card.extra.get("recipe") == "paper" or card.normalisation == PAPER_NORMALISATION
+    return "paper" if is_paper else "default"
+
+
 def _check_recipe(version: ModelVersion, recipe: Recipe) -> None:
-    learned_for: Recipe = "paper" if version.card.normalisation == PAPER_NORMALISATION else "default"
-    if learned_for != recipe:
+    of_model = learned_for(version)
+    if of_model != recipe:
         raise ModelKindError(
-            f"{version.name}@{version.version} was learned for the recipe {learned_for}, not for {recipe}: "
-            f"ask for the recipe {learned_for}, or take the model self"
+            f"{version.name}@{version.version} was learned for the recipe {of_model}, not for {recipe}: "
+            f"ask for the recipe {of_model}, or take the model self"
+        )
+
+
+def _check_network_recipe(version: ModelVersion, recipe: Recipe) -> None:
+    """Refuse other networks than the paper's for its recipe; those go with either recipe."""
+    if recipe == "paper" and learned_for(version) != recipe:
+        raise ModelKindError(
+            f"{version.name}@{version.version} corrects a faired fill, and the recipe paper has none: "
+            "leave the recipe out, or take one of the paper's networks"
         )
 
 

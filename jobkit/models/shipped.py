@@ -7,8 +7,9 @@ from pathlib import Path
 
 from jobkit.errors import ModelNotFoundError, NameTakenError
 from jobkit.ids import MODEL_NAME
-from jobkit.models.registry import Registry
-from jobkit.schema import DEFAULT_MODEL, DEFAULT_NETWORK, ModelVersion
+from jobkit.models.registry import DEFAULT_KINDS, Registry
+from jobkit.models.resolution import learned_for
+from jobkit.schema import DEFAULT_PAPER_MODEL, DEFAULT_PAPER_NETWORK, ModelVersion
 
 _FILE = re.compile(rf"^(?P<name>{MODEL_NAME})@(?P<version>[1-9][0-9]*)\.(?:safetensors|onnx)$")
 _logger = logging.getLogger(__name__)
@@ -18,9 +19,10 @@ def seed_shipped(registry: Registry, folder: Path) -> list[ModelVersion]:
     """Register every `name@version.safetensors` and `name@version.onnx` of a folder.
 
     Models bring their cards; a network without one may have it beside it as `name@version.json`. They are taken as
-    proven: tests prove those that ship, and others are the choice of the operator. Where the aliases `default` and
-    `default-network` point to nothing yet, they are pointed to the latest version of the first dictionary and of the
-    first network that are not deprecated. A version that was deleted stays deleted.
+    proven: tests prove those that ship, and others are the choice of the operator. Where the aliases `default`,
+    `default-network`, `default-paper` and `default-paper-network` point to nothing yet, they are pointed to the latest
+    version of the first dictionary or network of their recipe that is not deprecated. A version that was deleted stays
+    deleted.
 
     Parameters
     ----------
@@ -52,8 +54,10 @@ def seed_shipped(registry: Registry, folder: Path) -> list[ModelVersion]:
             _logger.warning("shipped model %s is not registered: %s", path.name, error)
             continue
         versions.append(version)
-    _point_default(registry, DEFAULT_MODEL, [v for v in versions if v.kind == "dictionary"])
-    _point_default(registry, DEFAULT_NETWORK, [v for v in versions if v.kind == "autoencoder"])
+    of_the_paper = (DEFAULT_PAPER_MODEL, DEFAULT_PAPER_NETWORK)
+    for alias, kind in DEFAULT_KINDS.items():
+        fitting = [v for v in versions if v.kind == kind and (learned_for(v) == "paper") is (alias in of_the_paper)]
+        _point_default(registry, alias, fitting)
     return versions
 
 

@@ -25,12 +25,15 @@ from jobkit.schema.meshes import BoundingBox, EncodedFacts, Hole, Mesh, MeshFact
 from jobkit.schema.methods import (
     DEFAULT_MODEL,
     DEFAULT_NETWORK,
+    DEFAULT_PAPER_MODEL,
+    DEFAULT_PAPER_NETWORK,
     SELF,
     CnnMethod,
     DictionaryMethod,
     Fitting,
     Method,
     PatchOptions,
+    Preset,
     Recipe,
     SmoothMethod,
 )
@@ -98,6 +101,8 @@ from shared_rules.tasks import TASKS, Task
 __all__ = [
     "DEFAULT_MODEL",
     "DEFAULT_NETWORK",
+    "DEFAULT_PAPER_MODEL",
+    "DEFAULT_PAPER_NETWORK",
     "PROBLEM_MEDIA_TYPE",
     "SELF",
     "STAGES",
@@ -166,6 +171,7 @@ __all__ = [
     "PatchOptions",
     "Plan",
     "PlannedHole",
+    "Preset",
     "Problem",
     "Recipe",
     "Region",

@@ -8,7 +8,7 @@ Tested in `tests/jobkit/schema/test_tasks.py`.
 
 from collections.abc import Mapping
 
-from jobkit.schema.methods import SELF, CnnMethod, DictionaryMethod
+from jobkit.schema.methods import SELF, CnnMethod, DictionaryMethod, PatchOptions, SmoothMethod
 from jobkit.schema.spec import HoleSelection, RepairSpec
 from shared_rules.hole_selection import MODEL_FILLS_ONLY, names_fills
 from shared_rules.tasks import Task
@@ -34,10 +34,13 @@ def conflict_of(spec: RepairSpec) -> str | None:
 def _conflict_of_fill(spec: RepairSpec) -> str | None:
     if spec.weld_tolerance != "auto" and any(rule.ids is not None for rule in spec.holes.rules):
         return "ids of holes.rules name holes found with the weld_tolerance auto: drop one of the two"
-    is_paper = isinstance(spec.method, DictionaryMethod) and spec.method.recipe == "paper"
-    if is_paper and names_fills(spec.holes):
+    if isinstance(spec.method, SmoothMethod):
+        return _options_of_another_task(spec)
+    if spec.method.recipe == "paper" and names_fills(spec.holes):
         return MODEL_FILLS_ONLY
-    return _options_of_another_task(spec)
+    if spec.method.recipe == "paper" and isinstance(spec.method, CnnMethod) and spec.method.model == SELF:
+        return "the recipe paper fits no network to a mesh: leave method.recipe out, or take another model"
+    return _conflict_of_patches(spec.method.patches) or _options_of_another_task(spec)
 
 
 def _conflict_of_task(spec: RepairSpec) -> str | None:
@@ -48,6 +51,12 @@ def _conflict_of_task(spec: RepairSpec) -> str | None:
         or _conflict_of_method(spec)
         or _conflict_of_output(spec)
     )
+
+
+def _conflict_of_patches(patches: PatchOptions) -> str | None:
+    if patches.preset is not None and (patches.length is not None or patches.resolution is not None):
+        return "method.patches.preset says length and resolution: drop it, or drop these"
+    return None
 
 
 def _options_of_another_task(spec: RepairSpec) -> str | None:
@@ -83,15 +92,15 @@ def _conflict_of_method(spec: RepairSpec) -> str | None:
     has_reference = spec.denoise is not None and spec.denoise.reference is not None
     if has_reference and not (isinstance(method, DictionaryMethod) and method.model == SELF):
         return "denoise.reference takes the place of a model: leave method out, or say self"
-    return _conflict_of_dictionary(spec, method) if isinstance(method, DictionaryMethod) else None
+    return None if isinstance(method, SmoothMethod) else _conflict_of_learned(spec, method)
 
 
-def _conflict_of_dictionary(spec: RepairSpec, method: DictionaryMethod) -> str | None:
+def _conflict_of_learned(spec: RepairSpec, method: DictionaryMethod | CnnMethod) -> str | None:
     if method.recipe != "default":
         return f"recipes go with the task fill; the task of this job is {spec.task}"
     if spec.task == "encode" and method.patches.overlap is not None:
         return "patches of the task encode share their borders: leave method.patches.overlap out"
-    return None
+    return _conflict_of_patches(method.patches)
 
 
 def _conflict_of_output(spec: RepairSpec) -> str | None:

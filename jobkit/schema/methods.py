@@ -11,8 +11,12 @@ from jobkit.schema.base import REFERENCE_PATTERN, WHOLE, Request
 
 DEFAULT_MODEL = "default"
 DEFAULT_NETWORK = "default-network"
+# What the two mean with the recipe `paper`.
+DEFAULT_PAPER_MODEL = "default-paper"
+DEFAULT_PAPER_NETWORK = "default-paper-network"
 SELF = "self"
 Recipe = Literal["default", "paper"]
+Preset = Literal["type1", "type2"]
 
 Resolution = Annotated[int, Field(ge=8, le=128), WHOLE]
 Overlap = Annotated[int, Field(ge=0, le=8), WHOLE]
@@ -31,6 +35,12 @@ class PatchOptions(Request):
         description="k of the paper: every quad carries its centre patch and 4 k offset ones.",
         examples=[2],
     )
+    preset: Preset | None = Field(
+        default=None,
+        description="The paper's two kinds of patches, in place of a length and a resolution: `type1` has 0.03 of the "
+        "mesh's longest side and 16 bins, `type2` 0.06 and 24.",
+        examples=["type2"],
+    )
 
 
 class DictionaryMethod(Request):
@@ -47,7 +57,7 @@ class DictionaryMethod(Request):
     recipe: Recipe = Field(
         default="default",
         description="How the dictionary is put to use: `default`, or `paper`, exactly as in the paper that the method "
-        "follows. `paper` needs `self` or a dictionary learned for it.",
+        "follows. `paper` needs `self` or a dictionary learned for it; its default is `default-paper`.",
         examples=["default"],
     )
     patches: PatchOptions = Field(default_factory=PatchOptions, description="How patches are laid out.")
@@ -77,6 +87,12 @@ class CnnMethod(Request):
         description="`name@version`, `name` (its latest version), an alias, or `self`: fit the shipped network to the "
         "undamaged part of the uploaded mesh, which takes minutes.",
         examples=["self"],
+    )
+    recipe: Recipe = Field(
+        default="default",
+        description="How the network is put to use: `default`, or `paper`, exactly as in the paper that the method "
+        "follows. `paper` needs one of the paper's networks; its default is `default-paper-network`.",
+        examples=["default"],
     )
     fitting: Fitting = Field(
         default_factory=Fitting, description="How long `self` may take; refused with any other model."

@@ -2,7 +2,7 @@ import pytest
 
 from client.errors import UsageError
 from client.options import HoleChoice, MethodChoice, MethodName, make_spec, tolerance
-from jobkit.schema import CnnMethod, DictionaryMethod, Fitting, HoleRule
+from jobkit.schema import CnnMethod, DictionaryMethod, Fitting, HoleRule, PatchOptions
 
 MESH_ID = "0" * 64
 
@@ -14,10 +14,19 @@ def test_a_recipe_reaches_the_spec_and_is_the_services_default_otherwise() -> No
     assert usual.method == DictionaryMethod(method="dictionary")
 
 
-@pytest.mark.parametrize("method", ["cnn", "smooth"])
-def test_a_recipe_goes_with_dictionaries_only(method: MethodName) -> None:
-    with pytest.raises(UsageError, match=f"the method '{method}' takes no recipe"):
-        make_spec(MESH_ID, HoleChoice(), MethodChoice(method, recipe="paper"))
+def test_recipes_go_with_learned_models() -> None:
+    network = make_spec(MESH_ID, HoleChoice(), MethodChoice("cnn", recipe="paper", preset="type2"))
+    assert network.method == CnnMethod(method="cnn", recipe="paper", patches=PatchOptions(preset="type2"))
+    with pytest.raises(UsageError, match="the method 'smooth' takes no model, no recipe"):
+        make_spec(MESH_ID, HoleChoice(), MethodChoice("smooth", recipe="paper"))
+    with pytest.raises(UsageError, match="the recipe paper fits no network to a mesh"):
+        make_spec(MESH_ID, HoleChoice(), MethodChoice("cnn", "self", recipe="paper"))
+
+
+def test_a_preset_takes_the_place_of_a_length_and_a_resolution() -> None:
+    for given in ({"length": 3.0}, {"resolution": 24}):
+        with pytest.raises(UsageError, match=r"method\.patches\.preset says length and resolution"):
+            make_spec(MESH_ID, HoleChoice(), MethodChoice(preset="type1", **given))
 
 
 def test_how_long_to_fit_a_network_reaches_the_spec_and_is_the_services_default_otherwise() -> None:
@@ -39,7 +48,7 @@ def test_only_a_network_can_be_told_how_long_to_be_fitted(method: MethodName, mo
 
 def test_smooth_takes_neither_a_model_nor_patch_options() -> None:
     for choice in (MethodChoice("smooth", model="self"), MethodChoice("smooth", overlap=1)):
-        with pytest.raises(UsageError, match="takes no model and no patch options"):
+        with pytest.raises(UsageError, match="takes no model, no recipe and no patch options"):
             make_spec(MESH_ID, HoleChoice(), choice)
 
 

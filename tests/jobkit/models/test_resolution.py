@@ -77,3 +77,27 @@ def test_a_dictionary_is_used_by_the_recipe_that_it_was_learned_for(
         resolve_method(registry, ours.model_copy(update={"recipe": "paper"}))
     own = DictionaryMethod(method="dictionary", model="self", recipe="paper")
     assert resolve_method(registry, own).kind == "self"
+
+
+def test_the_defaults_of_the_paper_are_others(
+    registry: Registry, tmp_path: Path, dictionary_bytes: Callable[[int], bytes]
+) -> None:
+    method = DictionaryMethod(method="dictionary", recipe="paper")
+    with pytest.raises(ModelNotFoundError, match="default-paper"):
+        resolve_method(registry, method)
+    (tmp_path / "heights").write_bytes(dictionary_bytes(-1))
+    registry.publish_file("heights", tmp_path / "heights")
+    registry.set_alias("default-paper", "heights")
+    pinned = resolve_method(registry, method)
+    assert (pinned.requested, pinned.name) == ("default", "heights")
+
+
+def test_the_recipe_of_the_paper_takes_its_own_networks_alone(registry: Registry, tmp_path: Path) -> None:
+    (tmp_path / "net").write_bytes(NETWORK)
+    for name, recipe in (("papers", "paper"), ("correcting", "residual")):
+        registry.publish_file(name, tmp_path / "net", {"kind": "autoencoder", "recipe": recipe})
+    registry.set_alias("default-paper-network", "papers")
+    assert resolve_method(registry, CnnMethod(method="cnn", recipe="paper")).name == "papers"
+    assert resolve_method(registry, CnnMethod(method="cnn", model="papers")).name == "papers"
+    with pytest.raises(ModelKindError, match="correcting@1 corrects a faired fill"):
+        resolve_method(registry, CnnMethod(method="cnn", model="correcting", recipe="paper"))

@@ -38,6 +38,15 @@ def test_shipped_models_are_registered_under_their_numbers(registry: Registry, f
     assert registry.resolve("default-network").card.description == "a small network"
 
 
+def test_the_defaults_of_the_paper_are_its_own_models(registry: Registry, folder: Path, dictionary_bytes: Make) -> None:
+    (folder / "a-paper@2.safetensors").write_bytes(dictionary_bytes(-1))
+    (folder / "a-small@1.onnx").write_bytes(NETWORK)
+    (folder / "a-small@1.json").write_text('{"kind": "autoencoder", "recipe": "paper"}')
+    seed_shipped(registry, folder)
+    aliases = ("default", "default-network", "default-paper", "default-paper-network")
+    assert [registry.resolve(alias).name for alias in aliases] == ["general-dictionary", "small", "a-paper", "a-small"]
+
+
 def test_the_default_is_the_latest_version(registry: Registry, folder: Path, dictionary_bytes: Make) -> None:
     for version in (2, 10):
         (folder / f"general-dictionary@{version}.safetensors").write_bytes(dictionary_bytes(version))

@@ -41,7 +41,7 @@ def test_the_method_is_told_by_its_name(name: str, kind: type[Any]) -> None:
         {"method": {"method": "magic"}},
         {"method": {"method": "smooth", "model": "default"}},
         {"method": {"method": "dictionary", "recipe": "ours"}},
-        {"method": {"method": "cnn", "recipe": "paper"}},
+        {"method": {"method": "cnn", "recipe": "exact"}},
         {"method": {"method": "smooth", "recipe": "paper"}},
         {"method": {"method": "dictionary", "model": "Upper@1"}},
         {"method": {"method": "dictionary", "model": "name@0"}},
