@@ -8,7 +8,6 @@ from jobkit.schema import (
     SELF,
     CnnMethod,
     Denoising,
-    DictionaryMethod,
     Format,
     JobSpec,
     OutputFormat,
