@@ -34,7 +34,7 @@ from quadpatch.mesh.smoothing import laplacian_smooth
 from quadpatch.patches.scale import base_surface_iterations
 from quadpatch.quads.mesher import quadrangulate
 from quadpatch.sparse.dictionary import Dictionary
-from quadpatch.types import FloatArray, QuadMesh, TriangleMesh
+from quadpatch.types import FloatArray, QuadMesh, TriangleMesh, Vertices
 
 # Step of the quad mesh's vertices, in parts of the promised error; the codes make up for it.
 _PLACE_STEP = 1.0
@@ -44,6 +44,8 @@ _MOST_PROBES = 10_000
 _LEVELS_RANGE = (2, 5)
 # Added to the levels before rounding: a grid that is too coarse costs more than one that is too fine.
 _FINER = 0.3
+# Grid vertices along one side of the patches that quantisation steps are given for.
+_USUAL_SIDE = 9
 # Last coefficients that no patch uses are not written.
 _FEWEST_ATOMS = 1
 
@@ -101,7 +103,7 @@ class Candidate:
     estimated_bytes: float
 
 
-def make_candidate(task: Task, quads: tuple[int, bool, int | None], code_step: float) -> Candidate:
+def make_candidate(task: Task, quads: tuple[int, bool, int | None], fineness: float) -> Candidate:
     """Cover the mesh with quads, and code it.
 
     Parameters
@@ -109,7 +111,8 @@ def make_candidate(task: Task, quads: tuple[int, bool, int | None], code_step: f
     task : Task
     quads : (int, bool, int or None)
         How many; whether all of one size; levels of their grids, by default such that cells are as many as vertices.
-    code_step : float
+    fineness : float
+        See `coded`.
 
     Raises
     ------
@@ -129,15 +132,25 @@ def make_candidate(task: Task, quads: tuple[int, bool, int | None], code_step: f
     grid = make_grid(quad_mesh, levels)
     heights, known = measure_heights(grid, task.mesh, task.scene, _mean_side(quad_mesh))
     x, y, z = origin.tolist()
-    lengths = Lengths(task.max_error, (x, y, z), _PLACE_STEP * task.max_error, code_step)
+    lengths = Lengths(task.max_error, (x, y, z), _PLACE_STEP * task.max_error, task.max_error)
     empty = np.zeros((len(fitted.quads), 0), np.int64)
     content = QpzContent(lengths, task.unit, levels, DictionaryReference(COSINE), None, walk, places, empty)
     target = Target(task.mesh, task.samples, task.spacing, grid, heights, known)
-    return coded(task, Candidate(content, None, target, np.inf), code_step)
+    return coded(task, Candidate(content, None, target, np.inf), fineness)
 
 
-def coded(task: Task, candidate: Candidate, code_step: float) -> Candidate:
-    """Code the heights of a candidate anew, with another step, over the dictionary that takes the fewest bytes."""
+def coded(task: Task, candidate: Candidate, fineness: float) -> Candidate:
+    """Code the heights of a candidate anew, over the dictionary that takes the fewest bytes.
+
+    Parameters
+    ----------
+    task : Task
+    candidate : Candidate
+    fineness : float
+        Quantisation step in parts of the promised error, for patches of 9 x 9 grid vertices. Over others it grows as
+        the coefficients do: with the root of the number of vertices.
+    """
+    code_step = fineness * task.max_error * (2**candidate.content.levels + 1) / _USUAL_SIDE
     choices = (_coded_over(task, candidate, code_step, kind) for kind in task.dictionary.kinds)
     return min(choices, key=lambda choice: choice.estimated_bytes)
 
@@ -171,12 +184,20 @@ def _estimate(task: Task, content: QpzContent, atoms: FloatArray, target: Target
     n_bytes = float(len(encode_content(content, 0)))
     if task.keeps_connectivity:
         return n_bytes
-    decoded = decode_surface(content, atoms, target.grid).mesh
-    # Grid vertices that see no surface are those that lie beyond it, or over a fold.
-    probes = task.samples.points[:: 1 + len(task.samples.points) // _MOST_PROBES]
-    beyond = float((distance_to_mesh(probes, decoded) > task.max_error).mean())
-    missed = max(beyond, float(1.0 - target.known.mean()))
-    return n_bytes + _PIECE_BYTES * missed * len(task.mesh.triangles)
+    decoded = decode_surface(content, atoms, target.grid)
+    uncovered = _share_beyond(task.samples.points, decoded.mesh, task.max_error)
+    # Grid vertices that see no surface may lie beyond it; the others lie on it but for what is corrected.
+    blind = decoded.vertices[~target.known]
+    overhang = _share_beyond(blind, task.mesh, task.max_error) * len(blind) / len(decoded.vertices)
+    return n_bytes + _PIECE_BYTES * max(uncovered, overhang) * len(task.mesh.triangles)
+
+
+def _share_beyond(points: Vertices, mesh: TriangleMesh, limit: float) -> float:
+    """Share of points, or of some of them, that are farther from a mesh than a limit."""
+    if not len(points):
+        return 0.0
+    probes = points[:: 1 + len(points) // _MOST_PROBES]
+    return float((distance_to_mesh(probes, mesh) > limit).mean())
 
 
 def _uniform(mesh: TriangleMesh, n_quads: int) -> QuadMesh:

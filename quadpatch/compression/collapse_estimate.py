@@ -4,12 +4,12 @@ The mesh is collapsed to half as many triangles again and again until it is fart
 one; in between, sizes are interpolated. The bytes that Draco takes for a vertex were measured with 11 bits on the
 meshes of `benchmarks/compression.py`: 3.33 at 1,391 vertices, 2.88 at 3,336, 2.65 at 8,194 and 2.36 at 16,386.
 
-Tested in `tests/quadpatch/tasks/test_encode.py`.
-
 References
 ----------
 J. Rossignac, "Edgebreaker: connectivity compression for triangle meshes", IEEE TVCG 5, 1999 (what Draco codes triangles
 with).
+
+Tested in `tests/quadpatch/tasks/test_encode.py`.
 """
 
 import numpy as np

@@ -34,7 +34,7 @@ _MOST_DOUBLINGS = 3
 # Triangles for each quad of the start, to which the mesh is collapsed once for all tries.
 _THINNED = 32
 # Steps of coefficients that are tried, in parts of the promised error.
-_CODE_STEPS = (1.0, 1.4, 2.0, 2.8)
+_CODE_STEPS = (0.7, 1.0, 1.4, 2.0, 2.8, 4.0)
 _FIRST_CODE_STEP = 1.4
 # So many of them, those with the smallest estimates, are brought within the promised error.
 _FINISHED = 2
@@ -143,7 +143,7 @@ def encode_mesh(
         )
         best = _searched(task, options)
     with stages.stage("learn"):
-        tries = sorted((coded(task, best, step * options.max_error) for step in _CODE_STEPS), key=_bytes)
+        tries = sorted((coded(task, best, step) for step in _CODE_STEPS), key=_bytes)
     with stages.stage("reconstruct"):
         if options.keep_connectivity:
             finished = [_kept(one, original or (mesh.vertices, mesh.triangles)) for one in tries[:1]]
@@ -167,13 +167,12 @@ def _check_size(max_error: float, diagonal_length: float) -> None:
 
 def _searched(task: Task, options: EncodeOptions) -> Candidate:
     """Find the quads that give the smallest file."""
-    step = _FIRST_CODE_STEP * options.max_error
     levels = _levels(options.patches.resolution)
     start = _start(task.mesh, options)
 
     def tried(n_quads: int, *, is_uniform: bool) -> Candidate | None:
         try:
-            return make_candidate(task, (n_quads, is_uniform, levels), step)
+            return make_candidate(task, (n_quads, is_uniform, levels), _FIRST_CODE_STEP)
         except NoQuadsError:
             return None
 

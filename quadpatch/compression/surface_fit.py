@@ -20,13 +20,13 @@ from quadpatch.types import FloatArray, IntArray, QuadMesh, TriangleMesh, Triang
 
 # Subdivision steps at which the surfaces are compared; two are close to the limit surface.
 _LEVELS = 2
-_ROUNDS = 4
+_ROUNDS = 8
 # At most so many points of the surface pull.
 _MOST_SAMPLES = 25_000
 # Weight of the subdivision surface's own points beside those of the surface.
 _BACKWARD_WEIGHT = 0.3
 # Weight of the quad mesh's Laplacian, which decides where nothing else does.
-_SMOOTHNESS = 1e-2
+_SMOOTHNESS = 3e-2
 _REGULARISATION = 1e-6
 
 
