@@ -86,7 +86,7 @@ def fit_vertices(mesh: TriangleMesh, normals: FloatArray, iterations: int = VERT
     for _ in range(iterations):
         at_centre = np.einsum("ij,ij->i", normals, vertices[mesh.triangles].mean(axis=1))
         pull = spread @ (normals * at_centre[:, None])
-        outer = (spread @ (normals[:, :, None] * normals[:, None]).reshape(-1, 9)).reshape(-1, 3, 3)
+        outer = np.asarray(spread @ (normals[:, :, None] * normals[:, None]).reshape(-1, 9)).reshape(-1, 3, 3)
         vertices = vertices + (pull - np.einsum("nij,nj->ni", outer, vertices)) / count
     return vertices
 
@@ -127,7 +127,7 @@ def _guidance(normals: FloatArray, areas: FloatArray, patches: _TrianglePatches)
     share of the jumps over its edges that the largest one has.
     """
     n, patch, member = len(normals), patches.patch, patches.member
-    mean = unit(csr_array((areas[member], (patch, member)), (n, n)) @ normals)
+    mean = unit(np.asarray(csr_array((areas[member], (patch, member)), (n, n)) @ normals))
     widest = _largest_difference(normals, member, np.searchsorted(patch, np.arange(n + 1)))
     jump = length(normals[patches.edges[:, 0]] - normals[patches.edges[:, 1]])[patches.edge]
     total = np.bincount(patches.patch_of_edge, jump, minlength=n)
@@ -153,7 +153,7 @@ def _largest_difference(normals: FloatArray, members: IntArray, starts: IntArray
 
 
 def _filtered(normals: FloatArray, i: IntArray, j: IntArray, weights: FloatArray) -> FloatArray:
-    return unit(csr_array((weights, (i, j)), (len(normals), len(normals))) @ normals)
+    return unit(np.asarray(csr_array((weights, (i, j)), (len(normals), len(normals))) @ normals))
 
 
 def _around_vertices(mesh: TriangleMesh) -> tuple[IntArray, IntArray]:

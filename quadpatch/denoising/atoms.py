@@ -74,7 +74,7 @@ class Exemplars:
     def of(cls, patches: Patches, clean: Patches, is_itself: bool, rng: np.random.Generator) -> "Exemplars":
         """Learn from clean patches, which may be those to be coded themselves."""
         chosen = np.sort(rng.permutation(len(clean))[:MOST_EXEMPLARS])
-        heights, _ = _level_free(pick_patches(clean, chosen))
+        heights, _ = _level_free(pick_patches(clean, np.isin(np.arange(len(clean)), chosen)))
         turns = _turns(clean.resolution)
         turned = np.concatenate([heights[:, turn] for turn in turns])
         signals, levels = _level_free(patches)

@@ -116,12 +116,12 @@ class SurfaceFilters:
         normals = unit(vectors)
         for _ in range(iterations):
             weights = by_distance * _gauss(length(normals[i] - normals[j]), width)
-            normals = unit(csr_array((weights, near.indices, near.indptr), (n, n)) @ normals)
+            normals = unit(np.asarray(csr_array((weights, near.indices, near.indptr), (n, n)) @ normals))
         return normals
 
     def _fitted(self, vertices: Vertices, normals: FloatArray, iterations: int) -> Vertices:
         """Move each vertex towards the planes through its triangles' centroids along their normals."""
-        outer = (self._spread @ (normals[:, :, None] * normals[:, None]).reshape(-1, 9)).reshape(-1, 3, 3)
+        outer = np.asarray(self._spread @ (normals[:, :, None] * normals[:, None]).reshape(-1, 9)).reshape(-1, 3, 3)
         for _ in range(iterations):
             at_centre = np.einsum("ij,ij->i", normals, vertices[self._triangles].mean(axis=1))
             pull = self._spread @ (normals * at_centre[:, None])
