@@ -1,3 +1,5 @@
+"""Also tests `quadpatch.reconstruction.surface_layout` (quadpatch/reconstruction/surface_layout.py)."""
+
 import math
 
 import numpy as np
