@@ -13,7 +13,7 @@ from quadpatch.mesh.raycast import RayScene
 from quadpatch.mesh.smoothing import laplacian_smooth
 from quadpatch.patches.height_map import sample_height_maps
 from quadpatch.patches.layout import lay_out, pick_patches
-from quadpatch.patches.normalisation import mean_free, to_signals
+from quadpatch.patches.normalisation import raw_heights, to_signals
 from quadpatch.patches.scale import PatchScale, base_surface_iterations
 from quadpatch.patches.seeds import Seeds, project_seeds
 from quadpatch.sparse.dictionary import Dictionary
@@ -167,8 +167,10 @@ def smooth_heights(mesh: TriangleMesh, patches: Patches, scale: PatchScale, of_h
 
 def _level_free(patches: Patches) -> tuple[FloatArray, FloatArray]:
     """Heights (n, N * N) less their mean over the bins that are seen, 0 in the others; and the means (n,)."""
-    signals, scaling = mean_free(patches.heights, patches.seen)
-    return signals, scaling.mean
+    signals, _ = raw_heights(patches.heights, patches.seen)
+    seen = patches.seen.reshape(signals.shape)
+    means = signals.sum(axis=1) / np.maximum(seen.sum(axis=1), 1)
+    return np.where(seen, signals - means[:, None], 0.0), means
 
 
 def _turns(resolution: int) -> list[IntArray]:
