@@ -13,6 +13,7 @@ from quadpatch.cli.flags import (
     Overlap,
     Overwrite,
     PatchLength,
+    PatchPreset,
     Preview,
     Quiet,
     Report,
@@ -67,6 +68,7 @@ def denoise(  # noqa: PLR0913, PLR0917  one argument per flag
     patch_length: PatchLength = None,
     resolution: Resolution = None,
     overlap: Overlap = None,
+    preset: PatchPreset = None,
     seed: Seed = 0,
     quiet: Quiet = False,
 ) -> None:
@@ -76,7 +78,7 @@ def denoise(  # noqa: PLR0913, PLR0917  one argument per flag
         from quadpatch.denoising.options import DenoiseOptions  # noqa: PLC0415  slow to load
         from quadpatch.tasks.denoise import denoise_file  # noqa: PLC0415
 
-        patches = {"length": patch_length, "resolution": resolution, "overlap": overlap}
+        patches = {"length": patch_length, "resolution": resolution, "overlap": overlap, "preset": preset}
         if region is not None and region_property is not None:
             raise OptionError("--region and --region-property are two ways to say one thing: name one of them")
         box = None if region is None else {"min": list(region[:3]), "max": list(region[3:])}

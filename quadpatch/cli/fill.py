@@ -12,6 +12,7 @@ from quadpatch.cli.flags import (
     Overlap,
     Overwrite,
     PatchLength,
+    PatchPreset,
     Preview,
     Quiet,
     Report,
@@ -82,6 +83,7 @@ def fill(  # noqa: PLR0913, PLR0917  one argument per flag
     patch_length: PatchLength = None,
     resolution: Resolution = None,
     overlap: Overlap = None,
+    preset: PatchPreset = None,
     atoms: Annotated[int | None, typer.Option(help="Atoms to learn (recipe paper, model self).")] = None,
     nonzero: Annotated[
         int | None, typer.Option(help="Atoms that one patch may use (recipe paper, model self).")
@@ -106,7 +108,7 @@ def fill(  # noqa: PLR0913, PLR0917  one argument per flag
                 cap,
                 tuple(_rule(text) for text in rule or ()),
             ),
-            PatchOptions(patch_length, resolution, overlap),
+            PatchOptions(patch_length, resolution, overlap, preset),
             seed,
             recipe,
             DictionaryOptions(atoms, nonzero),

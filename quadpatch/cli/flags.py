@@ -9,6 +9,7 @@ from typing import Annotated, Literal
 import typer
 
 from quadpatch.errors import OptionError
+from quadpatch.options import Preset
 
 Source = Annotated[Path, typer.Argument(metavar="IN", help="Mesh: PLY, STL, OBJ, OFF, GLB/glTF or 3MF.")]
 Output = Annotated[
@@ -19,6 +20,9 @@ Preview = Annotated[Path | None, typer.Option("--preview", "--picture", help="Wr
 Overwrite = Annotated[bool, typer.Option("--overwrite", help="Let OUT take the place of IN.")]
 PatchLength = Annotated[float | None, typer.Option(help="Side of a patch (mesh units).")]
 Resolution = Annotated[int | None, typer.Option(help="Bins along one side of a patch.")]
+PatchPreset = Annotated[
+    Preset | None, typer.Option(help="The paper's patches: 0.03 of the longest side in 16 bins, or 0.06 in 24.")
+]
 Overlap = Annotated[int | None, typer.Option(help="k: every quad carries 1 + 4 k patches.")]
 Model = Annotated[
     str, typer.Option(help="self (learn a dictionary from this mesh), a shipped dictionary, or a dictionary's file.")

@@ -13,6 +13,7 @@ from quadpatch.cli.flags import (
     Overlap,
     Overwrite,
     PatchLength,
+    PatchPreset,
     Preview,
     Quiet,
     Report,
@@ -37,6 +38,7 @@ def reconstruct(  # noqa: PLR0913, PLR0917  one argument per flag
     patch_length: PatchLength = None,
     resolution: Resolution = None,
     overlap: Overlap = None,
+    preset: PatchPreset = None,
     atoms: Atoms = None,
     nonzero: Nonzero = None,
     seed: Seed = 0,
@@ -48,7 +50,7 @@ def reconstruct(  # noqa: PLR0913, PLR0917  one argument per flag
         from quadpatch.reconstruction.whole_surface import ReconstructOptions  # noqa: PLC0415  slow to load
         from quadpatch.tasks.reconstruct import reconstruct_file  # noqa: PLC0415
 
-        patches = {"length": patch_length, "resolution": resolution, "overlap": overlap}
+        patches = {"length": patch_length, "resolution": resolution, "overlap": overlap, "preset": preset}
         values = given(patches=patches, dictionary={"atoms": atoms, "nonzero": nonzero}, seed=seed)
         return reconstruct_file(source, output, model, ReconstructOptions.from_dict(values), progress)
 

@@ -13,6 +13,7 @@ from quadpatch.cli.flags import (
     Overlap,
     Overwrite,
     PatchLength,
+    PatchPreset,
     Preview,
     Quiet,
     Report,
@@ -63,6 +64,7 @@ def restore(  # noqa: PLR0913, PLR0917  one argument per flag
     patch_length: PatchLength = None,
     resolution: Resolution = None,
     overlap: Overlap = None,
+    preset: PatchPreset = None,
     seed: Seed = 0,
     quiet: Quiet = False,
 ) -> None:
@@ -73,7 +75,7 @@ def restore(  # noqa: PLR0913, PLR0917  one argument per flag
         from quadpatch.restoration.restore import RestoreOptions  # noqa: PLC0415  slow to load
         from quadpatch.tasks.restore import restore_file  # noqa: PLC0415
 
-        patches = {"length": patch_length, "resolution": resolution, "overlap": overlap}
+        patches = {"length": patch_length, "resolution": resolution, "overlap": overlap, "preset": preset}
         options = RestoreOptions.from_dict(given(patches=patches, seed=seed, base=base))
         return restore_file(source, output, which, model, options, progress, coarse=coarse)
 

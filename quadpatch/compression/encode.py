@@ -19,9 +19,10 @@ from quadpatch.compression.kept_vertices import keep_vertices, parts_of_cell
 from quadpatch.compression.proof import sample
 from quadpatch.compression.qpz_file import encode_content
 from quadpatch.errors import NoQuadsError, OptionError
-from quadpatch.mesh.measures import diagonal, mean_edge_length
+from quadpatch.mesh.measures import diagonal, longest_side, mean_edge_length
 from quadpatch.mesh.raycast import RayScene
 from quadpatch.options import PatchOptions
+from quadpatch.patches.scale import preset_scale
 from quadpatch.stages import Stages
 from quadpatch.types import TriangleMesh, Triangles, Vertices
 
@@ -133,6 +134,7 @@ def encode_mesh(
         If the mesh is too small or too thin to carry one quad.
     """
     _check_size(options.max_error, diagonal(mesh))
+    options = replace(options, patches=preset_scale(options.patches, longest_side(mesh)))
     spacing = mean_edge_length(mesh)
     scene = RayScene(mesh)
     with stages.stage("quadrangulate"):

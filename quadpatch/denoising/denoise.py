@@ -19,9 +19,9 @@ from quadpatch.denoising.risk import PROBE_SHARE, least_risk_weights
 from quadpatch.denoising.surface_filters import FILTER_NAMES, SurfaceFilters
 from quadpatch.errors import NoQuadsError, OptionError
 from quadpatch.mesh.edge_groups import group_edges
-from quadpatch.mesh.measures import diagonal, mean_edge_length
+from quadpatch.mesh.measures import diagonal, longest_side, mean_edge_length
 from quadpatch.mesh.normals import length, vertex_normals
-from quadpatch.patches.scale import EDGES_PER_BIN, OVERLAP, PatchScale
+from quadpatch.patches.scale import EDGES_PER_BIN, OVERLAP, PatchScale, preset_scale
 from quadpatch.sparse.dictionary import Dictionary
 from quadpatch.stages import Stages
 from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Vertices
@@ -209,7 +209,7 @@ def denoise(
 
 def denoising_scale(mesh: TriangleMesh, options: DenoiseOptions, model: PatchModel) -> PatchScale:
     """Choose length, resolution and overlap of patches where neither the user nor the model does."""
-    chosen, dictionary = options.patches, model.dictionary
+    chosen, dictionary = preset_scale(options.patches, longest_side(mesh)), model.dictionary
     resolution = dictionary.resolution if dictionary else chosen.resolution or RESOLUTION
     default_length = EDGES_PER_BIN * mean_edge_length(mesh) * resolution
     return PatchScale(

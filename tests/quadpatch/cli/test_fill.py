@@ -135,7 +135,7 @@ def test_flags_about_patches_reach_them(scan_file: Path, tmp_path: Path) -> None
             "cap": None,
             "rules": [],
         },
-        "patches": {"length": 0.5, "resolution": 18, "overlap": 1},
+        "patches": {"length": 0.5, "resolution": 18, "overlap": 1, "preset": None},
         "weld_tolerance": "auto",
         "seed": 3,
         "recipe": "default",
@@ -156,6 +156,9 @@ def test_flags_about_the_recipe_reach_it(scan_file: Path, tmp_path: Path) -> Non
     assert (options["recipe"], options["dictionary"]) == ("paper", {"atoms": 30, "nonzero": 5})
     assert run("fill", scan_file, "-o", tmp_path / "out.ply", "--recipe", "paper", "--model", "smooth").exit_code == 1
     assert run("fill", scan_file, "-o", tmp_path / "out.ply", "--recipe", "ours").exit_code == 2
+    preset = run("fill", scan_file, "-o", tmp_path / "out.ply", "--report", report, "--preset", "type2")
+    assert preset.exit_code == 0, preset.output
+    assert json.loads(report.read_text())["patches"]["resolution"] == 24
 
 
 def test_holes_are_listed_as_json(scan_file: Path) -> None:
