@@ -11,11 +11,20 @@ Tested in `tests/benchmarks/test_denoising_peers.py`.
 """
 
 import argparse
+from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 
-from benchmarks.denoising_peers import Method, bilateral_normals, guided_normals, taubin
+from benchmarks.denoising_peers import (
+    NORMAL_ITERATIONS,
+    SIGMA_NORMAL,
+    Method,
+    bilateral_normals,
+    guided_normals,
+    taubin,
+)
 from quadpatch.denoising.denoise import PatchModel, denoise
 from quadpatch.formats.reading import read_scan
 from quadpatch.mesh.distance import distance_to_mesh
@@ -24,10 +33,12 @@ from quadpatch.mesh.normals import triangle_normals, vertex_normals
 from quadpatch.mesh.weld import weld
 from quadpatch.types import BoolArray, TriangleMesh, Vertices
 
-MESHES = ("fandisk", "stanford_bunny", "igea")
+MESHES = ("fandisk", "stanford_bunny")
 CUT_MESHES = ("relief_gyroid",)
 NOISES = (0.1, 0.2, 0.3)
 SEED = 0
+
+NORMAL_FILTERS = (bilateral_normals, guided_normals)
 
 
 def main() -> None:
@@ -37,7 +48,10 @@ def main() -> None:
     parser.add_argument("--mesh", nargs="*", default=MESHES, help="denoised as a whole")
     parser.add_argument("--cut", nargs="*", default=CUT_MESHES, help="cut in two")
     parser.add_argument("--noise", nargs="*", type=float, default=NOISES, help="in mean edges")
+    parser.add_argument("--width", type=float, default=SIGMA_NORMAL, help="of the peers' normal weight")
+    parser.add_argument("--iterations", type=int, default=NORMAL_ITERATIONS, help="of the peers' normal filters")
     arguments = parser.parse_args()
+    peers = Peers(arguments.width, arguments.iterations)
     print("| mesh | noise, edges | noisy | Taubin | bilateral | guided | ours | ours, with reference |")  # noqa: T201
     print("| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |")  # noqa: T201
     for name in (*arguments.mesh, *arguments.cut):
@@ -46,13 +60,25 @@ def main() -> None:
         if name in arguments.cut:
             reference, clean = halves(clean)
         for noise in arguments.noise:
-            print(row(name if reference is None else f"{name}, half", clean, reference, noise), flush=True)  # noqa: T201
+            print(row(name if reference is None else f"{name}, half", clean, reference, noise, peers), flush=True)  # noqa: T201
 
 
-def row(name: str, clean: TriangleMesh, reference: TriangleMesh | None, noise: float) -> str:
+@dataclass(frozen=True)
+class Peers:
+    """Settings of the two normal filters."""
+
+    width: float = SIGMA_NORMAL
+    iterations: int = NORMAL_ITERATIONS
+
+    def methods(self) -> list[Method]:
+        """Bilateral and guided normals with these settings."""
+        return [partial(peer, sigma_normal=self.width, iterations=self.iterations) for peer in NORMAL_FILTERS]
+
+
+def row(name: str, clean: TriangleMesh, reference: TriangleMesh | None, noise: float, peers: Peers) -> str:
     """Measure all methods on one mesh with one noise, in mean edges."""
     noisy = with_noise(clean, noise, np.random.default_rng(SEED))
-    methods: list[Method | None] = [lambda mesh: mesh.vertices, taubin, bilateral_normals, guided_normals]
+    methods: list[Method | None] = [lambda mesh: mesh.vertices, taubin, *peers.methods()]
     methods.append(lambda mesh: denoise(mesh).vertices)
     model = PatchModel("reference", reference)
     methods.append(None if reference is None else lambda mesh: denoise(mesh, model=model).vertices)

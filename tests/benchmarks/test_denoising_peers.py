@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from benchmarks.denoising import errors, halves, row, with_noise
+from benchmarks.denoising import Peers, errors, halves, row, with_noise
 from benchmarks.denoising_peers import Method, bilateral_normals, guided_normals, taubin
 from tests.quadpatch.denoising.noisy_shapes import roof
 from tests.quadpatch.shapes import relief, sphere
@@ -39,5 +39,5 @@ def test_halves_hold_all_triangles() -> None:
 
 def test_a_row_has_a_cell_for_each_method() -> None:
     reference, clean = halves(relief(40))
-    assert row("relief", clean, reference, 0.2).count(" / ") == 6
-    assert row("relief", clean, None, 0.2).count(" / ") == 5
+    assert row("relief", clean, reference, 0.2, Peers()).count(" / ") == 6
+    assert row("relief", clean, None, 0.2, Peers()).count(" / ") == 5
