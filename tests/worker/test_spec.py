@@ -161,7 +161,7 @@ def test_a_decoded_surface_is_a_ply_unless_another_format_is_asked_for() -> None
 
 
 def test_every_option_of_a_task_reaches_the_method() -> None:
-    patches = {"length": 2.5, "resolution": 16, "overlap": 3}
+    patches = {"length": 2.5, "resolution": 16, "overlap": 3, "preset": None}
     method: dict[str, Any] = {"method": "dictionary", "model": "self", "patches": patches}
     box = {"min": [0.0, 0.0, 0.0], "max": [1.0, 2.0, 3.0]}
     options = {"noise": 0.1, "max_shift": 0.3, "region": {"kind": "box", **box}, "reference": "1" * 64}
