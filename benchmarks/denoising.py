@@ -1,6 +1,6 @@
 """Denoising beside Taubin smoothing, bilateral and guided normals, on clean meshes with synthetic noise.
 
-    python -m benchmarks.denoising ../shared/bench
+    python -m benchmarks.denoising BENCH
 
 Noise is Gaussian, along the normals of the clean mesh, its standard deviation a share of the mean edge. Two errors are
 printed for each method: the mean angle between the normals of its triangles and of the clean ones, in degrees, and the

@@ -40,6 +40,25 @@ def test_measured_vertices_and_faces_keep_their_bits_and_their_order(
     assert [hole["perimeter"] > 2 for hole in inspect_file(output)["holes"]] == [True]
 
 
+@pytest.mark.parametrize(
+    ("method", "name"), [("dictionary", "general-paper@1"), ("cnn", "general-small_4x@1")], ids=["dictionary", "cnn"]
+)
+def test_the_recipe_of_the_paper_works_where_no_model_is_named(
+    client: Client, relief_file: Callable[[str], Path], tmp_path: Path, method: str, name: str
+) -> None:
+    mesh = client.upload(relief_file("float.ply"))
+    job = client.create_job(spec(mesh.id, method={"method": method, "recipe": "paper"}))
+    assert f"{job.model.name}@{job.model.version}" == name
+    job = client.wait(job.id, timeout_s=GUARD_S)
+    client.download(job, "report", tmp_path / "report.json")
+    report = json.loads((tmp_path / "report.json").read_text())
+    assert report["options"]["recipe"] == "paper"
+    # Quads leave the border of the sheet out, and with it the outer two of the holes; they are closed all the same.
+    assert report["counts"]["filled"] >= 2
+    assert report["counts"]["filled"] + report["counts"]["filled_smooth"] == 4
+    assert {hole["confidence"] for hole in report["holes"]} == {None}
+
+
 def test_a_job_leaves_a_report_and_a_picture_that_fit_its_facts(
     client: Client, relief_file: Callable[[str], Path], tmp_path: Path
 ) -> None:
