@@ -14,8 +14,13 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from quadpatch.patches.paper_layout import smooth_for_quads
-from quadpatch.types import TriangleMesh
+import numpy as np
+
+from quadpatch.errors import NoQuadsError
+from quadpatch.patches.paper_layout import cut_patches, measured_patches, smooth_for_quads
+from quadpatch.patches.scale import PatchScale
+from quadpatch.patches.seeds import Seeds
+from quadpatch.types import Patches, TriangleMesh
 
 RADII = ("0.015", "0.025", "0.035")
 
@@ -117,6 +122,15 @@ class Bench:
         if path not in self._smoothed:
             self._smoothed[path] = smooth_for_quads(self.read(path))
         return self._smoothed[path]
+
+    def patches(self, path: Path, scale: PatchScale, seed: int = 0) -> Patches:
+        """Cut the patches of a mesh as the paper's recipe does; none where it is too small to carry one."""
+        rng = np.random.default_rng(seed)
+        try:
+            return cut_patches(self.read(path), self.smoothed(path), scale, rng)
+        except NoQuadsError:
+            nothing = Seeds(np.zeros((0, 3)), np.zeros((0, 3, 3)), np.zeros(0, np.int64))
+            return measured_patches(self.read(path), nothing, scale, rng)
 
     def write(self, path: Path, mesh: TriangleMesh) -> None:
         """Write a PLY as the bench writes it: float32."""

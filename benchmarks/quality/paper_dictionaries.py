@@ -21,7 +21,7 @@ from quadpatch.mesh.measures import mean_edge_length
 from quadpatch.model_choice import SELF
 from quadpatch.options import DictionaryOptions, PatchOptions
 from quadpatch.patches.normalisation import HEIGHTS, raw_heights
-from quadpatch.patches.paper_layout import cut_patches, learnable
+from quadpatch.patches.paper_layout import learnable
 from quadpatch.patches.scale import PatchScale
 from quadpatch.recipes.paper import paper_scale
 from quadpatch.sparse.dictionary import Dictionary
@@ -110,8 +110,7 @@ class Learner:
         cache_key = (shape.sha256, scale)
         if cache_key not in self._cut:
             self._cut = {key: cut for key, cut in self._cut.items() if key[1] == scale}
-            truth, smoothed = self.bench.read(shape.truth), self.bench.smoothed(shape.truth)
-            patches = learnable(cut_patches(truth, smoothed, scale, np.random.default_rng(SEED)))
+            patches = learnable(self.bench.patches(shape.truth, scale, SEED))
             self._cut[cache_key] = patches.heights, patches.known
         return self._cut[cache_key]
 

@@ -24,7 +24,7 @@ from benchmarks.quality.network_options import Budget, Pace
 from benchmarks.quality.results import NETWORKS, Key, Results
 from quadpatch.inpainters.paper_dictionary import MIN_TRAINING_PATCHES
 from quadpatch.patches.folding import is_unfolded
-from quadpatch.patches.paper_layout import LEAST_KNOWN, cut_patches
+from quadpatch.patches.paper_layout import LEAST_KNOWN
 from quadpatch.patches.scale import PatchScale
 from quadpatch.types import IntArray, Patches
 from training import autoencoder, holes, paper_task, trainer
@@ -120,8 +120,7 @@ class NetworkTrainer:
         """Cut the patches of an undamaged mesh, in the order of their seeds: `heights` in patch lengths, `known`."""
         wanted = (shape.sha256, scale)
         if wanted not in self._cut:
-            truth, smoothed = self.bench.read(shape.truth), self.bench.smoothed(shape.truth)
-            self._cut[wanted] = _arrays(cut_patches(truth, smoothed, scale, np.random.default_rng(SEED)))
+            self._cut[wanted] = _arrays(self.bench.patches(shape.truth, scale, SEED))
         return self._cut[wanted]
 
     def with_budget(self, budget: Budget) -> "NetworkTrainer":

@@ -136,7 +136,8 @@ def test_a_dictionary_of_heights_is_learned_for_the_recipe_of_the_paper_and_repa
     meshes: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     file = tmp_path / "heights.safetensors"
-    shared = ["dictionary", str(meshes), "--name", "heights", "--recipe", "paper", *SMALL, "--holdout", "noise"]
+    shared = ["dictionary", str(meshes), "--name", "heights", "--recipe", "paper", *SMALL, "--overlap", "2"]
+    shared += ["--holdout", "noise"]
     output = train(monkeypatch, *shared, "--output", str(file))
     assert "error by iteration" in output
     model = load_model(file)
