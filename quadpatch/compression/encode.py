@@ -33,8 +33,8 @@ _QUADS_RANGE = (6, 20_000)
 _MOST_DOUBLINGS = 3
 # Triangles for each quad of the start, to which the mesh is collapsed once for all tries.
 _THINNED = 32
-# Steps of coefficients that are tried, in parts of the promised error. With 4 the bunny takes 3 % fewer bytes at the same
-# promise, and loses 1.8 dB.
+# Steps of coefficients that are tried, in parts of the promised error. With 4 the bunny takes 3 % fewer bytes at the
+# same promise, and loses 1.8 dB.
 _CODE_STEPS = (0.7, 1.0, 1.4, 2.0, 2.8)
 _FIRST_CODE_STEP = 1.4
 # So many of them, those with the smallest estimates, are brought within the promised error.
