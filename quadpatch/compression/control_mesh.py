@@ -11,9 +11,9 @@ triangles, and the cut of what is left).
 """
 
 import numpy as np
-import pymeshlab
 
 from quadpatch.errors import NoQuadsError
+from quadpatch.mesh.meshlab import CollapseOptions, collapse_edges
 from quadpatch.mesh.topology import directed_edges, edge_keys
 from quadpatch.quads.vertex_clustering import split_fans
 from quadpatch.types import BoolArray, FloatArray, IntArray, QuadMesh, Quads, TriangleMesh, Vertices
@@ -41,18 +41,8 @@ def collapse(mesh: TriangleMesh, n_triangles: int) -> TriangleMesh:
     original, triangles = split_fans(mesh.triangles)
     if len(triangles) <= n_triangles:
         return TriangleMesh(mesh.vertices[original], triangles)
-    meshes = pymeshlab.MeshSet()
-    meshes.add_mesh(pymeshlab.Mesh(mesh.vertices[original], triangles))
-    meshes.meshing_decimation_quadric_edge_collapse(
-        targetfacenum=n_triangles,
-        qualitythr=_QUALITY,
-        preserveboundary=False,
-        boundaryweight=_BORDER_WEIGHT,
-        preservenormal=True,
-        preservetopology=True,
-    )
-    result = meshes.current_mesh()
-    return TriangleMesh(np.asarray(result.vertex_matrix(), np.float64), np.asarray(result.face_matrix(), np.int64))
+    whole = TriangleMesh(mesh.vertices[original], triangles)
+    return collapse_edges(whole, n_triangles, CollapseOptions(_QUALITY, _BORDER_WEIGHT, keeps_topology=True))
 
 
 def collapse_to_quads(mesh: TriangleMesh, n_quads: int) -> QuadMesh:

@@ -14,6 +14,7 @@ M. Kazhdan, H. Hoppe, "Screened Poisson surface reconstruction", ACM Transaction
 M. Garland, P. Heckbert, "Surface simplification using quadric error metrics", SIGGRAPH, 1997.
 """
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -107,7 +108,26 @@ def poisson_surface(points: Vertices, normals: FloatArray, depth: int = 8) -> Tr
     return TriangleMesh(*_filtered(cloud, "generate_surface_reconstruction_screened_poisson", depth=depth, threads=1))
 
 
-def collapse_edges(mesh: TriangleMesh, n_triangles: int) -> TriangleMesh:
+@dataclass(frozen=True)
+class CollapseOptions:
+    """How edges are collapsed.
+
+    Attributes
+    ----------
+    quality : float
+        0 to 1: how much triangles of a poor shape cost.
+    border_weight : float
+        Of the border against the surface.
+    keeps_topology : bool
+        Whether collapses that close a handle or a hole are left out.
+    """
+
+    quality: float = 0.3
+    border_weight: float = 1.0
+    keeps_topology: bool = False
+
+
+def collapse_edges(mesh: TriangleMesh, n_triangles: int, options: CollapseOptions | None = None) -> TriangleMesh:
     """Simplify a mesh to about so many triangles by collapsing the edges of least quadric error.
 
     Raises
@@ -115,9 +135,17 @@ def collapse_edges(mesh: TriangleMesh, n_triangles: int) -> TriangleMesh:
     StageError
         If MeshLab refuses the mesh.
     """
-    return TriangleMesh(
-        *_filtered(mesh, "meshing_decimation_quadric_edge_collapse", targetfacenum=n_triangles, preservenormal=True)
+    options = options or CollapseOptions()
+    vertices, triangles = _filtered(
+        mesh,
+        "meshing_decimation_quadric_edge_collapse",
+        targetfacenum=n_triangles,
+        qualitythr=options.quality,
+        boundaryweight=options.border_weight,
+        preservenormal=True,
+        preservetopology=options.keeps_topology,
     )
+    return TriangleMesh(vertices, triangles)
 
 
 def split_edges(mesh: TriangleMesh, edge_length: float) -> TriangleMesh:
