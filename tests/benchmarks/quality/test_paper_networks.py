@@ -89,9 +89,10 @@ def test_patches_are_the_same_places_in_any_resolution(trainer: NetworkTrainer) 
     (hills, _) = trainer.bench.shapes()
     coarse, fine = (trainer.patches(hills, PatchScale(0.25, n, 1)) for n in (24, 48))
     halved = fine["heights"].reshape(-1, 24, 2, 24, 2).mean(axis=(2, 4))
-    whole = fine["known"].all(axis=(1, 2)) & coarse["known"].all(axis=(1, 2))
-    assert whole.sum() > 10
-    assert np.abs(halved - coarse["heights"])[whole].max() < 0.1 * np.ptp(coarse["heights"][whole])
+    known = fine["known"].reshape(-1, 24, 2, 24, 2).all(axis=(2, 4)) & coarse["known"]
+    assert known.mean() > 0.3
+    # Bins hold the means of points that are drawn anew for each resolution.
+    assert np.abs(halved - coarse["heights"])[known].mean() < 0.02 * np.ptp(coarse["heights"][known])
 
 
 def test_a_mesh_without_room_for_patches_gives_no_network(trainer: NetworkTrainer) -> None:
