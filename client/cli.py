@@ -43,9 +43,8 @@ from client.options import (
     make_spec,
     tolerance,
 )
-from client.outputs import check_stdout
 from client.repairing import Task, format_of
-from client.repairing import repair as run_repair
+from client.running import Connection, run
 from client.screen import Screen
 from client.tables import print_holes, print_jobs, print_models
 from client.task_commands import decode, denoise, encode, restore
@@ -127,9 +126,9 @@ def repair(  # noqa: PLR0913 - one parameter per option of the command line
     quiet: QuietOption = False,
 ) -> None:
     """Repair a mesh file: upload it, fill its holes, fetch the result."""
-    screen = Screen(quiet)
-    with connected(screen, url, api_key) as client:
-        task = Task(
+
+    def task() -> Task:
+        return Task(
             source=mesh,
             output=output,
             holes=HoleChoice(max_diameter, max_perimeter, all_but_largest, hole, include_borders, cap, rule),
@@ -153,10 +152,8 @@ def repair(  # noqa: PLR0913 - one parameter per option of the command line
             may_overwrite=overwrite,
             again=again,
         )
-        check_stdout([output, report, preview], as_json)
-        job = run_repair(client, screen, task)
-    if as_json:
-        print_json(job)
+
+    run(task, Connection(url, api_key, quiet, as_json))
 
 
 @app.command()

@@ -58,8 +58,8 @@ class Task:
 
     source: Path
     output: Path
-    holes: HoleChoice
-    method: MethodChoice
+    holes: HoleChoice = field(default_factory=HoleChoice)
+    method: MethodChoice = field(default_factory=MethodChoice)
     rest: dict[str, Any] = field(default_factory=dict)
     report: Path | None = None
     preview: Path | None = None

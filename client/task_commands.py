@@ -5,14 +5,12 @@ from typing import Annotated, Any
 
 import typer
 
-from client.connection import connected, print_json
 from client.errors import UsageError
 from client.missing_vertices import read_missing
 from client.options import (
     DEFAULT_URL,
     AgainOption,
     FormatOption,
-    HoleChoice,
     JsonOption,
     KeyOption,
     LabelOption,
@@ -27,9 +25,9 @@ from client.options import (
     TimeoutOption,
     UrlOption,
 )
-from client.outputs import check_stdout, is_stream
-from client.repairing import Task, format_of, repair
-from client.screen import Screen
+from client.outputs import is_stream
+from client.repairing import Task, format_of
+from client.running import Connection, run
 from jobkit.schema import RestorationBase
 
 _SUFFIX = ".qpz"
@@ -77,17 +75,24 @@ def restore(  # noqa: PLR0913 - one parameter per option of the command line
     quiet: QuietOption = False,
 ) -> None:
     """Give missing vertices of a scan a position; all others keep their bits."""
-    screen = Screen(quiet)
-    with connected(screen, url, api_key) as client:
+
+    def task() -> Task:
         options = {"missing": read_missing(missing), "base": base}
         rest = {"task": "restore", "restore": options, "seed": seed, "label": label}
         rest["output"] = _output(output, format_, preview)
-        choice = _method(model)
-        task = Task(mesh, output, HoleChoice(), choice, rest, report, preview, None, timeout, overwrite, again)
-        check_stdout([output, report, preview], as_json)
-        job = repair(client, screen, task)
-    if as_json:
-        print_json(job)
+        return Task(
+            mesh,
+            output,
+            method=_method(model),
+            rest=rest,
+            report=report,
+            preview=preview,
+            timeout_s=timeout,
+            may_overwrite=overwrite,
+            again=again,
+        )
+
+    run(task, Connection(url, api_key, quiet, as_json))
 
 
 def denoise(  # noqa: PLR0913 - one parameter per option of the command line
@@ -131,21 +136,27 @@ def denoise(  # noqa: PLR0913 - one parameter per option of the command line
     quiet: QuietOption = False,
 ) -> None:
     """Take noise from the vertices of a scan; their order, triangles and attributes stay."""
-    screen = Screen(quiet)
-    with connected(screen, url, api_key) as client:
+
+    def task() -> Task:
         box = None if region is None else {"kind": "box", "min": list(region[:3]), "max": list(region[3:])}
         given = {"noise": noise, "max_shift": max_shift, "region": box}
         options = {name: value for name, value in given.items() if value is not None}
         rest = {"task": "denoise", "denoise": options, "seed": seed, "label": label}
         rest["output"] = _output(output, format_, preview)
-        choice = _method(model)
-        task = Task(
-            mesh, output, HoleChoice(), choice, rest, report, preview, None, timeout, overwrite, again, reference
+        return Task(
+            mesh,
+            output,
+            method=_method(model),
+            rest=rest,
+            report=report,
+            preview=preview,
+            timeout_s=timeout,
+            may_overwrite=overwrite,
+            again=again,
+            reference=reference,
         )
-        check_stdout([output, report, preview], as_json)
-        job = repair(client, screen, task)
-    if as_json:
-        print_json(job)
+
+    run(task, Connection(url, api_key, quiet, as_json))
 
 
 def encode(  # noqa: PLR0913 - one parameter per option of the command line
@@ -171,19 +182,25 @@ def encode(  # noqa: PLR0913 - one parameter per option of the command line
     quiet: QuietOption = False,
 ) -> None:
     """Compress the surface of a scan into a .qpz file, within a proven error."""
-    screen = Screen(quiet)
-    with connected(screen, url, api_key) as client:
+
+    def task() -> Task:
         if not is_stream(output) and output.suffix.lower() != _SUFFIX:
             raise UsageError(f"{output} does not end in {_SUFFIX}, which is what encoding writes")
         options = {"max_error": max_error, "keep_connectivity": keep_connectivity}
         rest = {"task": "encode", "encode": options, "seed": seed, "label": label}
         rest["output"] = {"preview": preview is not None}
-        choice = _method(model)
-        task = Task(mesh, output, HoleChoice(), choice, rest, report, preview, None, timeout, False, again)
-        check_stdout([output, report, preview], as_json)
-        job = repair(client, screen, task)
-    if as_json:
-        print_json(job)
+        return Task(
+            mesh,
+            output,
+            method=_method(model),
+            rest=rest,
+            report=report,
+            preview=preview,
+            timeout_s=timeout,
+            again=again,
+        )
+
+    run(task, Connection(url, api_key, quiet, as_json))
 
 
 def decode(  # noqa: PLR0913 - one parameter per option of the command line
@@ -203,15 +220,21 @@ def decode(  # noqa: PLR0913 - one parameter per option of the command line
     quiet: QuietOption = False,
 ) -> None:
     """Bring back the surface of a .qpz file, with the model that it was encoded with."""
-    screen = Screen(quiet)
-    with connected(screen, url, api_key) as client:
+
+    def task() -> Task:
         rest = {"task": "decode", "label": label, "output": _output(output, format_, preview)}
-        choice = _method(model)
-        task = Task(mesh, output, HoleChoice(), choice, rest, report, preview, None, timeout, False, again)
-        check_stdout([output, report, preview], as_json)
-        job = repair(client, screen, task)
-    if as_json:
-        print_json(job)
+        return Task(
+            mesh,
+            output,
+            method=_method(model),
+            rest=rest,
+            report=report,
+            preview=preview,
+            timeout_s=timeout,
+            again=again,
+        )
+
+    run(task, Connection(url, api_key, quiet, as_json))
 
 
 def _method(model: str | None) -> MethodChoice:

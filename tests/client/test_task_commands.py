@@ -1,4 +1,4 @@
-"""Also tests `client.task_summary` and `client.missing_vertices`."""
+"""Also tests `client.task_summary`, `client.missing_vertices` and `client/running.py`."""
 
 import hashlib
 import json
