@@ -15,7 +15,7 @@ from quadpatch.compression.encode import EncodeOptions
 from quadpatch.formats.reading import read_scan
 from quadpatch.tasks.encode import encode_file
 from quadpatch.types import Triangles, Vertices
-from tests.integration.conftest import ply_bytes, punched_relief
+from tests.integration.conftest import ply_bytes, punched_relief, stl_bytes
 from tests.waiting import GUARD_S, wait_until
 
 SELF = {"method": "dictionary", "model": "self"}
@@ -253,3 +253,23 @@ def test_a_reference_that_no_one_uploaded_is_refused(client: Client, sent: Calla
     spec = {"mesh_id": mesh.id, "task": "denoise", "denoise": {"reference": "f" * 64}}
     with pytest.raises(RefusedError, match="mesh_not_found"):
         client.create_job(JobSpec.model_validate(spec))
+
+
+def test_the_files_of_stations_go_through_every_task_by_its_defaults(
+    client: Client, done: Callable[..., Job], tmp_path: Path
+) -> None:
+    """STL, whose triangles share no vertex: what moves stays one surface, and comes back as STL."""
+    vertices, triangles = relief(30)
+    (tmp_path / "scan.stl").write_bytes(stl_bytes(noisy(vertices), triangles))
+    mesh = client.upload(tmp_path / "scan.stl")
+    denoised = done("denoise", mesh.id)
+    before, after = read_scan(tmp_path / "scan.stl"), read_scan(fetched(client, denoised, tmp_path))
+    assert (result_of(denoised).format, len(after.triangles)) == ("stl", len(triangles))
+    assert len(np.unique(after.vertices, axis=0)) == len(np.unique(before.vertices, axis=0)) == len(vertices)
+    indices = np.flatnonzero((before.vertices == before.vertices[100]).all(axis=1)).tolist()
+    restored = done("restore", mesh.id, restore={"missing": {"kind": "indices", "indices": indices}})
+    assert result_of(restored).format == "stl"
+    assert result_of(restored).restored_vertices == len(indices)
+    encoded = client.upload(fetched(client, done("encode", mesh.id, encode={"max_error": MAX_ERROR}), tmp_path))
+    decoded = done("decode", encoded.id, output={"preview": False, "format": "stl"})
+    assert len(read_scan(fetched(client, decoded, tmp_path)).triangles) > 100
