@@ -71,26 +71,49 @@ def choose_model(
         is_paper = options.recipe == "paper"
         learned = SelfHeights(options.dictionary, options.seed, progress) if is_paper else SelfDictionary()
         return learned, {"name": SELF}
+    loaded, facts = find_model(model)
+    if loaded.dictionary is None:
+        return _network(loaded.path, options, network_card), facts
+    return _dictionary(loaded, loaded.dictionary, options), facts
+
+
+def find_model(model: str | Path) -> tuple[Model, dict[str, Any]]:
+    """Read a model file, or the shipped model of a name.
+
+    Returns
+    -------
+    model : Model
+    facts : dict
+        What reports say of it: name, version, kind and sha256.
+
+    Raises
+    ------
+    ModelError
+        If there is no such model, or its file is none.
+    """
     path = Path(model)
     if not path.is_file():
         path = shipped_model(str(model))
     loaded = load_model(path)
     facts = {"name": loaded.card.get("name", path.stem), "version": loaded.card.get("version"), "kind": loaded.kind}
-    facts["sha256"] = hashlib.sha256(path.read_bytes()).hexdigest()
-    if loaded.dictionary is None:
-        return _network(path, options, network_card), facts
-    return _dictionary(loaded, loaded.dictionary, options), facts
+    return loaded, {**facts, "sha256": sha256_of(path)}
+
+
+def sha256_of(path: Path) -> str:
+    """Hash a file's bytes, in hex."""
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
 
 
 def _dictionary(loaded: Model, dictionary: Dictionary, options: RepairOptions) -> Inpainter:
     """Take a dictionary for the recipe that it was learned for."""
     _check_recipe(loaded, options)
     if loaded.recipe == "paper":
-        return HeightsInpainter(dictionary, _length_share(loaded))
+        return HeightsInpainter(dictionary, length_share(loaded))
     return DictionaryInpainter(dictionary)
 
 
-def _length_share(model: Model) -> float | None:
+def length_share(model: Model) -> float | None:
     """Read how wide the patches were that a dictionary of heights was learned from."""
     share = model.card.get("length_share")
     if share is None:

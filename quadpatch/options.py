@@ -1,9 +1,9 @@
 """Options of every stage. Frozen; each default stands here and nowhere else. None means: the automatic rule."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Any, Literal, get_args
+from typing import Any, Literal, TypeVar, get_args
 
 from quadpatch.errors import OptionError
 from shared_rules.hole_selection import MODEL_FILLS_ONLY, Cap, HoleKind, RuleAction, names_fills
@@ -13,6 +13,8 @@ OVERLAP_RANGE = (0, 8)
 ATOMS_RANGE = (2, 4096)
 NONZERO_RANGE = (1, 256)
 STEPS_RANGE = (1, 100_000)
+
+Options = TypeVar("Options")
 
 # Options that are groups of their own.
 _NESTED = ("holes", "patches", "dictionary", "network")
@@ -222,8 +224,7 @@ class RepairOptions:
             raise OptionError(MODEL_FILLS_ONLY)
         if self.recipe != "paper" and self.dictionary != DictionaryOptions():
             raise OptionError("dictionary.atoms and dictionary.nonzero go with the recipe paper only")
-        if not isinstance(self.seed, int) or self.seed < 0:
-            raise OptionError(f"seed must be a whole number of 0 or more; it is {self.seed}")
+        check_seed(self.seed)
 
     @classmethod
     def from_dict(cls, values: Mapping[str, Any]) -> "RepairOptions":
@@ -237,6 +238,35 @@ class RepairOptions:
             return cls(holes, PatchOptions(**patches), dictionary=dictionary, network=network, **rest)
         except (TypeError, ValueError) as error:
             raise OptionError(f"options don't fit: {error}") from error
+
+
+def built(cls: Callable[..., Options], values: Mapping[str, Any], **groups: Callable[..., Any]) -> Options:
+    """Build options from nested plain values.
+
+    Parameters
+    ----------
+    cls : type
+        A dataclass of options.
+    values : mapping
+    groups : type
+        Of the options that are groups of their own, by name.
+
+    Raises
+    ------
+    OptionError
+        If a name is unknown or a value refused.
+    """
+    try:
+        made = {name: make(**(values.get(name) or {})) for name, make in groups.items()}
+        return cls(**{**values, **made})
+    except (TypeError, ValueError) as error:
+        raise OptionError(f"options don't fit: {error}") from error
+
+
+def check_seed(value: object) -> None:
+    """Raise OptionError for a seed that is no whole number of 0 or more."""
+    if isinstance(value, bool) or not isinstance(value, int) or value < 0:
+        raise OptionError(f"seed must be a whole number of 0 or more; it is {value}")
 
 
 def check_weld_tolerance(value: object) -> None:

@@ -110,7 +110,7 @@ def repair_and_keep(
     stages = Stages(progress)
     inpainter, card = choose_model(model, options, progress, network_card)
     with stages.stage("read"):
-        scan, welded = _read(source, options.weld_tolerance)
+        scan, welded = read_surface(source, options.weld_tolerance)
         named = written_as(output, scan)
         precision = check_precision(scan, named)
     repair = _inpaint(welded, inpainter, options, stages)
@@ -136,7 +136,7 @@ def inspect_file(source: Path, weld_tolerance: Tolerance = "auto") -> dict[str, 
     the border of an island: where one of them is filled, the island is joined to the first that is.
     """
     check_weld_tolerance(weld_tolerance)
-    scan, welded = _read(source, weld_tolerance)
+    scan, welded = read_surface(source, weld_tolerance)
     mesh = welded.mesh
     holes = find_holes(mesh)
     hosts = hosts_of(mesh, holes, [hole for hole in holes if hole.is_manifold])
@@ -167,7 +167,14 @@ def _reason(choice: Choice) -> str | None:
     return choice.reason if choice.joined_to is None else f"joined to hole {choice.joined_to}, in which it lies"
 
 
-def _read(source: Path, weld_tolerance: Tolerance) -> tuple[Scan, Weld]:
+def read_surface(source: Path, weld_tolerance: Tolerance = "auto") -> tuple[Scan, Weld]:
+    """Read a file and make one surface of it.
+
+    Raises
+    ------
+    MeshError
+        If the file can't be read, or holds no surface.
+    """
     scan = read_scan(source)
     welded = weld(scan.vertices, scan.triangles, weld_tolerance)
     if not len(welded.mesh.triangles):

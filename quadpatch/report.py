@@ -102,8 +102,7 @@ def build_report(
         "welded": asdict(welded.counts),
         "length_unit": scan.unit or UNKNOWN_UNIT,
         "model": model,
-        # Tuples become lists, as they do in the file.
-        "options": json.loads(json.dumps(asdict(options))),
+        "options": plain_options(options),
         "counts": {
             "found": len(repair.results),
             **{verdict: sum(r.verdict == verdict for r in repair.results) for verdict in VERDICTS},
@@ -118,10 +117,36 @@ def build_report(
             "believed_share": completion.blend_factor,
         },
         "holes": [_hole(result) for result in repair.results],
-        "stages": [{"name": name, "seconds": round(seconds, 4)} for name, seconds in stages.seconds.items()],
+        "stages": describe_stages(stages),
         "warnings": repair.warnings,
     }
     return cast(dict[str, Any], json_ready(report))
+
+
+def describe_task(
+    task: str, scan: Scan, mesh: TriangleMesh, model: dict[str, Any], options: Any, stages: Stages
+) -> dict[str, Any]:
+    """Return what the reports of all tasks begin with: the scan and its surface, the model, a dataclass of options."""
+    return {
+        "schema": 1,
+        "task": task,
+        "source": describe_mesh(scan, mesh),
+        "length_unit": scan.unit or UNKNOWN_UNIT,
+        "model": model,
+        "options": plain_options(options),
+        "stages": describe_stages(stages),
+    }
+
+
+def plain_options(options: Any) -> dict[str, Any]:
+    """Turn a dataclass of options into what its JSON reads as: tuples become lists."""
+    plain: dict[str, Any] = json.loads(json.dumps(asdict(options)))
+    return plain
+
+
+def describe_stages(stages: Stages) -> list[dict[str, Any]]:
+    """Return the seconds of every stage, in order."""
+    return [{"name": name, "seconds": round(seconds, 4)} for name, seconds in stages.seconds.items()]
 
 
 def _hole(result: HoleResult) -> dict[str, Any]:

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from quadpatch.errors import EmptyMeshError, OptionError
-from quadpatch.mesh.measures import longest_side, mean_edge_length
+from quadpatch.mesh.measures import longest_side, mean_edge_length, surface_area
 from quadpatch.mesh.meshlab import collapse_edges, split_edges, write_ply
 from quadpatch.quads.vertex_clustering import split_fans
 from quadpatch.types import Progress, TriangleMesh, no_progress
@@ -50,7 +50,7 @@ def normalised(mesh: TriangleMesh, edge_length: float) -> TriangleMesh:
     unit = TriangleMesh((vertices - vertices.min(axis=0)) / size, triangles)
     split = split_edges(unit, LONGEST_EDGE * edge_length)
     # An even triangle of that side has this area.
-    n_wanted = max(4, round(_area(split) / (np.sqrt(3) / 4 * edge_length**2)))
+    n_wanted = max(4, round(surface_area(split) / (np.sqrt(3) / 4 * edge_length**2)))
     return collapse_edges(split, n_wanted) if mean_edge_length(split) < edge_length else split
 
 
@@ -90,8 +90,3 @@ def normalise_dataset(
     (folder / MANIFEST).write_text(json.dumps(entries, indent=1) + "\n", "utf-8")
     progress("", 1.0)
     return written
-
-
-def _area(mesh: TriangleMesh) -> float:
-    a, b, c = (mesh.vertices[mesh.triangles[:, corner]] for corner in range(3))
-    return float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum()) / 2

@@ -28,7 +28,7 @@ from quadpatch.compression.qpz_file import encode_content
 from quadpatch.compression.sparse_codes import sparse_codes
 from quadpatch.compression.surface_fit import fit_quads
 from quadpatch.mesh.distance import distance_to_mesh
-from quadpatch.mesh.measures import mean_edge_length
+from quadpatch.mesh.measures import mean_edge_length, surface_area
 from quadpatch.mesh.raycast import RayScene
 from quadpatch.mesh.smoothing import laplacian_smooth
 from quadpatch.patches.scale import base_surface_iterations
@@ -202,8 +202,7 @@ def _share_beyond(points: Vertices, mesh: TriangleMesh, limit: float) -> float:
 
 def _uniform(mesh: TriangleMesh, n_quads: int) -> QuadMesh:
     """Quads of one size, as a repair has them."""
-    a, b, c = (mesh.vertices[mesh.triangles[:, corner]] for corner in range(3))
-    side = float(np.sqrt(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2 / n_quads))
+    side = float(np.sqrt(surface_area(mesh) / n_quads))
     return quadrangulate(laplacian_smooth(mesh, base_surface_iterations(side, mean_edge_length(mesh))), side)
 
 

@@ -19,9 +19,9 @@ from quadpatch.compression.kept_vertices import keep_vertices, parts_of_cell
 from quadpatch.compression.proof import sample
 from quadpatch.compression.qpz_file import encode_content
 from quadpatch.errors import NoQuadsError, OptionError
-from quadpatch.mesh.measures import diagonal, longest_side, mean_edge_length
+from quadpatch.mesh.measures import diagonal, longest_side, mean_edge_length, surface_area
 from quadpatch.mesh.raycast import RayScene
-from quadpatch.options import PatchOptions
+from quadpatch.options import PatchOptions, built, check_seed
 from quadpatch.patches.scale import preset_scale
 from quadpatch.stages import Stages
 from quadpatch.types import TriangleMesh, Triangles, Vertices
@@ -72,17 +72,12 @@ class EncodeOptions:
             raise OptionError(f"keep_connectivity must be true or false; it is {self.keep_connectivity!r}")
         if self.patches.overlap is not None:
             raise OptionError("patches.overlap can't be chosen here: patches share the vertices along their edges")
-        if not isinstance(self.seed, int) or self.seed < 0:
-            raise OptionError(f"seed must be a whole number of 0 or more; it is {self.seed}")
+        check_seed(self.seed)
 
     @classmethod
     def from_dict(cls, values: Mapping[str, Any]) -> "EncodeOptions":
         """Build from nested plain values; an unknown name raises OptionError."""
-        try:
-            patches = PatchOptions(**(values.get("patches") or {}))
-            return cls(**{**{k: v for k, v in values.items() if k != "patches"}, "patches": patches})
-        except (TypeError, ValueError) as error:
-            raise OptionError(f"options don't fit: {error}") from error
+        return built(cls, values, patches=PatchOptions)
 
 
 @dataclass(frozen=True)
@@ -220,9 +215,7 @@ def _start(mesh: TriangleMesh, options: EncodeOptions) -> int:
     length = options.patches.length
     if length is None:
         return int(np.clip(len(mesh.vertices) // _VERTICES_PER_QUAD, *_QUADS_RANGE))
-    a, b, c = (mesh.vertices[mesh.triangles[:, corner]] for corner in range(3))
-    area = float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum()) / 2
-    return int(np.clip(round(area / length**2), *_QUADS_RANGE))
+    return int(np.clip(round(surface_area(mesh) / length**2), *_QUADS_RANGE))
 
 
 def _kept(candidate: Candidate, original: tuple[Vertices, Triangles]) -> tuple[QpzContent, int]:

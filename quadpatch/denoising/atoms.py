@@ -7,8 +7,7 @@ from typing import Protocol
 import numpy as np
 
 from quadpatch.errors import NoQuadsError
-from quadpatch.mesh.measures import mean_edge_length
-from quadpatch.mesh.normals import area_vectors, length
+from quadpatch.mesh.measures import mean_edge_length, surface_area
 from quadpatch.mesh.raycast import RayScene
 from quadpatch.mesh.smoothing import laplacian_smooth
 from quadpatch.patches.height_map import sample_height_maps
@@ -141,7 +140,7 @@ def lay_patches(mesh: TriangleMesh, scale: PatchScale) -> Patches:
         If the surface is too small or too thin to carry one quad.
     """
     # More quads than triangles: their size is not that of the mesh, and there may be too many for the memory.
-    if _area(mesh) > MOST_QUADS_PER_TRIANGLE * len(mesh.triangles) * scale.length**2:
+    if surface_area(mesh) > MOST_QUADS_PER_TRIANGLE * len(mesh.triangles) * scale.length**2:
         raise NoQuadsError("the triangles differ too much in size for patches")
     scene = RayScene(mesh)
     seeds = project_seeds(scene, mesh, lay_out(laplacian_smooth(mesh, _QUAD_ITERATIONS), scale), scale.length)
@@ -177,7 +176,3 @@ def _turns(resolution: int) -> list[IntArray]:
     """Bins in the order of each of the eight turns and mirror images."""
     bins = np.arange(resolution**2).reshape(resolution, resolution)
     return [np.rot90(image, k).ravel() for image in (bins, bins.T) for k in range(4)]
-
-
-def _area(mesh: TriangleMesh) -> float:
-    return float(length(area_vectors(mesh.vertices, mesh.triangles)).sum()) / 2

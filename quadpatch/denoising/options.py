@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from quadpatch.errors import OptionError
-from quadpatch.options import PatchOptions
+from quadpatch.options import PatchOptions, built, check_seed
 
 Corner = tuple[float, float, float]
 
@@ -65,18 +65,12 @@ class DenoiseOptions:
                 raise OptionError(f"{name} must be finite and greater than 0; it is {value}")
         if not (self.region is None or isinstance(self.region, Box) or (isinstance(self.region, str) and self.region)):
             raise OptionError(f"region must be a box or the name of a vertex property; it is {self.region!r}")
-        if isinstance(self.seed, bool) or not isinstance(self.seed, int) or self.seed < 0:
-            raise OptionError(f"seed must be a whole number of 0 or more; it is {self.seed}")
+        check_seed(self.seed)
 
     @classmethod
     def from_dict(cls, values: Mapping[str, Any]) -> "DenoiseOptions":
         """Build from nested plain values; an unknown name raises OptionError."""
         region = values.get("region")
         if isinstance(region, Mapping):
-            region = Box.from_dict(region)
-        try:
-            patches = PatchOptions(**(values.get("patches") or {}))
-            rest = {name: value for name, value in values.items() if name not in ("patches", "region")}
-            return cls(region=region, patches=patches, **rest)
-        except (TypeError, ValueError) as error:
-            raise OptionError(f"options don't fit: {error}") from error
+            values = {**values, "region": Box.from_dict(region)}
+        return built(cls, values, patches=PatchOptions)

@@ -21,6 +21,12 @@ def diagonal(mesh: TriangleMesh) -> float:
     return float(np.linalg.norm(np.ptp(mesh.vertices[mesh.triangles].reshape(-1, 3), axis=0)))
 
 
+def surface_area(mesh: TriangleMesh) -> float:
+    """Area of all triangles, in mesh units squared."""
+    a, b, c = (mesh.vertices[mesh.triangles[:, corner]] for corner in range(3))
+    return float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum()) / 2
+
+
 def longest_side(mesh: TriangleMesh) -> float:
     """Longest side of the bounding box of all vertices that a triangle uses, in mesh units; the paper's unit."""
     if not len(mesh.triangles):

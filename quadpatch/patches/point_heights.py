@@ -12,6 +12,7 @@ K. Sarkar, K. Varanasi, D. Stricker, "Learning Quadrangulated Patches For 3D Sha
 import numpy as np
 from scipy.spatial import cKDTree
 
+from quadpatch.mesh.measures import surface_area
 from quadpatch.mesh.normals import triangle_normals
 from quadpatch.mesh.sampling import sample_surface
 from quadpatch.patches.ray_visibility import LEAST_FACING
@@ -56,9 +57,7 @@ def sample_cloud(
     distance, _ = cKDTree(seeds.origins).query(centroid)
     part = TriangleMesh(mesh.vertices, mesh.triangles[distance <= ball_radius(length) + extent])
     normals = triangle_normals(part.vertices, part.triangles)
-    a, b, c = (part.vertices[part.triangles[:, k]] for k in range(3))
-    area = float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum()) / 2
-    wanted = POINTS_PER_BIN * area * (resolution / length) ** 2
+    wanted = POINTS_PER_BIN * surface_area(part) * (resolution / length) ** 2
     points, triangle = sample_surface(part, int(min(wanted, MOST_POINTS)), rng)
     return points, normals[triangle]
 

@@ -26,6 +26,7 @@ import pynanoinstantmeshes
 from scipy.spatial import cKDTree
 
 from quadpatch.errors import NoQuadsError
+from quadpatch.mesh.measures import surface_area
 from quadpatch.mesh.topology import face_components
 from quadpatch.quads.frames import quad_normals
 from quadpatch.quads.vertex_clustering import cluster_vertices
@@ -73,7 +74,7 @@ def quadrangulate(mesh: TriangleMesh, edge_length: float) -> QuadMesh:
     """
     centre, scale, unit = _to_unit(mesh)
     side = edge_length / scale
-    n_quads = _area(unit) / side**2
+    n_quads = surface_area(unit) / side**2
     thin = cluster_vertices(unit, side / _CELLS_PER_SIDE)
     if n_quads < 1 or len(thin.vertices) < _FEWEST_VERTICES:
         raise NoQuadsError(f"the surface is too small or too thin for quads of side {edge_length:.4g}")
@@ -97,11 +98,6 @@ def _to_unit(mesh: TriangleMesh) -> tuple[FloatArray, float, TriangleMesh]:
     if scale == 0.0:
         raise NoQuadsError("all triangles of the surface lie in one point")
     return centre, scale, TriangleMesh((vertices - centre) / scale, compact.reshape(-1, 3).astype(np.int64))
-
-
-def _area(mesh: TriangleMesh) -> float:
-    a, b, c = (mesh.vertices[mesh.triangles[:, corner]] for corner in range(3))
-    return float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum()) / 2
 
 
 def _first_that_works(mesh: TriangleMesh, counts: list[float]) -> QuadMesh:

@@ -120,7 +120,8 @@ def inpaint_as_paper(
 
 def _scale(mesh: TriangleMesh, selection: Selection, options: RepairOptions, inpainter: Inpainter) -> PatchScale:
     diameters = [hole.diameter for hole in selection.chosen]
-    patches, side = preset_scale(options.patches, longest_side(mesh)), longest_side(mesh)
+    side = longest_side(mesh)
+    patches = preset_scale(options.patches, side)
     scale = paper_scale(diameters, mean_edge_length(mesh), patches, inpainter.resolution)
     share = inpainter.length_share if isinstance(inpainter, HeightsInpainter) else None
     if share is None or patches.length is not None:

@@ -80,7 +80,11 @@ def mean_displacement(normals: FloatArray, seen: Connectivity, patches: Patches,
     # A patch that sees the surface at a slant moves it far for a small error in height.
     facing = np.einsum("ij,ij->i", normals[seen.vertex], patches.frames[seen.patch, 2])
     weight = _window(patches, seen.row, seen.column) * np.maximum(facing, 0.0) ** 2
-    vectors = along_z[:, None] * patches.frames[seen.patch, 2]
+    return averaged(along_z[:, None] * patches.frames[seen.patch, 2], weight, seen, n)
+
+
+def averaged(vectors: FloatArray, weight: FloatArray, seen: Connectivity, n: int) -> Displacement:
+    """Average vectors (c, 3) of pairs of a vertex and a patch over the patches of n vertices, by weights (c,)."""
     safe = np.maximum(np.bincount(seen.vertex, weight, minlength=n), 1e-300)
     mean = np.stack([np.bincount(seen.vertex, weight * vectors[:, k], minlength=n) / safe for k in range(3)], axis=1)
     squared_deviation = ((vectors - mean[seen.vertex]) ** 2).sum(axis=1)

@@ -12,7 +12,7 @@ from quadpatch.mesh.harmonic import extend_harmonically
 from quadpatch.mesh.normals import vertex_normals
 from quadpatch.mesh.topology import directed_edges
 from quadpatch.patches.connectivity import Connectivity, bilinear, vertices_in_balls
-from quadpatch.reconstruction.displacement import Displacement
+from quadpatch.reconstruction.displacement import Displacement, averaged
 from quadpatch.types import FloatArray, IntArray, Patches, Vertices
 
 
@@ -61,12 +61,7 @@ def mean_moves(positions: Vertices, seen: Connectivity, patches: Patches, predic
     # Its place in the plane is where it is already: only its height over the plane is new.
     height = np.einsum("ij,ij->i", positions[seen.vertex] - patches.origins[seen.patch], z)
     moves = (bilinear(predicted, seen) - height)[:, None] * z
-    overlap = np.bincount(seen.vertex, minlength=len(positions))
-    count = np.maximum(overlap, 1)
-    mean = np.stack([np.bincount(seen.vertex, moves[:, k], minlength=len(positions)) / count for k in range(3)], axis=1)
-    squared_deviation = ((moves - mean[seen.vertex]) ** 2).sum(axis=1)
-    deviation = np.sqrt(np.bincount(seen.vertex, squared_deviation, minlength=len(positions)) / count)
-    return Displacement(mean, deviation, overlap)
+    return averaged(moves, np.ones(len(moves)), seen, len(positions))
 
 
 def with_ring_means(filled: FilledMesh, placed: Displacement) -> FloatArray:

@@ -17,10 +17,10 @@ from typing import Any
 
 import numpy as np
 
-from quadpatch.errors import OptionError, StageError
+from quadpatch.errors import StageError
 from quadpatch.inpainters.paper_dictionary import learn_heights
 from quadpatch.mesh.measures import diagonal
-from quadpatch.options import DictionaryOptions, PatchOptions
+from quadpatch.options import DictionaryOptions, PatchOptions, built, check_seed
 from quadpatch.patches.connectivity import Connectivity
 from quadpatch.patches.layout import Sampled
 from quadpatch.reconstruction.coding import PatchCodes, PatchDictionary, code_patches, decoded_heights
@@ -53,19 +53,12 @@ class ReconstructOptions:
     seed: int = 0
 
     def __post_init__(self) -> None:
-        if isinstance(self.seed, bool) or not isinstance(self.seed, int) or self.seed < 0:
-            raise OptionError(f"seed must be a whole number of 0 or more; it is {self.seed}")
+        check_seed(self.seed)
 
     @classmethod
     def from_dict(cls, values: Mapping[str, Any]) -> "ReconstructOptions":
         """Build from nested plain values; an unknown name raises OptionError."""
-        try:
-            patches = PatchOptions(**(values.get("patches") or {}))
-            dictionary = DictionaryOptions(**(values.get("dictionary") or {}))
-            rest = {name: value for name, value in values.items() if name not in ("patches", "dictionary")}
-            return cls(patches, dictionary, **rest)
-        except (TypeError, ValueError) as error:
-            raise OptionError(f"options don't fit: {error}") from error
+        return built(cls, values, patches=PatchOptions, dictionary=DictionaryOptions)
 
 
 @dataclass(frozen=True)

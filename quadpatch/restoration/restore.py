@@ -17,7 +17,7 @@ import numpy as np
 
 from quadpatch.errors import NoQuadsError, OptionError, StageError
 from quadpatch.inpainters.inpainter import Inpainter
-from quadpatch.options import PatchOptions
+from quadpatch.options import PatchOptions, built, check_seed
 from quadpatch.restoration.expected_error import learn_error_curve
 from quadpatch.restoration.hidden_vertices import Trial, hide
 from quadpatch.restoration.least_squares import within_reach
@@ -55,19 +55,14 @@ class RestoreOptions:
     base: Base = "mesh"
 
     def __post_init__(self) -> None:
-        if isinstance(self.seed, bool) or not isinstance(self.seed, int) or self.seed < 0:
-            raise OptionError(f"seed must be a whole number of 0 or more; it is {self.seed}")
+        check_seed(self.seed)
         if self.base not in get_args(Base):
             raise OptionError(f"base must be one of {', '.join(get_args(Base))}; it is {self.base!r}")
 
     @classmethod
     def from_dict(cls, values: Mapping[str, Any]) -> "RestoreOptions":
         """Build from nested plain values; an unknown name raises OptionError."""
-        try:
-            patches = PatchOptions(**(values.get("patches") or {}))
-            return cls(patches, **{name: value for name, value in values.items() if name != "patches"})
-        except (TypeError, ValueError) as error:
-            raise OptionError(f"options don't fit: {error}") from error
+        return built(cls, values, patches=PatchOptions)
 
 
 @dataclass(frozen=True)

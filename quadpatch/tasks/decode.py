@@ -12,7 +12,7 @@ from quadpatch.errors import ModelError, ReadError
 from quadpatch.formats.limits import ReadLimits
 from quadpatch.formats.plain import write_mesh
 from quadpatch.formats.writing import check_suffix
-from quadpatch.report import UNKNOWN_UNIT, json_ready
+from quadpatch.report import UNKNOWN_UNIT, describe_stages, json_ready
 from quadpatch.sparse.dictionary import Dictionary
 from quadpatch.stages import Stages, harmless
 from quadpatch.tasks.encode import load_dictionary
@@ -70,7 +70,7 @@ def decode_file(
         "decoded": {"vertices": len(mesh.vertices), "triangles": len(mesh.triangles)},
         "keeps_connectivity": content.kept is not None,
         "patches": {"count": len(content.walk.polygons), "resolution": 2**content.levels},
-        "stages": [{"name": name, "seconds": round(seconds, 4)} for name, seconds in stages.seconds.items()],
+        "stages": describe_stages(stages),
         "warnings": warnings,
     }
     plain = json.loads(json.dumps(json_ready(report)))

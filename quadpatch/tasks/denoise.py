@@ -1,7 +1,5 @@
 """Denoising from file to file: what the command line and the worker's engine call."""
 
-import hashlib
-import json
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any, cast
@@ -10,20 +8,18 @@ import numpy as np
 
 from quadpatch.denoising.denoise import Denoised, PatchModel, denoise
 from quadpatch.denoising.options import DenoiseOptions
-from quadpatch.errors import EmptyMeshError, OptionError
+from quadpatch.errors import OptionError
 from quadpatch.formats.moving import write_moved
 from quadpatch.formats.output_files import is_stream
 from quadpatch.formats.reading import read_scan
 from quadpatch.formats.scan import Moved, Scan
 from quadpatch.formats.vertex_properties import vertex_mask
 from quadpatch.formats.writing import check_suffix, written_as
-from quadpatch.inpainters.model_file import load_model, shipped_model
-from quadpatch.mesh.measures import diagonal
 from quadpatch.mesh.normals import length
-from quadpatch.mesh.weld import Weld, weld
-from quadpatch.model_choice import SELF, SMOOTH
-from quadpatch.repair import LEAST_DIAGONAL
-from quadpatch.report import UNKNOWN_UNIT, describe_mesh, describe_redundancy, json_ready
+from quadpatch.mesh.weld import Weld
+from quadpatch.model_choice import SELF, SMOOTH, find_model, sha256_of
+from quadpatch.repair import read_surface
+from quadpatch.report import describe_redundancy, describe_task, json_ready
 from quadpatch.stages import Stages, harmless
 from quadpatch.tasks.result import TaskResult
 from quadpatch.types import BoolArray, FloatArray, Progress, TriangleMesh, no_progress
@@ -72,8 +68,8 @@ def denoise_file(
     stages = Stages(harmless(progress))
     with stages.stage("read"):
         patch_model, card = _choose_model(model, reference)
-        scan = read_scan(source)
-        welded = _welded(scan)
+        # Vertices at equal positions are one, or the triangles of an STL would move apart.
+        scan, welded = read_surface(source, 0)
         movable = _movable(scan, welded, options)
     denoised = denoise(welded.mesh, options, patch_model, movable, stages)
     moved = Moved(denoised.vertices[welded.from_file], {SHIFT: denoised.shift[welded.from_file].astype(np.float32)})
@@ -90,30 +86,14 @@ def _choose_model(model: str | Path, reference: Path | None) -> tuple[PatchModel
     if reference is not None:
         if model != SELF:
             raise OptionError(f"a reference takes the place of a model; drop it, or the model {str(model)[:80]}")
-        digest = hashlib.sha256(reference.read_bytes()).hexdigest() if reference.is_file() else None
-        mesh = _welded(read_scan(reference)).mesh
-        return PatchModel("reference", mesh), {"name": "reference", "sha256": digest}
+        mesh = read_surface(reference, 0)[1].mesh  # which knows limits: the bytes are hashed after that
+        return PatchModel("reference", mesh), {"name": "reference", "sha256": sha256_of(reference)}
     if model in (SELF, SMOOTH):
         return PatchModel("self" if model == SELF else "none"), {"name": str(model)}
-    path = Path(model)
-    if not path.is_file():
-        path = shipped_model(str(model))
-    loaded = load_model(path)
+    loaded, facts = find_model(model)
     if loaded.dictionary is None:
-        raise OptionError(f"{path.name} is a network that completes holes; denoising takes a dictionary")
-    facts = {"name": loaded.card.get("name", path.stem), "version": loaded.card.get("version"), "kind": loaded.kind}
-    facts["sha256"] = hashlib.sha256(path.read_bytes()).hexdigest()
+        raise OptionError(f"{loaded.path.name} is a network that completes holes; denoising takes a dictionary")
     return PatchModel("dictionary", None, loaded.dictionary, loaded.recipe == "paper"), facts
-
-
-def _welded(scan: Scan) -> Weld:
-    """Join vertices at equal positions, or the triangles of an STL would move apart."""
-    welded = weld(scan.vertices, scan.triangles)
-    if not len(welded.mesh.triangles):
-        raise EmptyMeshError(f"none of the {len(scan.triangles)} faces has three different corners")
-    if not diagonal(welded.mesh) > LEAST_DIAGONAL:
-        raise EmptyMeshError(f"the mesh is only {diagonal(welded.mesh):.3g} wide; that is no surface in float64")
-    return welded
 
 
 def _movable(scan: Scan, welded: Weld, options: DenoiseOptions) -> BoolArray | None:
@@ -147,14 +127,8 @@ def _report(
     moved = shift[shift > 0]
     patches = None if scale is None else {**asdict(scale), "count": denoised.n_patches}
     return {
-        "schema": 1,
-        "task": "denoise",
-        "source": describe_mesh(scan, welded.mesh),
+        **describe_task("denoise", scan, welded.mesh, card, options, stages),
         "welded": asdict(welded.counts),
-        "length_unit": scan.unit or UNKNOWN_UNIT,
-        "model": card,
-        # Tuples become lists, as they do in the file.
-        "options": json.loads(json.dumps(asdict(options))),
         "noise": denoised.noise,
         "noise_estimated": options.noise is None,
         "max_shift": denoised.max_shift,
@@ -168,7 +142,6 @@ def _report(
         "folds": {"before": folds.n_before, "undone": folds.n_undone, "left": folds.left[:_MOST_FOLDS]},
         "shares": denoised.shares,
         "patches": patches,
-        "stages": [{"name": name, "seconds": round(seconds, 4)} for name, seconds in stages.seconds.items()],
     }
 
 

@@ -1,8 +1,5 @@
 """Encodes a mesh file: mesh in, `.qpz` out, and what was proved of it."""
 
-import hashlib
-import json
-from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -16,15 +13,14 @@ from quadpatch.compression.encode import EncodeOptions, Encoding, encode_mesh
 from quadpatch.compression.proof import deviation, psnr, sample
 from quadpatch.errors import FormatError, OptionError, StageError
 from quadpatch.formats.output_files import is_stream, write_whole
-from quadpatch.formats.reading import read_scan
 from quadpatch.formats.scan import Scan
-from quadpatch.inpainters.model_file import load_model, shipped_model
 from quadpatch.mesh.measures import diagonal
-from quadpatch.mesh.weld import Weld, weld
-from quadpatch.report import UNKNOWN_UNIT, describe_mesh, describe_redundancy, json_ready
+from quadpatch.model_choice import find_model
+from quadpatch.repair import read_surface
+from quadpatch.report import describe_redundancy, describe_task, json_ready
 from quadpatch.sparse.dictionary import Dictionary
 from quadpatch.stages import Stages, failure_of, harmless
-from quadpatch.tasks.measures import check_surface, corrected_patches, entities
+from quadpatch.tasks.measures import corrected_patches, entities
 from quadpatch.tasks.result import TaskResult
 from quadpatch.types import Progress, TriangleMesh, no_progress
 
@@ -77,7 +73,7 @@ def encode_file(
     stages = Stages(harmless(progress))
     choice, card = _dictionary(model)
     with stages.stage("read"):
-        scan, welded = _read(source)
+        scan, welded = read_surface(source)
     original = (scan.vertices, scan.triangles)
     encoding = encode_mesh(welded.mesh, choice, options, stages, original, scan.unit or "")
     with stages.stage("judge"):
@@ -90,14 +86,8 @@ def encode_file(
     measures["bytes_per_vertex"] = len(encoding.data) / len(scan.vertices)
     measures["ratio"] = (12 * len(scan.vertices) + 12 * len(scan.triangles)) / len(encoding.data)
     report = {
-        "schema": 1,
-        "task": "encode",
-        "source": describe_mesh(scan, welded.mesh),
-        "length_unit": scan.unit or UNKNOWN_UNIT,
-        "model": card,
-        "options": json.loads(json.dumps(asdict(options))),
+        **describe_task("encode", scan, welded.mesh, card, options, stages),
         **measures,
-        "stages": [{"name": name, "seconds": round(seconds, 4)} for name, seconds in stages.seconds.items()],
         "warnings": [
             *_attribute_warnings(scan),
             *describe_redundancy(welded.counts),
@@ -129,26 +119,18 @@ def load_dictionary(model: str | Path) -> tuple[Dictionary, DictionaryReference]
     OptionError
         If it is a network.
     """
-    path = Path(model) if Path(model).is_file() else shipped_model(str(model))
-    loaded = load_model(path)
+    loaded, facts = find_model(model)
     if loaded.dictionary is None:
-        raise OptionError(f"{path.name} is a network; meshes are encoded over dictionaries")
+        raise OptionError(f"{loaded.path.name} is a network; meshes are encoded over dictionaries")
     name, version = loaded.card.get("name"), loaded.card.get("version")
-    named = f"{name}@{version}" if name and version and "@" not in str(name) else str(name or path.stem)
-    return loaded.dictionary, DictionaryReference(MODEL, named[:200], hashlib.sha256(path.read_bytes()).digest())
+    named = f"{name}@{version}" if name and version and "@" not in str(name) else str(name or loaded.path.stem)
+    return loaded.dictionary, DictionaryReference(MODEL, named[:200], bytes.fromhex(facts["sha256"]))
 
 
 def _known(dictionary: Dictionary | None) -> Dictionary:
     if dictionary is None:
         raise StageError("the file names a model that it was not encoded with")
     return dictionary
-
-
-def _read(source: Path) -> tuple[Scan, Weld]:
-    scan = read_scan(source)
-    welded = weld(scan.vertices, scan.triangles, "auto")
-    check_surface(scan, welded.mesh)
-    return scan, welded
 
 
 def _proved(

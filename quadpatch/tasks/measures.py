@@ -9,21 +9,7 @@ import numpy as np
 
 from quadpatch.compression.content import QpzContent
 from quadpatch.compression.subdivision import subdivide
-from quadpatch.errors import EmptyMeshError
 from quadpatch.formats.scan import Scan
-from quadpatch.mesh.measures import diagonal
-from quadpatch.types import TriangleMesh
-
-# Areas and their squares vanish in float64 for a mesh smaller than this, in mesh units.
-LEAST_DIAGONAL = 1e-60
-
-
-def check_surface(scan: Scan, mesh: TriangleMesh) -> None:
-    """Raise EmptyMeshError where no triangle is left, or the mesh is no surface in float64."""
-    if not len(mesh.triangles):
-        raise EmptyMeshError(f"none of the {len(scan.triangles)} faces has three different corners")
-    if not diagonal(mesh) > LEAST_DIAGONAL:
-        raise EmptyMeshError(f"the mesh is only {diagonal(mesh):.3g} wide; that is no surface in float64")
 
 
 def corrected_patches(content: QpzContent) -> int:

@@ -1,7 +1,5 @@
 """Rebuilds a mesh file from the codes of its patches: file in, file out."""
 
-import json
-from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -9,20 +7,16 @@ import numpy as np
 
 from quadpatch.errors import OptionError
 from quadpatch.formats.moving import write_moved
-from quadpatch.formats.reading import read_scan
 from quadpatch.formats.scan import Moved
 from quadpatch.formats.writing import check_suffix
-from quadpatch.inpainters.model_file import load_model, shipped_model
-from quadpatch.inpainters.paper_dictionary import HeightsInpainter
-from quadpatch.mesh.weld import weld
-from quadpatch.model_choice import SELF, choose_model
-from quadpatch.options import DictionaryOptions, RepairOptions
+from quadpatch.model_choice import SELF, find_model, length_share
+from quadpatch.options import DictionaryOptions
 from quadpatch.patches.normalisation import HEIGHTS, NORMALISATION
 from quadpatch.reconstruction.coding import PatchDictionary
 from quadpatch.reconstruction.whole_surface import Reconstruction, ReconstructOptions, reconstruct
-from quadpatch.report import UNKNOWN_UNIT, describe_mesh, describe_redundancy, json_ready
+from quadpatch.repair import read_surface
+from quadpatch.report import describe_redundancy, describe_task, json_ready
 from quadpatch.stages import Stages, harmless
-from quadpatch.tasks.measures import check_surface
 from quadpatch.tasks.result import TaskResult
 from quadpatch.types import Progress, TriangleMesh, no_progress
 
@@ -66,9 +60,7 @@ def reconstruct_file(
     stages = Stages(harmless(progress))
     dictionary, card = _dictionary(model, options)
     with stages.stage("read"):
-        scan = read_scan(source)
-        welded = weld(scan.vertices, scan.triangles)
-        check_surface(scan, welded.mesh)
+        scan, welded = read_surface(source, 0)
     result = reconstruct(welded.mesh, dictionary, options, stages)
     moved = Moved(
         np.where(result.seen[welded.from_file][:, None], result.vertices[welded.from_file], scan.vertices),
@@ -80,14 +72,8 @@ def reconstruct_file(
     with stages.stage("write"):
         losses = write_moved(output, scan, moved)
     report = {
-        "schema": 1,
-        "task": "reconstruct",
-        "source": describe_mesh(scan, welded.mesh),
-        "length_unit": scan.unit or UNKNOWN_UNIT,
-        "model": card,
-        "options": json.loads(json.dumps(asdict(options))),
+        **describe_task("reconstruct", scan, welded.mesh, card, options, stages),
         **_measures(result),
-        "stages": [{"name": name, "seconds": round(seconds, 4)} for name, seconds in stages.seconds.items()],
         "warnings": [*describe_redundancy(welded.counts), *losses, *_unseen(result)],
     }
     after = TriangleMesh(result.vertices, welded.mesh.triangles)
@@ -98,15 +84,14 @@ def _dictionary(model: str | Path, options: ReconstructOptions) -> tuple[PatchDi
     """Turn a model's name or path into its dictionary, and what the report says of it."""
     if model == SELF:
         return None, {"name": SELF}
-    path = Path(model) if Path(model).is_file() else shipped_model(str(model))
-    loaded = load_model(path)
+    loaded, facts = find_model(model)
     if loaded.dictionary is None:
-        raise OptionError(f"{path.name} is a network; meshes are rebuilt from dictionaries")
+        raise OptionError(f"{loaded.path.name} is a network; meshes are rebuilt from dictionaries")
     if options.dictionary != DictionaryOptions():
-        raise OptionError(f"dictionary.atoms and dictionary.nonzero go with the model self; {path.name} has its own")
-    inpainter, facts = choose_model(path, RepairOptions(recipe=loaded.recipe), no_progress, None)
-    if isinstance(inpainter, HeightsInpainter):
-        return PatchDictionary(loaded.dictionary, HEIGHTS, inpainter.length_share), facts
+        name = loaded.path.name
+        raise OptionError(f"dictionary.atoms and dictionary.nonzero go with the model self; {name} has its own")
+    if loaded.recipe == "paper":
+        return PatchDictionary(loaded.dictionary, HEIGHTS, length_share(loaded)), facts
     return PatchDictionary(loaded.dictionary, NORMALISATION), facts
 
 

@@ -1,7 +1,5 @@
 """Restores the missing vertices of a mesh file: file in, file out."""
 
-import json
-from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +14,7 @@ from quadpatch.formats.writing import check_suffix
 from quadpatch.mesh.weld import Weld, weld
 from quadpatch.model_choice import SELF, SELF_NETWORK, SELF_NETWORK_KIND, choose_model
 from quadpatch.options import RepairOptions
-from quadpatch.report import UNKNOWN_UNIT, describe_mesh, json_ready
+from quadpatch.report import describe_task, json_ready
 from quadpatch.restoration.restore import Restoration, RestoreOptions, restore
 from quadpatch.stages import Stages, harmless
 from quadpatch.tasks.missing_vertices import NAN, missing_vertices
@@ -92,15 +90,9 @@ def restore_file(  # noqa: PLR0913, PLR0917  the same arguments as every task's
     if left:
         warnings.append(f"{left:,} missing vertices are connected to no measured one: they are left as they were")
     report = {
-        "schema": 1,
-        "task": "restore",
-        "source": describe_mesh(scan, after),
-        "length_unit": scan.unit or UNKNOWN_UNIT,
-        "model": card,
-        "options": json.loads(json.dumps(asdict(options))),
+        **describe_task("restore", scan, after, card, options, stages),
         "vertices": {"missing": int(is_missing.sum()), "restored": int(restored.sum()), "left": left},
         **_measures(result),
-        "stages": [{"name": name, "seconds": round(seconds, 4)} for name, seconds in stages.seconds.items()],
         "warnings": warnings,
     }
     changed = np.asarray(result.restored[after.triangles].any(axis=1))
