@@ -13,8 +13,8 @@ from jobkit.database.clock import utc_now
 from jobkit.database.session import Database
 from jobkit.database.tables import AliasRow, DeletedModelRow, JobRow, ModelRow
 from jobkit.errors import ModelNotFoundError, RowConflictError
+from jobkit.models.default_aliases import DEFAULT_KINDS
 from jobkit.models.errors import AliasInUseError, ModelInUseError
-from jobkit.models.registry import DEFAULT_KINDS
 from jobkit.models.rows import to_version, version_row
 from jobkit.schema import JobState, ModelVersion
 

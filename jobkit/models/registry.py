@@ -18,23 +18,12 @@ from jobkit.database.readable_rows import readable
 from jobkit.database.session import Database
 from jobkit.database.tables import AliasRow, DeletedModelRow, ModelRow
 from jobkit.errors import ModelKindError, NameTakenError, RowConflictError
+from jobkit.models.default_aliases import DEFAULT_KINDS
 from jobkit.models.errors import ModelDeprecatedError
 from jobkit.models.header import artifact_format, dictionary_card, to_wire_card
 from jobkit.models.network_header import check_network, read_network_card
 from jobkit.models.rows import check_proven, resolved_row, row_of_bytes, to_alias, to_model, to_version, version_row
-from jobkit.schema import (
-    DEFAULT_MODEL,
-    DEFAULT_NETWORK,
-    DEFAULT_PAPER_MODEL,
-    DEFAULT_PAPER_NETWORK,
-    SELF,
-    Alias,
-    Model,
-    ModelKind,
-    ModelList,
-    ModelState,
-    ModelVersion,
-)
+from jobkit.schema import SELF, Alias, Model, ModelKind, ModelList, ModelState, ModelVersion
 from jobkit.storage.base import CHUNK_BYTES, ObjectStore, StoredObject
 from jobkit.storage.removals import assure
 from shared_rules.dictionary_file import Card
@@ -45,13 +34,6 @@ _MOST_CONFLICTS = 20
 # Of one model: when it is asked for, and in the list of all; a card has up to 64 KiB.
 MOST_VERSIONS = 100
 MOST_LISTED_VERSIONS = 20
-# The models of specs that name none.
-DEFAULT_KINDS: dict[str, ModelKind] = {
-    DEFAULT_MODEL: "dictionary",
-    DEFAULT_NETWORK: "autoencoder",
-    DEFAULT_PAPER_MODEL: "dictionary",
-    DEFAULT_PAPER_NETWORK: "autoencoder",
-}
 RESERVED_NAMES = frozenset({SELF, "smooth", "none", "latest"})
 
 

@@ -7,7 +7,8 @@ from pathlib import Path
 
 from jobkit.errors import ModelNotFoundError, NameTakenError
 from jobkit.ids import MODEL_NAME
-from jobkit.models.registry import DEFAULT_KINDS, Registry
+from jobkit.models.default_aliases import DEFAULT_KINDS
+from jobkit.models.registry import Registry
 from jobkit.models.resolution import learned_for
 from jobkit.schema import DEFAULT_PAPER_MODEL, DEFAULT_PAPER_NETWORK, ModelVersion
 
