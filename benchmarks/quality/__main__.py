@@ -25,6 +25,7 @@ from benchmarks.quality.network_options import PROTOCOLS, Budget, NetworkOptions
 from benchmarks.quality.own_meshes import own_shapes
 from benchmarks.quality.results import ALL_KINDS, OF_THE_METHOD, Results
 from benchmarks.quality.session import EXPERIMENTS, REPAIR, Session
+from benchmarks.quality.smoothing import kept_smoothing
 from quadpatch.errors import QuadpatchError
 
 MODELS = ["smooth", "self", "general-dictionary"]
@@ -38,8 +39,9 @@ def main() -> None:
     chosen = arguments.experiment or [REPAIR]
     try:
         session = _open(arguments)
-        for name in EXPERIMENTS if ALL in chosen else dict.fromkeys(chosen):
-            EXPERIMENTS[name](session)
+        with kept_smoothing(arguments.output.parent / "smoothed"):
+            for name in EXPERIMENTS if ALL in chosen else dict.fromkeys(chosen):
+                EXPERIMENTS[name](session)
     except (BenchError, QuadpatchError) as error:
         sys.exit(f"error: {error}")
 

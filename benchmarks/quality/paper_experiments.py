@@ -18,9 +18,10 @@ from benchmarks.quality.plots import curve_plot, ratio_plot
 from benchmarks.quality.results import Results
 from benchmarks.quality.tables import Table, figure, geometric_mean, ratio, scientific
 
-ATOMS = (10, 25, 50, 100, 200, 500)
+ATOMS = (5, 10, 25, 50, 100, 200, 500)
 # Diameter of the holes over side of the patches.
-HOLE_TO_PATCH = (0.2, 0.3, 0.4, 0.55, 0.7, 0.9)
+# At 0.8 patches have the paper's length, 0.062, for holes of radius 0.025.
+HOLE_TO_PATCH = (0.2, 0.3, 0.4, 0.55, 0.8, 0.9)
 N_SHAPES = (1, 2, 4, 8)
 # Shapes to measure on while others are learned from, unless others are named: smooth, patterned, detailed.
 HELD_OUT = ("igea", "relief_gyroid", "boot_tread")
