@@ -5,14 +5,15 @@ again for every dictionary, network and patch length.
 """
 
 import hashlib
+import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from unittest.mock import patch
 
 import numpy as np
 
 from quadpatch.mesh.meshlab import two_step_smooth
-from quadpatch.patches import paper_layout
 from quadpatch.types import TriangleMesh
 
 
@@ -25,14 +26,11 @@ def kept_smoothing(folder: Path) -> Iterator[None]:
         path = folder / f"{hashlib.sha256(data).hexdigest()}_{n_iterations}.npy"
         if not path.is_file():
             folder.mkdir(parents=True, exist_ok=True)
-            partial = path.with_suffix(".partial.npy")
+            # Another process may smooth the same mesh.
+            partial = path.with_suffix(f".{os.getpid()}.npy")
             np.save(partial, two_step_smooth(mesh, n_iterations).vertices)
             partial.replace(path)
         return TriangleMesh(np.load(path), mesh.triangles)
 
-    before = paper_layout.two_step_smooth
-    paper_layout.two_step_smooth = smooth
-    try:
+    with patch("quadpatch.patches.paper_layout.two_step_smooth", smooth):
         yield
-    finally:
-        paper_layout.two_step_smooth = before
