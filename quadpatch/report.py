@@ -13,7 +13,7 @@ import numpy as np
 
 from quadpatch.formats.scan import Scan
 from quadpatch.mesh.holes import Hole
-from quadpatch.mesh.measures import mean_edge_length
+from quadpatch.mesh.measures import bounding_box, mean_edge_length
 from quadpatch.mesh.weld import Weld, WeldCounts
 from quadpatch.options import RepairOptions
 from quadpatch.recipes.result import HoleResult, Repair
@@ -30,12 +30,12 @@ DOUBLED_SHARE = 0.5
 
 def describe_mesh(scan: Scan, mesh: TriangleMesh) -> dict[str, Any]:
     """Facts of a mesh: counts as in the file, box and mean edge length in its unit."""
-    used = mesh.vertices[mesh.triangles].reshape(-1, 3)
+    low, high = bounding_box(mesh)
     return {
         "format": scan.format,
         "vertices": len(scan.vertices),
         "triangles": len(scan.triangles),
-        "bounding_box": {"min": used.min(axis=0).tolist(), "max": used.max(axis=0).tolist()},
+        "bounding_box": {"min": low.tolist(), "max": high.tolist()},
         "mean_edge_length": mean_edge_length(mesh),
     }
 

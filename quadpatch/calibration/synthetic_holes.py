@@ -5,9 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
-from quadpatch.mesh.boundary import boundary_edge_mask, boundary_loops
+from quadpatch.mesh.boundary import boundary_loops, boundary_vertices
 from quadpatch.mesh.normals import vertex_normals
-from quadpatch.mesh.topology import directed_edges
 from quadpatch.types import BoolArray, IntArray, TriangleMesh, Triangles
 
 # The rim of a cut lies so much outside the disk of vertices that it takes, in mean edge lengths.
@@ -97,7 +96,7 @@ def _far_from_boundary(mesh: TriangleMesh, distance: float) -> BoolArray:
     """Vertices (n,) that a triangle uses and that keep a distance from every boundary edge."""
     far = np.zeros(len(mesh.vertices), bool)
     far[mesh.triangles] = True
-    rim = _boundary_vertices(mesh)
+    rim = boundary_vertices(mesh.triangles)
     if len(rim):
         nearest, _ = cKDTree(mesh.vertices[rim]).query(mesh.vertices, distance_upper_bound=distance)
         far &= nearest > distance
@@ -107,11 +106,7 @@ def _far_from_boundary(mesh: TriangleMesh, distance: float) -> BoolArray:
 def new_loops(mesh: TriangleMesh, remaining: Triangles) -> list[IntArray]:
     """Find the manifold loops of the remaining triangles (k, 3) of a mesh that touch no boundary of the mesh itself."""
     old = np.zeros(len(mesh.vertices), bool)
-    old[_boundary_vertices(mesh)] = True
+    old[boundary_vertices(mesh.triangles)] = True
     boundary = boundary_loops(remaining)
     pairs = zip(boundary.loops, boundary.is_manifold, strict=True)
     return [loop for loop, is_manifold in pairs if is_manifold and not old[loop].any()]
-
-
-def _boundary_vertices(mesh: TriangleMesh) -> IntArray:
-    return np.unique(directed_edges(mesh.triangles)[boundary_edge_mask(mesh.triangles)])

@@ -26,9 +26,8 @@ from quadpatch.compression.heights import Grid
 from quadpatch.compression.lattice import to_lattice
 from quadpatch.compression.proof import Samples, deviation, sample
 from quadpatch.compression.sparse_codes import decoded_heights
-from quadpatch.mesh.boundary import boundary_edge_mask
+from quadpatch.mesh.boundary import boundary_edges
 from quadpatch.mesh.distance import distance_to_mesh
-from quadpatch.mesh.topology import directed_edges
 from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Vertices
 
 # Heights that are off by more than this part of the promised error are corrected at once; others where samples ask.
@@ -192,7 +191,7 @@ def _moves(content: QpzContent, atoms: FloatArray, target: Target, border: Verti
 
 def _border_points(surface: TriangleMesh, spacing: float) -> Vertices:
     """Points along the border of a surface."""
-    edges = directed_edges(surface.triangles)[boundary_edge_mask(surface.triangles)]
+    edges = boundary_edges(surface.triangles)
     start, end = surface.vertices[edges[:, 0]], surface.vertices[edges[:, 1]]
     if not len(start):
         return np.zeros((0, 3))

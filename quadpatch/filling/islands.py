@@ -11,7 +11,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from quadpatch.mesh.holes import Hole
-from quadpatch.mesh.normals import length, vertex_normals
+from quadpatch.mesh.normals import length, normals_at
 from quadpatch.mesh.pieces import find_pieces
 from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Vertices
 
@@ -126,11 +126,13 @@ class _Sides:
 
     @classmethod
     def of(cls, mesh: TriangleMesh, holes: list[Hole], centres: FloatArray) -> "_Sides":
-        normals = vertex_normals(mesh.vertices, mesh.triangles)
+        counts = np.array([len(hole.loop) for hole in holes])
+        at_rims = normals_at(mesh.vertices, mesh.triangles, np.concatenate([hole.loop for hole in holes]))
+        means = np.add.reduceat(at_rims, np.cumsum(counts) - counts, axis=0) / counts[:, np.newaxis]
         spokes = [mesh.vertices[hole.loop] - centre for hole, centre in zip(holes, centres, strict=True)]
         return cls(
             find_pieces(mesh, []).of_vertex[[hole.loop[0] for hole in holes]],
-            np.array([normals[hole.loop].mean(axis=0) for hole in holes]),
+            means,
             np.array([np.cross(spoke, np.roll(spoke, -1, axis=0)).sum(axis=0) for spoke in spokes]),
         )
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from quadpatch.mesh.edge_groups import EdgeSurvey, survey_edges
 from quadpatch.mesh.topology import directed_edges, edge_keys
 from quadpatch.types import BoolArray, IntArray, Triangles
 
@@ -29,7 +30,7 @@ class Boundary:
     is_manifold: list[bool]
 
 
-def boundary_loops(triangles: Triangles) -> Boundary:
+def boundary_loops(triangles: Triangles, survey: EdgeSurvey | None = None) -> Boundary:
     """Find the simple boundary loops of a mesh.
 
     A walk that comes back to a vertex (two holes that share a corner) is cut there, so every loop is simple. Where
@@ -40,13 +41,16 @@ def boundary_loops(triangles: Triangles) -> Boundary:
     ----------
     triangles : (n_triangles, 3) int64
         Vertex indices, counter-clockwise seen from outside.
+    survey : EdgeSurvey, optional
+        Of these triangles, where that was made before.
 
     Returns
     -------
     Boundary
         Loops in the order of their lowest vertex index, each starting there. Empty for a closed mesh.
     """
-    edges, is_bad = _boundary_edges(triangles)
+    survey = survey or survey_edges(triangles, int(triangles.max(initial=-1)) + 1)
+    edges, is_bad = _boundary_edges(triangles, survey)
     walks, open_walks = _walk(edges, _exits(triangles, edges))
     loops = [(loop, True) for walk in walks for loop in _simple_loops(walk)]
     # A chain that can't be closed in the direction of its faces: the faces around it disagree.
@@ -56,34 +60,36 @@ def boundary_loops(triangles: Triangles) -> Boundary:
     return Boundary([loop for loop, _ in loops], [good for _, good in loops])
 
 
-def boundary_edge_mask(triangles: Triangles) -> BoolArray:
-    """Which of the `directed_edges` have exactly one face, (3 n_triangles,) bool."""
-    single: BoolArray = _edge_counts(triangles) == 1
-    return single
+def boundary_edges(triangles: Triangles) -> IntArray:
+    """Find the directed edges that have exactly one face, (b, 2) int64, in the order of `directed_edges`."""
+    return _boundary_edges(triangles, survey_edges(triangles, int(triangles.max(initial=-1)) + 1))[0]
 
 
-def _edge_counts(triangles: Triangles) -> IntArray:
-    edges = directed_edges(triangles)
-    keys = edge_keys(edges, int(triangles.max(initial=0)) + 1)
-    order = np.argsort(keys)
-    ranked = keys[order]
-    first = np.concatenate([[True], ranked[1:] != ranked[:-1]]) if len(keys) else np.zeros(0, bool)
-    counts_of_unique = np.diff(np.concatenate([np.flatnonzero(first), [len(keys)]]))
-    counts = np.zeros(len(keys), np.int64)
-    counts[order] = np.repeat(counts_of_unique, counts_of_unique)
-    return counts
+def boundary_vertices(triangles: Triangles) -> IntArray:
+    """Find the vertices of edges that have exactly one face, (n,) int64, ascending."""
+    return np.flatnonzero(survey_edges(triangles, int(triangles.max(initial=-1)) + 1).on_boundary)
 
 
-def _boundary_edges(triangles: Triangles) -> tuple[IntArray, BoolArray]:
-    """Directed boundary edges (b, 2), and of every vertex whether faces overlap or disagree around it."""
-    edges = directed_edges(triangles)
-    counts = _edge_counts(triangles)
-    boundary, crowded = edges[counts == 1], edges[counts > 2]
-    n_vertices = int(triangles.max(initial=-1)) + 1
+def _boundary_edges(triangles: Triangles, survey: EdgeSurvey) -> tuple[IntArray, BoolArray]:
+    """Directed boundary edges (b, 2), and of every vertex whether faces overlap or disagree around it.
+
+    Only edges between vertices that the survey marks are sorted.
+    """
+    n_vertices = len(survey.on_boundary)
+    marked = survey.on_boundary | survey.on_crowded
+    near = triangles[_with_an_edge(triangles, marked)]
+    edges = directed_edges(near)
+    edges = edges[marked[edges].all(axis=1)]
+    _, edge, n_faces = np.unique(edge_keys(edges, max(n_vertices, 1)), return_inverse=True, return_counts=True)
+    boundary = edges[n_faces[edge] == 1]
     arrivals, departures = (np.bincount(boundary[:, k], minlength=n_vertices) for k in (1, 0))
-    is_bad: BoolArray = arrivals != departures
-    is_bad[crowded] = True
-    return boundary, is_bad
+    return boundary, np.asarray((arrivals != departures) | survey.on_crowded)
+
+
+def _with_an_edge(triangles: Triangles, marked: BoolArray) -> BoolArray:
+    """Which triangles have at least two marked corners, (n_triangles,) bool."""
+    a, b, c = (marked[triangles[:, corner]] for corner in range(3))
+    return np.asarray((a & b) | (b & c) | (c & a))
 
 
 def _exits(triangles: Triangles, edges: IntArray) -> dict[tuple[int, int], int]:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from quadpatch.mesh.boundary import boundary_loops
+from quadpatch.mesh.edge_groups import EdgeSurvey
 from quadpatch.mesh.hole_kinds import hole_kinds
 from quadpatch.mesh.loop_shapes import LoopShapes, measure_loops, perimeter
 from quadpatch.mesh.normals import unit
@@ -75,15 +76,21 @@ class Hole:
         return len(self.loop)
 
 
-def find_holes(mesh: TriangleMesh) -> list[Hole]:
+def find_holes(mesh: TriangleMesh, survey: EdgeSurvey | None = None) -> list[Hole]:
     """Find and measure every boundary loop.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+    survey : EdgeSurvey, optional
+        Of the mesh, where that was made before.
 
     Returns
     -------
     list of Hole
         Widest first; equal ones by their perimeter, then in the order of their first vertex. Ids count up from 0.
     """
-    boundary = boundary_loops(mesh.triangles)
+    boundary = boundary_loops(mesh.triangles, survey)
     if not boundary.loops:
         return []
     lengths = [perimeter(mesh.vertices[loop]) for loop in boundary.loops]

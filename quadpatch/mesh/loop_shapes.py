@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from quadpatch.mesh.loop_diameter import loop_diameter
-from quadpatch.mesh.normals import cross, vertex_normals
+from quadpatch.mesh.normals import cross, normals_at
 from quadpatch.mesh.rims import Rims
 from quadpatch.types import FloatArray, IntArray, TriangleMesh, Vertices
 
@@ -72,7 +72,7 @@ def measure_loops(mesh: TriangleMesh, rims: Rims, loops: list[IntArray], perimet
     reach = 2 * np.maximum.reduceat(np.linalg.norm(centred, axis=1), rims.starts[:-1])
     planarity = np.where(reach > 0, away / np.maximum(reach, 1e-300), 0.0)
     diameters = np.array([loop_diameter(rims.points[rims.slice_of(i)]) for i in range(rims.n_loops)])
-    normals = vertex_normals(mesh.vertices, mesh.triangles)[np.concatenate(loops)]
+    normals = normals_at(mesh.vertices, mesh.triangles, np.concatenate(loops))
     rim_normals = rims.sums(normals) / counts
     return LoopShapes(centres, plane_normals, planarity, diameters, perimeters, vector_areas, rim_normals)
 

@@ -1,24 +1,65 @@
 """Lengths of a mesh."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
-from quadpatch.mesh.topology import directed_edges
-from quadpatch.types import TriangleMesh
+from quadpatch.types import BoolArray, FloatArray, TriangleMesh, Triangles
+
+# Triangles that are looked at together: what is made of them fits into the processor's cache, nearly.
+_CHUNK = 1 << 16
+# Edges longer than so many mean ones are long.
+LONG_EDGE = 8.0
+
+
+@dataclass(frozen=True)
+class EdgeStatistics:
+    """Mean and longest edge of a mesh, in mesh units; an edge counts once for each of its triangles."""
+
+    mean: float
+    longest: float
+
+
+def edge_statistics(mesh: TriangleMesh) -> EdgeStatistics:
+    """Measure all edges in one pass; 0 without triangles."""
+    if not len(mesh.triangles):
+        return EdgeStatistics(0.0, 0.0)
+    total = longest = 0.0
+    for at in range(0, len(mesh.triangles), _CHUNK):
+        corners = [mesh.vertices[mesh.triangles[at : at + _CHUNK, corner]] for corner in range(3)]
+        for start, end in ((0, 1), (1, 2), (2, 0)):
+            edges = corners[end] - corners[start]
+            lengths = np.sqrt(np.einsum("ij,ij->i", edges, edges))
+            total += float(lengths.sum())
+            longest = max(longest, float(lengths.max()))
+    return EdgeStatistics(total / (3 * len(mesh.triangles)), longest)
 
 
 def mean_edge_length(mesh: TriangleMesh) -> float:
     """Mean edge length, in mesh units; an edge counts once for each of its triangles. 0 without triangles."""
-    if not len(mesh.triangles):
-        return 0.0
-    edges = directed_edges(mesh.triangles)
-    return float(np.linalg.norm(mesh.vertices[edges[:, 0]] - mesh.vertices[edges[:, 1]], axis=1).mean())
+    return edge_statistics(mesh).mean
+
+
+def used_vertices(triangles: Triangles, n_vertices: int) -> BoolArray:
+    """Which vertices (n_vertices,) a triangle uses."""
+    used = np.zeros(n_vertices, bool)
+    used[triangles.ravel()] = True
+    return used
+
+
+def bounding_box(mesh: TriangleMesh) -> tuple[FloatArray, FloatArray]:
+    """Lowest and highest corner (3,) of the box of all vertices that a triangle uses; there is a triangle."""
+    used = used_vertices(mesh.triangles, len(mesh.vertices))
+    points = mesh.vertices if used.all() else mesh.vertices[used]
+    return points.min(axis=0), points.max(axis=0)
 
 
 def diagonal(mesh: TriangleMesh) -> float:
     """Diagonal of the bounding box of all vertices that a triangle uses, in mesh units."""
     if not len(mesh.triangles):
         return 0.0
-    return float(np.linalg.norm(np.ptp(mesh.vertices[mesh.triangles].reshape(-1, 3), axis=0)))
+    low, high = bounding_box(mesh)
+    return float(np.linalg.norm(high - low))
 
 
 def surface_area(mesh: TriangleMesh) -> float:
@@ -31,4 +72,5 @@ def longest_side(mesh: TriangleMesh) -> float:
     """Longest side of the bounding box of all vertices that a triangle uses, in mesh units; the paper's unit."""
     if not len(mesh.triangles):
         return 0.0
-    return float(np.ptp(mesh.vertices[mesh.triangles].reshape(-1, 3), axis=0).max())
+    low, high = bounding_box(mesh)
+    return float((high - low).max())

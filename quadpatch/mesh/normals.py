@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from quadpatch.types import FloatArray, Triangles, Vertices
+from quadpatch.types import FloatArray, IntArray, Triangles, Vertices
 
 _TINY = 1e-300
 
@@ -19,6 +19,20 @@ def vertex_normals(vertices: Vertices, triangles: Triangles) -> FloatArray:
     return unit(
         np.stack([np.bincount(corners, np.repeat(vectors[:, k], 3), minlength=len(vertices)) for k in range(3)], axis=1)
     )
+
+
+def normals_at(vertices: Vertices, triangles: Triangles, wanted: IntArray) -> FloatArray:
+    """Average the normals around some vertices (k,), as `vertex_normals` does for all: (k, 3), unit length or zero."""
+    is_wanted = np.zeros(len(vertices), bool)
+    is_wanted[wanted] = True
+    touched = is_wanted[triangles[:, 0]] | is_wanted[triangles[:, 1]] | is_wanted[triangles[:, 2]]
+    used, local = np.unique(triangles[touched], return_inverse=True)
+    normals = vertex_normals(vertices[used], local.reshape(-1, 3))
+    position = np.searchsorted(used, wanted).clip(max=max(len(used) - 1, 0))
+    found = np.zeros((len(wanted), 3))
+    is_used = used[position] == wanted if len(used) else np.zeros(len(wanted), bool)
+    found[is_used] = normals[position[is_used]]
+    return found
 
 
 def cross(a: FloatArray, b: FloatArray) -> FloatArray:

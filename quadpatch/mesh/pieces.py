@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from quadpatch.mesh.topology import components
-from quadpatch.types import FloatArray, IntArray, TriangleMesh
+from quadpatch.types import FloatArray, IntArray, TriangleMesh, Triangles
 
 
 @dataclass(frozen=True)
@@ -38,11 +38,38 @@ class Pieces:
 
 def find_pieces(mesh: TriangleMesh, loops: list[IntArray]) -> Pieces:
     """Find the connected pieces of a mesh, and those of some non-empty loops of vertices."""
-    n, triangles = len(mesh.vertices), mesh.triangles
-    piece = components(np.stack([triangles[:, :2].ravel(), triangles[:, 1:].ravel()], axis=1), n)
+    piece = _pieces_of_vertices(mesh.triangles, len(mesh.vertices))
     count = int(piece.max(initial=-1)) + 1
     low, high = np.full((count, 3), np.inf), np.full((count, 3), -np.inf)
-    np.minimum.at(low, piece, mesh.vertices)
-    np.maximum.at(high, piece, mesh.vertices)
+    # Neighbours in the file are neighbours in a piece, mostly: each such run is one step.
+    starts = np.flatnonzero(np.diff(piece, prepend=-1))
+    if len(starts):
+        np.minimum.at(low, piece[starts], np.minimum.reduceat(mesh.vertices, starts, axis=0))
+        np.maximum.at(high, piece[starts], np.maximum.reduceat(mesh.vertices, starts, axis=0))
     of_loop = piece[np.array([loop[0] for loop in loops], np.int64)]
     return Pieces(piece, of_loop, np.linalg.norm(high - low, axis=1))
+
+
+def _pieces_of_vertices(triangles: Triangles, n_vertices: int) -> IntArray:
+    """Find the piece of each vertex, (n_vertices,) int64, counted from 0.
+
+    Scanners write row by row: most vertices have an edge to the next one. Such runs are joined first, which leaves
+    little to search in.
+    """
+    has_edge_to_next = np.zeros(n_vertices, bool)
+    for k in range(3):
+        start, end = triangles[:, k], triangles[:, k - 1]
+        low = np.minimum(start, end)[np.abs(start - end) == 1]
+        has_edge_to_next[low] = True
+    run = np.zeros(n_vertices, np.int64)
+    np.cumsum(~has_edge_to_next[:-1], out=run[1:])
+    n_runs = int(run[-1]) + 1 if n_vertices else 0
+    links = [_links(run[triangles[:, k]], run[triangles[:, k + 1]]) for k in range(2)]
+    return np.asarray(components(np.concatenate(links), n_runs)[run])
+
+
+def _links(one: IntArray, other: IntArray) -> IntArray:
+    """Pairs (k, 2) of runs that differ, without most of their repetitions."""
+    wanted = one != other
+    wanted[1:] &= (one[1:] != one[:-1]) | (other[1:] != other[:-1])
+    return np.stack([one[wanted], other[wanted]], axis=1)

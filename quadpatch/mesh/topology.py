@@ -20,7 +20,12 @@ def edge_keys(edges: IntArray, n_vertices: int) -> IntArray:
 
 def components(links: IntArray, n: int) -> IntArray:
     """Find the connected component of each of n things that some links (k, 2) join, (n,) int64, counted from 0."""
-    graph = coo_array((np.ones(len(links), bool), (links[:, 0], links[:, 1])), shape=(n, n))
+    if not len(links):
+        return np.arange(n, dtype=np.int64)
+    # Short integers, where they do: scipy would look for the largest one and copy.
+    index = np.int32 if n <= np.iinfo(np.int32).max else np.int64
+    start, end = links[:, 0].astype(index), links[:, 1].astype(index)
+    graph = coo_array((np.ones(len(links), np.int8), (start, end)), shape=(n, n))
     return np.asarray(connected_components(graph, directed=False)[1], np.int64)
 
 

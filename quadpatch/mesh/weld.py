@@ -11,6 +11,7 @@ back: holes are found, measured and filled on the surface that remains. The file
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from quadpatch.mesh.duplicate_faces import repeated_triangles
 from quadpatch.mesh.edge_groups import EdgeSurvey, survey_edges
@@ -65,6 +66,8 @@ class Weld:
     is_flipped : (n_triangles,) bool
         Triangles of `mesh` whose direction is not that of the file.
     counts : WeldCounts
+    survey : EdgeSurvey or None
+        Of `mesh`; None where it was changed after its edges were looked at.
     """
 
     mesh: TriangleMesh
@@ -73,6 +76,7 @@ class Weld:
     ignored_triangles: Triangles
     is_flipped: BoolArray
     counts: WeldCounts
+    survey: EdgeSurvey | None = None
 
 
 def weld(scan_vertices: Vertices, scan_triangles: Triangles, tolerance: Tolerance = 0.0) -> Weld:
@@ -128,6 +132,7 @@ def weld(scan_vertices: Vertices, scan_triangles: Triangles, tolerance: Toleranc
         np.concatenate([copies, fins]),
         is_flipped,
         WeldCounts(n_equal, n_near, tolerance, len(proper), len(copies), len(fins), int(is_flipped.sum())),
+        None if again.any() or survey.is_crowded or survey.is_divided else survey,
     )
 
 
@@ -177,28 +182,37 @@ def first_of_equal(points: FloatArray) -> IntArray:
     (n,) int64
         Positions in `points`.
     """
-    order = _grouping_order(points)
+    hashes = _position_hashes(points)
+    result = np.arange(len(points), dtype=np.int64)
+    ranked = np.sort(hashes)
+    if not (ranked[1:] == ranked[:-1]).any():
+        return result
+    order = _grouping_order(points, hashes)
     begins = np.ones(len(points), dtype=bool)
     begins[1:] = _neighbours_differ(points, order)
     # Both orders are stable, so the first of a group is also the first of the file.
     group = np.cumsum(begins) - 1
-    result = np.zeros(len(points), dtype=np.int64)
     result[order] = order[begins][group]
     return result
 
 
-def _grouping_order(points: FloatArray) -> IntArray:
+def _position_hashes(points: FloatArray) -> NDArray[np.uint64]:
+    """Hash positions (n, 3): equal ones alike, and as good as never two that differ."""
+    hashes = np.zeros(len(points), dtype=np.uint64)
+    for axis in range(3):
+        # Adding 0.0 turns -0.0 into 0.0, so equal numbers have equal bits.
+        hashes ^= (points[:, axis] + 0.0).view(np.uint64)
+        hashes *= np.uint64(0x9E3779B97F4A7C15)
+        hashes ^= hashes >> np.uint64(29)
+    return hashes
+
+
+def _grouping_order(points: FloatArray, hashes: NDArray[np.uint64]) -> IntArray:
     """Stable order that puts equal points side by side, (n,) int64.
 
     Sorting one hash is three times faster than sorting three coordinates; where two different points share a hash,
     their coordinates decide after all.
     """
-    # Adding 0.0 turns -0.0 into 0.0, so equal numbers have equal bits.
-    bits = (points.T + 0.0).view(np.uint64)
-    hashes = np.zeros(len(points), dtype=np.uint64)
-    for axis in range(3):
-        hashes = (hashes ^ bits[axis]) * np.uint64(0x9E3779B97F4A7C15)
-        hashes ^= hashes >> np.uint64(29)
     order = np.argsort(hashes, kind="stable")
     in_order = hashes[order]
     if ((in_order[1:] == in_order[:-1]) & _neighbours_differ(points, order)).any():

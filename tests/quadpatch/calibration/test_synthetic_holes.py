@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 from scipy.spatial import cKDTree
 
 from quadpatch.calibration.synthetic_holes import MeshWithHoles, Spacing, cut_holes
-from quadpatch.mesh.boundary import boundary_edge_mask, boundary_loops
+from quadpatch.mesh.boundary import boundary_edges, boundary_loops
 from quadpatch.mesh.loop_diameter import loop_diameter
 from quadpatch.mesh.measures import mean_edge_length
 from quadpatch.mesh.topology import directed_edges
@@ -22,7 +22,7 @@ def punched_at_random(mesh: TriangleMesh, diameter: float, spacing: Spacing, see
 
 
 def rim_vertices(mesh: TriangleMesh) -> IntArray:
-    return np.unique(directed_edges(mesh.triangles)[boundary_edge_mask(mesh.triangles)])
+    return np.unique(boundary_edges(mesh.triangles))
 
 
 @settings(max_examples=10)

@@ -5,7 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from quadpatch.mesh.boundary import Boundary, boundary_edge_mask, boundary_loops
+from quadpatch.mesh.boundary import Boundary, boundary_loops
+from quadpatch.mesh.boundary import boundary_edges as edges_with_one_face
 from quadpatch.mesh.topology import directed_edges
 from quadpatch.types import IntArray, Triangles
 from tests.quadpatch.shapes import cylinder, joined, open_grid, punched, sphere
@@ -209,8 +210,8 @@ def test_relabelling_vertices_relabels_the_loops(n_holes: int, seed: int) -> Non
 
 
 @given(faces=broken_meshes())
-def test_the_mask_marks_the_edges_of_one_face(faces: Triangles) -> None:
-    marked = directed_edges(faces)[boundary_edge_mask(faces)]
+def test_boundary_edges_are_those_of_one_face(faces: Triangles) -> None:
+    marked = edges_with_one_face(faces)
     assert sorted(map(tuple, marked.tolist())) == sorted(boundary_edges(faces))
 
 
