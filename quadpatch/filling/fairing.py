@@ -16,9 +16,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy import sparse
-from scipy.sparse.linalg import splu
 
 from quadpatch.errors import StageError
+from quadpatch.filling.banded_solver import EliminationOrder
 from quadpatch.mesh.normals import cross, length
 from quadpatch.types import BoolArray, FloatArray, IntArray, Triangles, Vertices
 
@@ -67,31 +67,66 @@ def fair(
     StageError
         If all triangles around a free vertex are too small to have an area.
     """
-    result = vertices.copy()
-    if not free.any():
+    return FairingEquations(vertices, triangles, free, uniform=uniform).minimise(energy)
+
+
+class FairingEquations:
+    """The equations of every energy on one shape; what energies have in common is computed once.
+
+    Parameters
+    ----------
+    vertices, triangles, free, uniform
+        As for `fair`.
+    order : EliminationOrder, optional
+        That of an earlier shape of the same triangles.
+    """
+
+    def __init__(
+        self,
+        vertices: Vertices,
+        triangles: Triangles,
+        free: BoolArray,
+        *,
+        uniform: bool = False,
+        order: EliminationOrder | None = None,
+    ) -> None:
+        self._vertices, self._free, self._order = vertices, free, order
+        if not free.any():
+            self._order = EliminationOrder(np.zeros(0, np.int64), np.zeros(1, np.int64))
+            return
+        laplacian, area = _laplacian(vertices, triangles, uniform=uniform)
+        self._step = sparse.csr_array(sparse.diags_array(area[free].mean() / area) @ laplacian)
+        # Rows of free vertices only: those of the outermost ring have lost triangles at the cut.
+        self._rows = [sparse.csr_array(laplacian[free])]
+
+    def minimise(self, energy: Energy) -> Vertices:
+        """Return the vertices (n, 3) of least energy, as `fair` does."""
+        result, free = self._vertices.copy(), self._free
+        if not free.any():
+            return result
+        weights = (energy.membrane, energy.plate, energy.variation)
+        equations = sum(weight * self._rows_of(power) for power, weight in enumerate(weights) if weight)
+        columns = sparse.csc_array(equations)
+        right = -(columns[:, ~free] @ self._vertices[~free])
+        try:
+            result[free] = self.order.solve(columns[:, free], right)
+        except RuntimeError as error:
+            raise StageError("the surface around a hole is so small that its areas vanish in float64") from error
         return result
-    laplacian, area = _laplacian(vertices, triangles, uniform=uniform)
-    step = sparse.diags_array(area[free].mean() / area) @ laplacian
-    # Rows of free vertices only: those of the outermost ring have lost triangles at the cut.
-    rows = laplacian[free]
-    equations = energy.membrane * rows
-    if energy.plate or energy.variation:
-        rows = rows @ step
-        equations = equations + energy.plate * rows
-    if energy.variation:
-        equations = equations + energy.variation * (rows @ step)
-    columns = sparse.csc_array(equations)
-    inner, right = columns[:, free], -(columns[:, ~free] @ vertices[~free])
-    result[free] = _solve(sparse.csc_array(inner), right)
-    return result
 
+    @property
+    def order(self) -> EliminationOrder:
+        """The order in which vertices are eliminated, fit for all energies on these triangles."""
+        if self._order is None:
+            # The widest of the three: it links all vertices that the others do.
+            self._order = EliminationOrder.of(sparse.csr_array(self._rows_of(2)[:, self._free]))
+        return self._order
 
-def _solve(equations: "sparse.csc_array[np.float64]", right: FloatArray) -> FloatArray:
-    try:
-        factors = splu(equations, permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True}, diag_pivot_thresh=0.0)
-    except RuntimeError as error:
-        raise StageError("the surface around a hole is so small that its areas vanish in float64") from error
-    return np.asarray(factors.solve(right))
+    def _rows_of(self, power: int) -> "sparse.csr_array[np.float64]":
+        """Rows of the free vertices of ``L``, ``L M^-1 L`` and ``L M^-1 L M^-1 L``."""
+        while len(self._rows) <= power:
+            self._rows.append(self._rows[-1] @ self._step)
+        return self._rows[power]
 
 
 def _laplacian(vertices: Vertices, triangles: Triangles, *, uniform: bool) -> tuple[sparse.csr_array, FloatArray]:

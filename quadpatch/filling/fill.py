@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from quadpatch.filling.fairing import THIN_PLATE, Energy, fair
+from quadpatch.filling.banded_solver import EliminationOrder
+from quadpatch.filling.fairing import THIN_PLATE, Energy, FairingEquations
 from quadpatch.filling.filled_mesh import FilledMesh, rim_diagonals
 from quadpatch.filling.refinement import Refined, refine, relax
 from quadpatch.filling.rim_neighbourhood import RimNeighbourhood
@@ -30,6 +31,8 @@ class ClosedMesh:
     near : Surroundings
     plate : Refined
         The thin plate, in local vertices and coordinates.
+    equations : FairingEquations
+        Of all energies on the plate.
     disagreement : (n_holes,) float64
         Mean distance between the plate and a slightly smoother surface, in mesh units: how far two sensible answers lie
         apart says how uncertain a hole is.
@@ -41,6 +44,7 @@ class ClosedMesh:
 
     near: RimNeighbourhood
     plate: Refined
+    equations: FairingEquations
     disagreement: FloatArray
     rim_variation: FloatArray
     unfilled: list[int]
@@ -70,10 +74,12 @@ def close_holes(mesh: TriangleMesh, loops: list[IntArray]) -> ClosedMesh:
     # A first, crumpled fairing; its bulge makes room for more vertices, and its shape better weights.
     patch = fair_refined(refine(patch, near.edges), near.adjacent_triangles, THIN_PLATE, uniform=True)
     patch = relax(refine(patch, near.edges), near.adjacent_triangles, near.edges)
-    plate = fair_refined(patch, near.adjacent_triangles, THIN_PLATE)
-    distances = _distances(fair_refined(plate, near.adjacent_triangles, ALTERNATIVE_ENERGY), plate)
+    equations = equations_of(patch, near.adjacent_triangles)
+    plate = replace(patch, vertices=equations.minimise(THIN_PLATE))
+    equations = equations_of(plate, near.adjacent_triangles, equations.order)
+    distances = _distances(replace(plate, vertices=equations.minimise(ALTERNATIVE_ENERGY)), plate)
     disagreement = _mean_by_hole(plate, distances, len(loops))
-    return ClosedMesh(near, plate, disagreement, near.rim_variation(), unfilled)
+    return ClosedMesh(near, plate, equations, disagreement, near.rim_variation(), unfilled)
 
 
 def close_flat(mesh: TriangleMesh, loops: list[IntArray]) -> FilledMesh:
@@ -111,7 +117,8 @@ def fair_holes(closed: ClosedMesh, energy: Energy) -> FilledMesh:
 def _fair_patch(closed: ClosedMesh, energy: Energy) -> Refined:
     """Fair twice, since the weights depend on the shape."""
     plate, adjacent_triangles, n_holes = closed.plate, closed.near.adjacent_triangles, closed.n_holes
-    faired = fair_refined(fair_refined(plate, adjacent_triangles, energy), adjacent_triangles, energy)
+    first = replace(plate, vertices=closed.equations.minimise(energy))
+    faired = replace(plate, vertices=equations_of(first, adjacent_triangles, closed.equations.order).minimise(energy))
     hole = _hole_of_new(plate)
     new = hole >= 0
     furthest = np.zeros(n_holes)
@@ -144,17 +151,25 @@ def _mean_by_hole(patch: Refined, values: FloatArray, n_holes: int) -> FloatArra
     return mean_by(hole[new], values[new], n_holes)
 
 
-def fair_refined(patch: Refined, adjacent_triangles: Triangles, energy: Energy, *, uniform: bool = False) -> Refined:
-    """Move the new vertices of a patch to where the surface has least energy.
+def equations_of(
+    patch: Refined, adjacent_triangles: Triangles, order: EliminationOrder | None = None, *, uniform: bool = False
+) -> FairingEquations:
+    """Set up the equations of the new vertices of a patch, see `quadpatch.filling.fairing.FairingEquations`.
 
     Parameters
     ----------
     patch : Refined
     adjacent_triangles : (k, 3) int64
         Triangles of the input next to the holes.
-    energy : Energy
+    order : EliminationOrder, optional
+        That of an earlier shape of this patch.
     uniform : bool
         See `quadpatch.filling.fairing.fair`.
     """
     triangles = np.concatenate([adjacent_triangles, patch.triangles])
-    return replace(patch, vertices=fair(patch.vertices, triangles, patch.is_new, energy, uniform=uniform))
+    return FairingEquations(patch.vertices, triangles, patch.is_new, uniform=uniform, order=order)
+
+
+def fair_refined(patch: Refined, adjacent_triangles: Triangles, energy: Energy, *, uniform: bool = False) -> Refined:
+    """Move the new vertices of a patch to where the surface has least energy."""
+    return replace(patch, vertices=equations_of(patch, adjacent_triangles, uniform=uniform).minimise(energy))
