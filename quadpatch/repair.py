@@ -138,7 +138,7 @@ def inspect_file(source: Path, weld_tolerance: Tolerance = "auto") -> dict[str, 
     check_weld_tolerance(weld_tolerance)
     scan, welded = read_surface(source, weld_tolerance)
     mesh = welded.mesh
-    holes = find_holes(mesh)
+    holes = find_holes(mesh, welded.survey)
     hosts = hosts_of(mesh, holes, [hole for hole in holes if hole.is_manifold])
     lies_in = [hosts.get(hole.id, []) for hole in holes]
     choices = join_islands(lies_in, choose_holes(holes, RepairOptions().holes, diagonal(mesh)))
@@ -194,7 +194,9 @@ def _unit_warnings(scan: Scan, output: Path) -> list[str]:
 
 def _inpaint(welded: Weld, inpainter: Inpainter | None, options: RepairOptions, stages: Stages) -> Repair:
     if inpainter is None or options.recipe == "default":
-        return inpaint(welded.mesh, inpainter, options, stages, obstacles=welded.ignored_triangles)
+        return inpaint(
+            welded.mesh, inpainter, options, stages, obstacles=welded.ignored_triangles, survey=welded.survey
+        )
     return inpaint_as_paper(welded.mesh, inpainter, options, stages, obstacles=welded.ignored_triangles)
 
 

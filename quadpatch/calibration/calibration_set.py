@@ -27,9 +27,13 @@ MIN_HOLES = 12
 # Diameters that are tried, in diameters of the real holes, until enough find room.
 _SIZES = (1.0, 0.7, 0.5)
 _ENOUGH = 24
+# Where holes are large for the mesh's edges, so many vertices in all are enough to cut away: each hole shows more.
+_MOST_VERTICES = 10_000
+# Vertices in a disk, by the square of its diameter in edges, where triangles are equilateral.
+_VERTICES_PER_SQUARE = np.pi / (2 * np.sqrt(3))
 
 # Surface left between a calibration hole and any other rim, in mean edge lengths: what the fairing reads.
-_MARGIN_EDGES = 4.0
+MARGIN_EDGES = 4.0
 
 # Errors that differ by less than this share of a hole's diameter are the same.
 ROUNDING = 1e-9
@@ -69,6 +73,12 @@ class CalibrationSet:
     diameters: FloatArray
 
 
+def most_holes(diameter: float, edge_length: float) -> int:
+    """Say how many calibration holes of a diameter are worth their time, both in mesh units."""
+    vertices = _VERTICES_PER_SQUARE * (diameter / edge_length) ** 2
+    return int(np.clip(_MOST_VERTICES / max(vertices, 1.0), _ENOUGH, MAX_HOLES))
+
+
 def cut_calibration_set(
     mesh: TriangleMesh, diameter: float, edge_length: float, rng: np.random.Generator
 ) -> CalibrationSet | None:
@@ -90,7 +100,7 @@ def cut_calibration_set(
         None where the undamaged surface has no room for enough holes.
     """
     best: tuple[MeshWithHoles, float] | None = None
-    spacing = Spacing(edge_length, _MARGIN_EDGES * edge_length, MAX_HOLES)
+    spacing = Spacing(edge_length, MARGIN_EDGES * edge_length, most_holes(diameter, edge_length))
     for size in _SIZES:
         punched = cut_holes(mesh, size * diameter, spacing, rng)
         if len(punched.loops) >= MIN_HOLES and (best is None or len(punched.loops) > len(best[0].loops)):

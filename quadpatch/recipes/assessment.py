@@ -11,10 +11,9 @@ from quadpatch.calibration.error_model import ErrorModel
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.mesh.averages import mean_by
 from quadpatch.mesh.holes import Hole, Selection
-from quadpatch.mesh.measures import diagonal
 from quadpatch.recipes.result import Completion, HoleResult, PatchAgreement
 from quadpatch.reconstruction.displacement import Displacement
-from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh
+from quadpatch.types import BoolArray, FloatArray, IntArray
 
 # A hole is completed by the model only where its patches see at least this share of the new vertices.
 LEAST_COVERAGE = 0.6
@@ -53,11 +52,10 @@ def assess(
     filled: FilledMesh,
     completion: Completion | None,
     error_model: ErrorModel,
+    size: float,
 ) -> list[HoleResult]:
-    """Say of every hole what became of it, in the order of their ids."""
+    """Say of every hole what became of it, in the order of their ids; `size` is the object's diagonal."""
     expected_errors = error_model.errors(filled, [hole.diameter for hole in selection.chosen]).tolist()
-    measured = TriangleMesh(filled.mesh.vertices, filled.mesh.triangles[: filled.n_measured_triangles])
-    size = diagonal(measured)
     closed = []
     for i, (hole, n_vertices, n_triangles) in enumerate(zip(selection.chosen, *count_new(filled), strict=True)):
         verdict, code, reason = _verdict(i, n_vertices, completion)

@@ -4,7 +4,7 @@ The stages are those of Sarkar, Varanasi and Stricker, "Learning Quadrangulated 
 geometric fill, base surface, quads, patches, learning, completion, reconstruction, verdicts.
 """
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -16,12 +16,16 @@ from quadpatch.filling.checked_fill import LoopsToFill, fill_checked
 from quadpatch.filling.fairing import THIN_PLATE, Energy
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.filling.islands import JoinedRims, join_islands
+from quadpatch.filling.region import Region
 from quadpatch.inpainters.inpainter import Inpainter
-from quadpatch.mesh.holes import Selection, find_holes, select_holes
-from quadpatch.mesh.measures import diagonal, mean_edge_length
+from quadpatch.mesh.edge_groups import EdgeSurvey
+from quadpatch.mesh.holes import Hole, Selection, find_holes, select_holes
+from quadpatch.mesh.measures import EdgeStatistics, diagonal, edge_statistics, longest_side
 from quadpatch.options import RepairOptions
+from quadpatch.patches.scale import choose_scale, preset_scale
 from quadpatch.recipes.assessment import assess
 from quadpatch.recipes.learned_detail import Calibration, complete
+from quadpatch.recipes.repair_region import Reach, RepairRegion, repair_region
 from quadpatch.recipes.result import Repair
 from quadpatch.recipes.verification import verified_results, without_faults
 from quadpatch.stages import Stages
@@ -49,6 +53,7 @@ def inpaint(
     stages: Stages | None = None,
     *,
     obstacles: Triangles | None = None,
+    survey: EdgeSurvey | None = None,
 ) -> Repair:
     """Repair the holes of a mesh.
 
@@ -62,6 +67,8 @@ def inpaint(
         Gets progress and seconds.
     obstacles : (k, 3) int64, optional
         Triangles that the mesh leaves out, such as repeated ones: a fill may not run through them either.
+    survey : EdgeSurvey, optional
+        Of the mesh, where that was made before.
 
     Returns
     -------
@@ -73,20 +80,92 @@ def inpaint(
         If the options don't fit the mesh.
     """
     stages = stages or Stages()
-    rng = np.random.default_rng(options.seed)
     with stages.stage("holes"):
-        holes = find_holes(mesh)
+        holes = find_holes(mesh, survey)
         selection = select_holes(holes, options.holes, diagonal(mesh))
         rims = join_islands(mesh, holes, selection.chosen)
+        task = _Task(mesh, holes, selection, rims, edge_statistics(mesh), inpainter, _with_lengths(options, mesh))
+        part = repair_region(mesh, rims.loops, task.reach(), obstacles, np.random.default_rng([options.seed, 1]))
+    repair = _repair(task, part.region, obstacles, stages)
+    if not part.holds(repair.filled):
+        repair = _repair(task, Region.all_of(mesh), obstacles, stages)
+        part = RepairRegion.all_of(mesh, len(rims.loops))
+    return replace(repair, filled=part.region.widened(repair.filled))
+
+
+@dataclass(frozen=True)
+class _Task:
+    """What is known of a scan before its holes are filled.
+
+    Attributes
+    ----------
+    mesh : TriangleMesh
+    holes : list of Hole
+        All of them, by id.
+    selection : Selection
+    rims : JoinedRims
+        Of the holes to be filled.
+    edges : EdgeStatistics
+        Of the scan.
+    inpainter : Inpainter or None
+    options : RepairOptions
+    """
+
+    mesh: TriangleMesh
+    holes: list[Hole]
+    selection: Selection
+    rims: JoinedRims
+    edges: EdgeStatistics
+    inpainter: Inpainter | None
+    options: RepairOptions
+
+    @property
+    def by_model(self) -> BoolArray:
+        """Rims (n_loops,) that a model may complete."""
+        return _with_action(self.rims, self.selection, "model")
+
+    @property
+    def wanted(self) -> LoopsToFill:
+        """The rims, and how they are to be filled."""
+        border = np.array([hole.is_border for hole in self.rims.chosen], bool)
+        return LoopsToFill(self.rims.loops, _with_action(self.rims, self.selection, "flat"), border)
+
+    @property
+    def diameters(self) -> list[float]:
+        """Diameters of the rims, in mesh units."""
+        return [hole.diameter for hole in self.rims.chosen]
+
+    def typical_diameter(self) -> float | None:
+        """Return the diameter of calibration holes, in mesh units; None where there is nothing to calibrate for."""
+        curved = [self.diameters[i] for i in np.flatnonzero(~self.wanted.flat)]
+        return float(np.median(curved)) if curved else None
+
+    def reach(self) -> Reach:
+        """Say how far around the holes this looks."""
+        length = 0.0
+        if self.inpainter is not None and self.by_model.any():
+            resolution = self.inpainter.resolution
+            length = choose_scale(self.diameters, self.edges.mean, self.options.patches, resolution).length
+        return Reach(self.typical_diameter() or 0.0, length, self.edges)
+
+
+def _with_lengths(options: RepairOptions, mesh: TriangleMesh) -> RepairOptions:
+    """Write out what a preset of patches stands for on a scan."""
+    return replace(options, patches=preset_scale(options.patches, longest_side(mesh)))
+
+
+def _repair(task: _Task, region: Region, obstacles: Triangles | None, stages: Stages) -> Repair:
+    """Repair the part of a scan that has its holes."""
+    mesh, rims, inpainter, obstacles = region.mesh, task.rims, task.inpainter, region.local_triangles(obstacles)
+    rng = np.random.default_rng(task.options.seed)
     with stages.stage("fill"):
-        wanted = _loops_to_fill(rims, selection)
-        calibration = _calibrate(mesh, rims, wanted, rng)
+        wanted = replace(task.wanted, loops=[region.local(loop) for loop in rims.loops])
+        calibration = _calibrate(task, mesh, rng)
         checked = fill_checked(mesh, wanted, calibration.blend.fill, obstacles)
-    completion, warnings = None, []
-    by_model = _with_action(rims, selection, "model")
+    completion, warnings, by_model = None, [], task.by_model
     if inpainter is not None and by_model[checked.filled.vertex_hole].any():
         try:
-            completion = complete(checked.filled, calibration, inpainter, options, rng, stages)
+            completion = complete(checked.filled, calibration, inpainter, task.options, rng, stages)
             if completion is None:
                 warnings.append("too little undamaged surface to learn from; the holes were filled by geometry alone")
         except NoQuadsError as error:
@@ -96,15 +175,11 @@ def inpaint(
             completion = replace(completion.limited_to(by_model, checked.filled), left_out=~by_model)
         completion, filled, faults = without_faults(completion, checked, obstacles)
         of_model = completion.error_model if completion else None
-        error_model = of_model or calibration.error_model
-        results = assess(holes, _filled_ones(selection, rims), checked.filled, completion, error_model)
-        results = verified_results(results, rims, checked, calibration.blend, faults, diagonal(mesh))
+        error_model, size = of_model or calibration.error_model, diagonal(task.mesh)
+        closed = _filled_ones(task.selection, rims)
+        results = assess(task.holes, closed, checked.filled, completion, error_model, size)
+        results = verified_results(results, rims, checked, calibration.blend, faults, size)
     return Repair(filled, rims.chosen, results, calibration.blend, completion, warnings)
-
-
-def _loops_to_fill(rims: JoinedRims, selection: Selection) -> LoopsToFill:
-    border = np.array([hole.is_border for hole in rims.chosen], bool)
-    return LoopsToFill(rims.loops, _with_action(rims, selection, "flat"), border)
 
 
 def _with_action(rims: JoinedRims, selection: Selection, action: HoleAction) -> BoolArray:
@@ -118,15 +193,13 @@ def _filled_ones(selection: Selection, rims: JoinedRims) -> Selection:
     return Selection(rims.chosen, {**selection.skipped, **joined}, selection.actions)
 
 
-def _calibrate(mesh: TriangleMesh, rims: JoinedRims, wanted: LoopsToFill, rng: np.random.Generator) -> Calibration:
+def _calibrate(task: _Task, mesh: TriangleMesh, rng: np.random.Generator) -> Calibration:
     """Learn from calibration holes how to fill, and how large an error to expect of that."""
-    edge = mean_edge_length(mesh)
-    diameters = [hole.diameter for hole in rims.chosen]
-    curved = [diameters[i] for i in np.flatnonzero(~wanted.flat)]
-    holes = cut_calibration_set(mesh, float(np.median(curved)), edge, rng) if curved else None
+    diameter, edge = task.typical_diameter(), task.edges.mean
+    holes = None if diameter is None else cut_calibration_set(mesh, diameter, edge, rng)
     blend, filled = suitable_blend(holes)
     error_model = PRIOR if holes is None or filled is None else expect(holes, filled)
-    return Calibration(diameters, edge, blend, error_model, holes, filled)
+    return Calibration(task.diameters, edge, blend, error_model, holes, filled)
 
 
 def suitable_blend(holes: CalibrationSet | None) -> tuple[EnergyBlend, FilledMesh | None]:

@@ -14,12 +14,11 @@ from quadpatch.calibration.error_model import ErrorModel
 from quadpatch.calibration.training_pairs import TrainingSurface
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.inpainters.inpainter import FittedInpainter, Inpainter, UndamagedSurface
-from quadpatch.mesh.measures import longest_side
 from quadpatch.mesh.smoothing import laplacian_smooth
 from quadpatch.options import RepairOptions
 from quadpatch.patches.folding import is_unfolded
 from quadpatch.patches.layout import lay_out, patchify, pick, seeds_near, take
-from quadpatch.patches.scale import PatchScale, base_surface_iterations, choose_scale, preset_scale
+from quadpatch.patches.scale import PatchScale, base_surface_iterations, choose_scale
 from quadpatch.patches.seeds import Seeds
 from quadpatch.recipes.assessment import agreeing_holes, measure_agreement
 from quadpatch.recipes.result import Completion, PatchAgreement
@@ -100,8 +99,7 @@ def complete(
     NoQuadsError
         If the base surface can't carry one quad.
     """
-    patch_options = preset_scale(options.patches, longest_side(filled.measured))
-    scale = choose_scale(calibration.diameters, calibration.edge_length, patch_options, inpainter.resolution)
+    scale = choose_scale(calibration.diameters, calibration.edge_length, options.patches, inpainter.resolution)
     with stages.stage("smooth"):
         base_surface = _base_surface(filled, scale, calibration.edge_length)
     with stages.stage("quadrangulate"):

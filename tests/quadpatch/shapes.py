@@ -103,6 +103,12 @@ def punched(mesh: TriangleMesh, *centres: tuple[float, float, float], radius: fl
     return TriangleMesh(mesh.vertices, mesh.triangles[~gone[mesh.triangles].any(axis=1)])
 
 
+def on_surface(mesh: TriangleMesh, *places: tuple[float, float]) -> list[tuple[float, float, float]]:
+    """Find the vertices of a sheet that are nearest to some places (x, y), seen from above."""
+    nearest = [int(np.linalg.norm(mesh.vertices[:, :2] - place, axis=1).argmin()) for place in places]
+    return [(x, y, z) for x, y, z in mesh.vertices[nearest].tolist()]
+
+
 def plate_with_disc(n_rim: int, n_rings: int = 3) -> TriangleMesh:
     """Build a flat plate around a round hole of radius 1: rings of equal triangles, z up; the rim comes first."""
     step = 2 * np.pi / n_rim

@@ -47,6 +47,7 @@ class Says:
 
 
 EXPECTATION = ErrorModel(0.3, 0.7)
+SIZE = diagonal(MESH)
 
 
 def completion(says: Says, blend_factor: float = 1.0, error_model: ErrorModel | None = EXPECTATION) -> Completion:
@@ -89,7 +90,7 @@ def test_a_model_may_complete_what_its_patches_cover_and_agree_about(says: Says,
     ],
 )
 def test_every_hole_says_why_it_was_not_filled_by_the_model(done: Completion | None, expected: list[str]) -> None:
-    results = assess(HOLES, SELECTION, FILLED, done, EXPECTATION)
+    results = assess(HOLES, SELECTION, FILLED, done, EXPECTATION, SIZE)
     assert [result.hole.id for result in results] == [0, 1, 2, 3]
     assert (results[0].verdict, results[0].code) == ("skipped", "border")
     assert [result.code for result in results[1:]] == expected
@@ -99,14 +100,14 @@ def test_every_hole_says_why_it_was_not_filled_by_the_model(done: Completion | N
 
 
 def test_the_share_that_patches_see_is_told() -> None:
-    results = assess(HOLES, SELECTION, FILLED, completion(Says(coverage=(0.254, 1.0, 1.0))), EXPECTATION)
+    results = assess(HOLES, SELECTION, FILLED, completion(Says(coverage=(0.254, 1.0, 1.0))), EXPECTATION, SIZE)
     assert "only 25 %" in results[1].reason
 
 
 def test_expected_errors_are_those_of_the_expectation_and_confidence_follows_them() -> None:
     errors = EXPECTATION.errors(FILLED, [hole.diameter for hole in SELECTION.chosen])
     assert (errors > 0).all()
-    for i, result in enumerate(assess(HOLES, SELECTION, FILLED, None, EXPECTATION)[1:]):
+    for i, result in enumerate(assess(HOLES, SELECTION, FILLED, None, EXPECTATION, SIZE)[1:]):
         assert result.expected_error == errors[i]
         assert result.confidence == pytest.approx(np.exp(-errors[i] / (0.003 * diagonal(MESH))))
         assert (result.measures["gap"], result.measures["rim_turn"]) == (
@@ -116,14 +117,14 @@ def test_expected_errors_are_those_of_the_expectation_and_confidence_follows_the
 
 
 def test_new_vertices_and_triangles_are_counted_by_hole() -> None:
-    results = assess(HOLES, SELECTION, FILLED, None, EXPECTATION)
+    results = assess(HOLES, SELECTION, FILLED, None, EXPECTATION, SIZE)
     assert [result.n_new_vertices for result in results] == [0, *np.bincount(FILLED.vertex_hole).tolist()]
     assert [result.n_new_triangles for result in results] == [0, *np.bincount(FILLED.triangle_hole).tolist()]
 
 
 def test_a_hole_that_could_not_be_closed_is_refused() -> None:
     values: dict[str, Any] = {**FILLED.__dict__, "unfilled": [1]}
-    results = assess(HOLES, SELECTION, FilledMesh(**values), None, EXPECTATION)
+    results = assess(HOLES, SELECTION, FilledMesh(**values), None, EXPECTATION, SIZE)
     assert [result.verdict for result in results] == ["skipped", "filled_smooth", "refused", "filled_smooth"]
     refused = results[2]
     assert refused.code == "no_triangulation"
@@ -134,7 +135,7 @@ def test_a_hole_that_could_not_be_closed_is_refused() -> None:
 def test_nothing_chosen_is_judged_too() -> None:
     nothing = fair_holes(close_holes(MESH, []), THIN_PLATE)
     selection = Selection([], {hole.id: ("not_chosen", "not among the chosen ids") for hole in HOLES})
-    assert {result.verdict for result in assess(HOLES, selection, nothing, None, EXPECTATION)} == {"skipped"}
+    assert {result.verdict for result in assess(HOLES, selection, nothing, None, EXPECTATION, SIZE)} == {"skipped"}
 
 
 @pytest.mark.parametrize(
@@ -155,7 +156,7 @@ def test_of_two_holes_of_a_part_the_one_with_the_larger_error_is_less_sure_howev
     holes = find_holes(mesh)
     selection = select_holes(holes, HoleOptions(), 3.0)
     filled = fair_holes(close_holes(mesh, [hole.loop for hole in selection.chosen]), THIN_PLATE)
-    _, wide, narrow = assess(holes, selection, filled, None, EXPECTATION)
+    _, wide, narrow = assess(holes, selection, filled, None, EXPECTATION, diagonal(mesh))
     assert wide.expected_error is not None
     assert wide.confidence is not None
     assert narrow.expected_error is not None
@@ -166,30 +167,14 @@ def test_of_two_holes_of_a_part_the_one_with_the_larger_error_is_less_sure_howev
     assert wide.expected_error / wide.hole.diameter < 0.6 * narrow.expected_error / narrow.hole.diameter
 
 
-def test_a_part_has_the_size_of_what_was_measured_whatever_was_invented() -> None:
-    far = FILLED.with_vertices(np.full((len(FILLED.vertex_hole), 3), 1e3))
-    lonely = np.array([[1e3, 0.0, 0.0]])
-    first = np.arange(len(FILLED.mesh.vertices)) < FILLED.n_measured_vertices
-    vertices = np.concatenate([FILLED.mesh.vertices[first], lonely, FILLED.mesh.vertices[~first]])
-    triangles = FILLED.mesh.triangles + (FILLED.mesh.triangles >= FILLED.n_measured_vertices)
-    values: dict[str, Any] = {
-        **FILLED.__dict__,
-        "mesh": TriangleMesh(vertices, triangles),
-        "n_measured_vertices": FILLED.n_measured_vertices + 1,
-    }
-    expected = [result.confidence for result in assess(HOLES, SELECTION, FILLED, None, EXPECTATION)]
-    for other in (far, FilledMesh(**values)):
-        assert [result.confidence for result in assess(HOLES, SELECTION, other, None, EXPECTATION)] == expected
-
-
 def test_the_same_part_in_another_unit_has_the_same_confidences() -> None:
     scaled = TriangleMesh(1024.0 * MESH.vertices, MESH.triangles)
     holes = find_holes(scaled)
     selection = select_holes(holes, HoleOptions(), 3.0 * 1024)
     filled = fair_holes(close_holes(scaled, [hole.loop for hole in selection.chosen]), THIN_PLATE)
     here, there = (
-        assess(HOLES, SELECTION, FILLED, None, EXPECTATION),
-        assess(holes, selection, filled, None, EXPECTATION),
+        assess(HOLES, SELECTION, FILLED, None, EXPECTATION, SIZE),
+        assess(holes, selection, filled, None, EXPECTATION, diagonal(scaled)),
     )
     assert len(here) == 4
     for one, other in zip(here[1:], there[1:], strict=True):

@@ -127,7 +127,7 @@ def judged(
 ) -> list[HoleResult]:
     chosen = {hole.id for hole in rims.chosen}
     selection = Selection(rims.chosen, {hole.id: ("not_chosen", "") for hole in HOLES if hole.id not in chosen})
-    results = assess(HOLES, selection, checked.filled, completion, PRIOR)
+    results = assess(HOLES, selection, checked.filled, completion, PRIOR, SIZE)
     return verified_results(results, rims, checked, BLEND, checked.faults, SIZE)
 
 
