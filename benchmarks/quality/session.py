@@ -28,6 +28,7 @@ from benchmarks.quality.paper_experiments import (
 )
 from benchmarks.quality.peers import with_peers
 from benchmarks.quality.pictures import draw_extremes
+from benchmarks.quality.rebuilding_experiment import Rebuilder, rebuilding_experiment
 from benchmarks.quality.repair_experiment import repair_experiment
 from benchmarks.quality.results import Results
 from quadpatch.model_choice import SELF
@@ -123,6 +124,13 @@ def _shapes(session: Session) -> None:
     session.publish(shapes_experiment(paper, cases, session.every))
 
 
+def _rebuilding(session: Session) -> None:
+    shapes = named(session.every, session.names)
+    paper = session.paper(len(shapes) * len(ATOMS))
+    scale = paper.learner.scale(session.every, session.radii[0])
+    session.publish(rebuilding_experiment(Rebuilder(paper, scale, session.output / "rebuilt"), shapes))
+
+
 def _networks(session: Session) -> None:
     # Torch is slow to load, and no other experiment needs it.
     from benchmarks.quality.network_experiment import (  # noqa: PLC0415
@@ -161,6 +169,7 @@ EXPERIMENTS: dict[str, Callable[[Session], None]] = {
     "atoms": _atoms,
     "patch-length": _patch_length,
     "shapes": _shapes,
+    "rebuilding": _rebuilding,
     "networks": _networks,
     "network-order": _network_order,
 }
