@@ -31,6 +31,7 @@ from benchmarks.quality.pictures import draw_extremes
 from benchmarks.quality.rebuilding_experiment import Rebuilder, rebuilding_experiment
 from benchmarks.quality.repair_experiment import repair_experiment
 from benchmarks.quality.results import Results
+from benchmarks.quality.transfer_experiment import DEFAULT_MESH, N_TRANSFERS, transfer_experiment
 from quadpatch.model_choice import SELF
 
 REPAIR = "repair"
@@ -131,6 +132,13 @@ def _rebuilding(session: Session) -> None:
     session.publish(rebuilding_experiment(Rebuilder(paper, scale, session.output / "rebuilt"), shapes))
 
 
+def _transfer(session: Session) -> None:
+    usual = [shape.name for shape in session.every if shape.name == DEFAULT_MESH] or [session.every[0].name]
+    shapes = named(session.every, session.names or usual)
+    paper = session.paper(len(shapes) * N_TRANSFERS)
+    session.publish(transfer_experiment(paper, shapes, session.every, session.radii[0], session.output))
+
+
 def _networks(session: Session) -> None:
     # Torch is slow to load, and no other experiment needs it.
     from benchmarks.quality.network_experiment import (  # noqa: PLC0415
@@ -170,6 +178,7 @@ EXPERIMENTS: dict[str, Callable[[Session], None]] = {
     "patch-length": _patch_length,
     "shapes": _shapes,
     "rebuilding": _rebuilding,
+    "transfer": _transfer,
     "networks": _networks,
     "network-order": _network_order,
 }
