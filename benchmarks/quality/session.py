@@ -10,6 +10,7 @@ from pathlib import Path
 from rich.console import Console
 
 from benchmarks.quality.bench import Bench, Case, Shape, named
+from benchmarks.quality.failures import failures_experiment
 from benchmarks.quality.measurement import Method
 from benchmarks.quality.network_options import NetworkOptions
 from benchmarks.quality.outcome import Outcome, Progress
@@ -139,6 +140,11 @@ def _transfer(session: Session) -> None:
     session.publish(transfer_experiment(paper, shapes, session.every, session.radii[0], session.output))
 
 
+def _failures(session: Session) -> None:
+    cases = session.cases(session.radii[:1])
+    session.publish(failures_experiment(session.paper(len(cases)), cases, session.every))
+
+
 def _networks(session: Session) -> None:
     # Torch is slow to load, and no other experiment needs it.
     from benchmarks.quality.network_experiment import (  # noqa: PLC0415
@@ -179,6 +185,7 @@ EXPERIMENTS: dict[str, Callable[[Session], None]] = {
     "shapes": _shapes,
     "rebuilding": _rebuilding,
     "transfer": _transfer,
+    "failures": _failures,
     "networks": _networks,
     "network-order": _network_order,
 }
