@@ -36,19 +36,16 @@ def failures_experiment(paper: Paper, cases: Sequence[Case], every: Sequence[Sha
         worst = max(holes, key=lambda hole: float(hole["true_error"]))
         middle = float(np.median([percent_of_radius(case, hole) for hole in holes]))
         percent = percent_of_radius(case, worst)
-        body.append([case.shape.name, str(len(holes)), figure(middle, 1), figure(percent, 1), *_verdict(worst)])
+        verdict = [str(worst["verdict"]), str(worst["code"] or NOTHING)]
+        body.append([case.shape.name, str(len(holes)), figure(middle, 1), figure(percent, 1), *verdict])
         data.append({"mesh": case.shape.name, "radius": case.radius, "median_percent": middle, "hole": worst})
         caption = f"{case.shape.name}, hole {worst['id']}: error {percent:.1f} % of the hole's radius"
-        caption += f" (median of its {len(holes)} holes {middle:.1f} %), verdict {' '.join(_verdict(worst)).strip()}"
+        caption += f" (median of its {len(holes)} holes {middle:.1f} %), verdict {worst['code'] or worst['verdict']}"
         rows += _drawn(paper, case, method, worst, caption)
     title = f"worst hole of each mesh, recipe paper, local dictionary, hole radius {cases[0].radius}"
     columns = ["mesh", "holes", "median error, % of the radius", "worst error, % of the radius", "verdict", "code"]
     plots = {"worst_holes": compose(rows)} if rows else {}
     return Outcome("failures", [Table(title, columns, body)], {"worst": data}, plots)
-
-
-def _verdict(hole: Mapping[str, Any]) -> list[str]:
-    return [str(hole["verdict"]), str(hole["code"] or NOTHING)]
 
 
 def _drawn(paper: Paper, case: Case, method: Method, hole: Mapping[str, Any], caption: str) -> list[Row]:

@@ -13,7 +13,7 @@ from rich.console import Console
 from benchmarks.quality.tables import Table
 
 # A palette makes pictures of clay half as large. It covers all colours, or the few tints would turn to steps.
-_COLOURS, _REFINEMENTS = 128, 3
+_COLOURS, _REFINEMENTS = 192, 3
 
 
 @dataclass(frozen=True)

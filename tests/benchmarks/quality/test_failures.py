@@ -12,6 +12,8 @@ from benchmarks.quality.results import Results
 from benchmarks.quality.sheets import TILE
 from tests.benchmarks.quality.small_bench import SHAPES, small_bench
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture
 def paper(tmp_path: Path) -> Paper:

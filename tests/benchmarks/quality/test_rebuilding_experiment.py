@@ -12,6 +12,8 @@ from benchmarks.quality.rebuilding_experiment import Rebuilder, rebuilding_exper
 from benchmarks.quality.results import Results
 from tests.benchmarks.quality.small_bench import SHAPES, small_bench
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module")
 def rebuilder(tmp_path_factory: pytest.TempPathFactory) -> Rebuilder:

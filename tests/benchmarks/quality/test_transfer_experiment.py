@@ -15,6 +15,8 @@ from quadpatch.types import TriangleMesh
 from tests.benchmarks.quality.small_bench import small_bench
 from tests.quadpatch.shapes import open_grid
 
+pytestmark = pytest.mark.slow
+
 RADIUS = "0.1"
 
 
