@@ -10,6 +10,9 @@ experiments
     atoms         the paper's local dictionary, by its number of atoms
     patch-length  the paper's local dictionary and our `self`, by the ratio of hole to patch
     shapes        the paper's global dictionary, by the number of shapes that it was learned from
+    rebuilding    whole meshes from their codes by the paper's local dictionary, by its number of atoms
+    transfer      the holes of one half of a mesh, filled by what the other half teaches
+    failures      the worst hole of every mesh by the paper's local dictionary
     networks      the paper's networks, trained on the spot, beside its dictionaries
     network-order the same networks by equal data, batch and steps, a rate found for each, and two seeds
 """

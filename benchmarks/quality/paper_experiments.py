@@ -120,8 +120,8 @@ def atoms_experiment(paper: Paper, cases: Sequence[Case], every: Sequence[Shape]
             coded[case.shape.name].append(coding)
     radius = cases[0].radius
     tables = [
-        _curve_table(f"error / {FAIR} by atoms, local dictionary, hole radius {radius}", ATOMS, filled, figure),
-        _curve_table("error of coding whole patches by atoms, millionths", ATOMS, coded, scientific),
+        curve_table(f"error / {FAIR} by atoms, local dictionary, hole radius {radius}", ATOMS, filled, figure),
+        curve_table("error of coding whole patches by atoms, millionths", ATOMS, coded, scientific),
     ]
     plots = {
         "filling": curve_plot(tables[0].title, ("atoms", f"error / {FAIR}"), ATOMS, filled),
@@ -145,7 +145,7 @@ def patch_length_experiment(paper: Paper, cases: Sequence[Case], own_methods: Se
     tables, plots = [], {}
     for name, series in by_name.items():
         title = f"{name}: error / {FAIR} by hole diameter / patch length, hole radius {cases[0].radius}"
-        tables.append(_curve_table(title, HOLE_TO_PATCH, series, figure))
+        tables.append(curve_table(title, HOLE_TO_PATCH, series, figure))
         labels = "hole diameter / patch length", f"error / {FAIR}"
         plots[name.replace(" ", "_")] = curve_plot(title, labels, HOLE_TO_PATCH, series)
     return Outcome("patch_length", tables, {"hole_to_patch": list(HOLE_TO_PATCH), "ratios": by_name}, plots)
@@ -165,13 +165,14 @@ def shapes_experiment(paper: Paper, cases: Sequence[Case], every: Sequence[Shape
         for case in cases:
             series[case.shape.name].append(paper.to_fair(case, method))
     title = f"error / {FAIR} by number of training shapes, hole radius {cases[0].radius}"
-    table = _curve_table(title, counts, series, figure)
+    table = curve_table(title, counts, series, figure)
     plot = curve_plot(title, ("training shapes", f"error / {FAIR}"), counts, series)
     data = {"shapes": counts, "order": [rest[i].name for i in order], "ratios": series}
     return Outcome("shapes", [table], data, {"curve": plot})
 
 
-def _curve_table(title: str, x: Sequence[float], series: Series, write: Callable[[float | None], str]) -> Table:
+def curve_table(title: str, x: Sequence[float], series: Series, write: Callable[[float | None], str]) -> Table:
+    """Tabulate one row of values at x for each name, and their geometric means."""
     body = [[name, *(write(value) for value in values)] for name, values in series.items()]
     mean = ["geometric mean", *(write(geometric_mean(values)) for values in zip(*series.values(), strict=True))]
     return Table(title, ["", *(f"{value:g}" for value in x)], [*body, mean], 1)

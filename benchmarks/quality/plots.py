@@ -6,8 +6,12 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
+from quadpatch.sparse.dictionary import Dictionary
+
 _WIDTH, _HEIGHT = 9.0, 4.6
 _MOST_RATIO = 2.5
+# Of atoms: their side in inches, and how many stand in a row.
+_ATOM, _ATOMS_IN_ROW = 0.62, 20
 
 
 def ratio_plot(title: str, meshes: Sequence[str], series: Mapping[str, Sequence[float | None]]) -> Figure:
@@ -84,4 +88,24 @@ def labelled_plot(
     axes.margins(x=0.15)
     axes.grid(alpha=0.3)
     axes.legend(fontsize="small")
+    return figure
+
+
+def atoms_plot(title: str, dictionary: Dictionary) -> Figure:
+    """Draw the atoms of a dictionary as height maps, smooth ones first; grey is zero, each has its own scale.
+
+    Smooth is what differs little from one bin to the next.
+    """
+    n = dictionary.resolution
+    maps = dictionary.atoms.T.reshape(-1, n, n)
+    roughness = (np.diff(maps, axis=1) ** 2).sum(axis=(1, 2)) + (np.diff(maps, axis=2) ** 2).sum(axis=(1, 2))
+    n_rows = -(-len(maps) // _ATOMS_IN_ROW)
+    figure = Figure(figsize=(_ATOM * _ATOMS_IN_ROW, _ATOM * n_rows + 0.4), layout="constrained")
+    figure.suptitle(title)
+    grid = figure.subplots(n_rows, _ATOMS_IN_ROW, squeeze=False).ravel()
+    for axes in grid:
+        axes.set_axis_off()
+    for axes, atom in zip(grid, maps[np.argsort(roughness, kind="stable")], strict=False):
+        most = np.abs(atom).max()
+        axes.imshow(atom, cmap="gray", vmin=-most, vmax=most, interpolation="nearest")
     return figure

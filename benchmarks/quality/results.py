@@ -12,9 +12,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-REPAIRS, CODINGS, MODELS, NETWORKS, PEERS = "repairs", "codings", "models", "networks", "peers"
+REPAIRS, CODINGS, REBUILDINGS = "repairs", "codings", "rebuildings"
+MODELS, NETWORKS, PEERS = "models", "networks", "peers"
 # What a change of the method makes stale, and what only a change of the paper's recipe or of the peers does.
-OF_THE_METHOD = (REPAIRS, CODINGS)
+OF_THE_METHOD = (REPAIRS, CODINGS, REBUILDINGS)
 ALL_KINDS = (*OF_THE_METHOD, MODELS, NETWORKS, PEERS)
 
 Key = Mapping[str, str | int | float]

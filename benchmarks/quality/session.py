@@ -10,6 +10,7 @@ from pathlib import Path
 from rich.console import Console
 
 from benchmarks.quality.bench import Bench, Case, Shape, named
+from benchmarks.quality.failures import failures_experiment
 from benchmarks.quality.measurement import Method
 from benchmarks.quality.network_options import NetworkOptions
 from benchmarks.quality.outcome import Outcome, Progress
@@ -28,8 +29,10 @@ from benchmarks.quality.paper_experiments import (
 )
 from benchmarks.quality.peers import with_peers
 from benchmarks.quality.pictures import draw_extremes
+from benchmarks.quality.rebuilding_experiment import Rebuilder, rebuilding_experiment
 from benchmarks.quality.repair_experiment import repair_experiment
 from benchmarks.quality.results import Results
+from benchmarks.quality.transfer_experiment import DEFAULT_MESH, N_TRANSFERS, transfer_experiment
 from quadpatch.model_choice import SELF
 
 REPAIR = "repair"
@@ -123,6 +126,25 @@ def _shapes(session: Session) -> None:
     session.publish(shapes_experiment(paper, cases, session.every))
 
 
+def _rebuilding(session: Session) -> None:
+    shapes = named(session.every, session.names)
+    paper = session.paper(len(shapes) * len(ATOMS))
+    scale = paper.learner.scale(session.every, session.radii[0])
+    session.publish(rebuilding_experiment(Rebuilder(paper, scale, session.output / "rebuilt"), shapes))
+
+
+def _transfer(session: Session) -> None:
+    usual = [shape.name for shape in session.every if shape.name == DEFAULT_MESH] or [session.every[0].name]
+    shapes = named(session.every, session.names or usual)
+    paper = session.paper(len(shapes) * N_TRANSFERS)
+    session.publish(transfer_experiment(paper, shapes, session.every, session.radii[0], session.output))
+
+
+def _failures(session: Session) -> None:
+    cases = session.cases(session.radii[:1])
+    session.publish(failures_experiment(session.paper(len(cases)), cases, session.every))
+
+
 def _networks(session: Session) -> None:
     # Torch is slow to load, and no other experiment needs it.
     from benchmarks.quality.network_experiment import (  # noqa: PLC0415
@@ -161,6 +183,9 @@ EXPERIMENTS: dict[str, Callable[[Session], None]] = {
     "atoms": _atoms,
     "patch-length": _patch_length,
     "shapes": _shapes,
+    "rebuilding": _rebuilding,
+    "transfer": _transfer,
+    "failures": _failures,
     "networks": _networks,
     "network-order": _network_order,
 }

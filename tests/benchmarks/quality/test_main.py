@@ -1,6 +1,7 @@
 """The command line of the quality benchmark, from a small bench to tables, plots and pictures.
 
-It goes through `benchmarks.quality.session`, `benchmarks.quality.repair_experiment` and `benchmarks.quality.pictures`.
+It goes through `benchmarks.quality.session`, `benchmarks.quality.repair_experiment`, `benchmarks.quality.pictures` and
+`benchmarks.quality.sheets`.
 """
 
 import json

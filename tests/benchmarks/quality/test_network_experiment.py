@@ -3,6 +3,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
 from benchmarks.quality.bench import BenchError
 from benchmarks.quality.measurement import measure
@@ -56,7 +57,9 @@ def test_several_networks_are_drawn_over_their_parameters(networks: Networks, tm
     two = replace(networks, architectures=[SMALL, COPY])
     cases = [networks.paper.bench.case(networks.all_shapes[0], "0.1", tmp_path)]
     outcome = networks_experiment(two, cases, NetworkOptions(budget=BUDGET), is_drawing=False)
-    (axes,) = outcome.plots["parameters_local_0.1"].axes
+    plot = outcome.plots["parameters_local_0.1"]
+    assert isinstance(plot, Figure)
+    (axes,) = plot.axes
     assert [np.asarray(line.get_xydata()).tolist() for line in axes.lines[:2]] == [[[65_345, 2.0]]] * 2
     assert [text.get_text() for text in axes.texts] == ["small_4x", "copy"]
 

@@ -1,7 +1,8 @@
 import numpy as np
 from matplotlib.patches import Rectangle
 
-from benchmarks.quality.plots import calibration_plot, curve_plot, labelled_plot, ratio_plot
+from benchmarks.quality.plots import atoms_plot, calibration_plot, curve_plot, labelled_plot, ratio_plot
+from quadpatch.sparse.dictionary import Dictionary
 
 
 def test_each_method_has_a_bar_for_each_mesh_and_none_where_it_was_not_measured() -> None:
@@ -32,3 +33,15 @@ def test_points_bear_their_names_and_values_to_compare_with_are_lines() -> None:
     point, line = axes.lines
     assert np.asarray(point.get_xydata()).tolist() == [[1e3, 2.0]]
     assert list(np.asarray(line.get_ydata())) == [0.5, 0.5]
+
+
+def test_atoms_are_drawn_smooth_ones_first_each_by_its_own_scale() -> None:
+    flat, ramp = np.ones((4, 4)), np.tile(np.arange(4.0), (4, 1))
+    checks = np.indices((4, 4)).sum(axis=0) % 2 - 0.5
+    atoms = np.stack([(one / np.linalg.norm(one)).ravel() for one in (checks, ramp, flat)], axis=1)
+    figure = atoms_plot("atoms", Dictionary(atoms, 4, 2))
+    images = [axes.images[0] for axes in figure.axes if axes.images]
+    drawn = [np.asarray(image.get_array(), np.float64) for image in images]
+    for shown, one in zip(drawn, (flat, ramp, checks), strict=True):
+        np.testing.assert_allclose(shown, one / np.linalg.norm(one))
+    assert [image.get_clim() for image in images] == [(-abs(one).max(), abs(one).max()) for one in drawn]
