@@ -6,7 +6,7 @@ READY  := $(VENV)/.ready
 # Twice quiet: errors only.
 PIP    := $(BIN)/python -m pip --quiet --quiet --disable-pip-version-check
 
-.PHONY: demo test coverage test-slow test-postgres test-lowest explore faults fuzz mutants flood contract check serve openapi samples lock sbom bench bench-quality bench-scans clean
+.PHONY: demo test coverage test-slow test-postgres test-lowest explore faults fuzz mutants flood contract check serve openapi samples lock sbom bench bench-stages bench-quality bench-scans clean
 
 $(READY): pyproject.toml constraints.txt
 	@echo "setting up $(VENV); this takes a few minutes the first time ..." >&2
@@ -92,7 +92,10 @@ sbom: $(READY)            ## write what the image holds as CycloneDX: make sbom 
 	@$(BIN)/python -m deploy.sbom $(EXTRAS) > sbom.cdx.json
 	@echo "wrote sbom.cdx.json" >&2
 
-bench: $(READY)           ## speed of the method's stages
+bench: $(READY)           ## seconds and memory beside the peers: make bench ARGS="--peer-python PATH --quick"
+	@$(BIN)/python -m benchmarks.performance $(ARGS)
+
+bench-stages: $(READY)    ## speed of the method's stages
 	@$(BIN)/python -m benchmarks.stages
 
 flood: $(READY)           ## /healthz while thousands of idle clients hold connections: make flood ARGS="--seconds 35"

@@ -24,9 +24,10 @@ from quadpatch.mesh.distance import distance_to_mesh
 from quadpatch.mesh.weld import weld
 from quadpatch.model_choice import choose_model
 from quadpatch.options import RepairOptions
+from quadpatch.progress import no_progress
 from quadpatch.restoration.least_squares import extend_smoothly
 from quadpatch.restoration.restore import restore
-from quadpatch.types import BoolArray, TriangleMesh, Vertices, no_progress
+from quadpatch.types import BoolArray, TriangleMesh, Vertices
 
 SHARES = (0.2, 0.5, 0.7)
 MODELS = ("self", "general-dictionary")

@@ -22,6 +22,7 @@ from client.options import (
     HoleChoice,
     HoleOption,
     IncludeBordersOption,
+    JobStateName,
     JsonOption,
     KeyOption,
     LabelOption,
@@ -40,7 +41,6 @@ from client.options import (
     TimeoutOption,
     UrlOption,
     WeldToleranceOption,
-    make_spec,
     tolerance,
 )
 from client.repairing import Task, format_of
@@ -48,7 +48,7 @@ from client.running import Connection, run
 from client.screen import Screen
 from client.tables import print_holes, print_jobs, print_models
 from client.task_commands import decode, denoise, encode, restore
-from jobkit.schema import JobState, Preset, Recipe
+from shared_rules.option_words import Preset, Recipe
 
 app = typer.Typer(
     name="quadpatch-client",
@@ -172,6 +172,8 @@ def holes(  # noqa: PLR0913 - one parameter per option of the command line
     quiet: QuietOption = False,
 ) -> None:
     """List the holes of a mesh file, and which of them would be filled."""
+    from client.spec import make_spec  # noqa: PLC0415  loads the wire schema, which --help does without
+
     screen = Screen(quiet)
     choice = HoleChoice(max_diameter, max_perimeter, all_but_largest, None, include_borders, cap, rule)
     with connected(screen, url, api_key) as client:
@@ -199,14 +201,16 @@ def models(url: UrlOption = DEFAULT_URL, api_key: KeyOption = None, as_json: Jso
 @app.command()
 def jobs(
     limit: Annotated[int, typer.Option(min=1, help="Most jobs to list.")] = 20,
-    state: Annotated[JobState | None, typer.Option(help="Only jobs in this state.")] = None,
+    state: Annotated[JobStateName | None, typer.Option(help="Only jobs in this state.")] = None,
     url: UrlOption = DEFAULT_URL,
     api_key: KeyOption = None,
     as_json: JsonOption = False,
 ) -> None:
     """List the latest jobs."""
+    from jobkit.schema import JobState  # noqa: PLC0415  see holes
+
     with connected(Screen(), url, api_key) as client:
-        listed = list(client.jobs(limit, state))
+        listed = list(client.jobs(limit, JobState(state) if state else None))
     if as_json:
         typer.echo(json.dumps([job.model_dump(mode="json") for job in listed], indent=2))
     else:

@@ -2,19 +2,25 @@
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import TYPE_CHECKING
 
 import typer
-from pydantic import BaseModel
 
 from client.errors import ClientError
 from client.exit_codes import ExitCode, exit_code_of
 from client.screen import Screen
-from client.sdk import Client
+
+if TYPE_CHECKING:
+    from pydantic import BaseModel
+
+    from client.sdk import Client
 
 
 @contextmanager
-def connected(screen: Screen, url: str, api_key: str | None) -> Iterator[Client]:
+def connected(screen: Screen, url: str, api_key: str | None) -> Iterator["Client"]:
     """Open the service; whatever goes wrong becomes a line on stderr and an exit code."""
+    from client.sdk import Client  # noqa: PLC0415  HTTP and the wire schema take longer to load than --help takes
+
     try:
         with Client(url, api_key) as client:
             yield client
@@ -29,6 +35,6 @@ def connected(screen: Screen, url: str, api_key: str | None) -> Iterator[Client]
         raise typer.Exit(ExitCode.INTERRUPTED) from None
 
 
-def print_json(value: BaseModel) -> None:
+def print_json(value: "BaseModel") -> None:
     """Print an answer as JSON on stdout."""
     typer.echo(value.model_dump_json(indent=2))

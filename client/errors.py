@@ -16,7 +16,10 @@
 Tested in `tests/client/test_transport.py`.
 """
 
-from jobkit.schema import Job, MeshProblem, Problem
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from jobkit.schema import Job, MeshProblem, Problem
 
 
 class ClientError(Exception):
@@ -30,7 +33,7 @@ class UnreachableError(ClientError):
 class RefusedError(ClientError):
     """The service answered with a problem document."""
 
-    def __init__(self, problem: Problem) -> None:
+    def __init__(self, problem: "Problem") -> None:
         details = "".join(f"; {error.pointer}: {error.message}" for error in problem.errors)
         super().__init__(f"{problem.detail}{details} ({problem.code})")
         self.problem = problem
@@ -43,7 +46,7 @@ class AnswerError(ClientError):
 class MeshRejectedError(ClientError):
     """The service could not read the mesh."""
 
-    def __init__(self, problem: MeshProblem) -> None:
+    def __init__(self, problem: "MeshProblem") -> None:
         super().__init__(f"{problem.message} ({problem.code})")
         self.problem = problem
 
@@ -51,7 +54,7 @@ class MeshRejectedError(ClientError):
 class JobFailedError(ClientError):
     """The job ended without a result."""
 
-    def __init__(self, job: Job) -> None:
+    def __init__(self, job: "Job") -> None:
         reason = f"{job.error.message} ({job.error.code})" if job.error else "no reason was given"
         where = f" in stage {job.error.stage}" if job.error and job.error.stage else ""
         super().__init__(f"job {job.id} failed{where}: {reason}")
@@ -61,7 +64,7 @@ class JobFailedError(ClientError):
 class JobCanceledError(ClientError):
     """The job was canceled."""
 
-    def __init__(self, job: Job) -> None:
+    def __init__(self, job: "Job") -> None:
         super().__init__(f"job {job.id} was canceled")
         self.job = job
 

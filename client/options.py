@@ -1,19 +1,17 @@
-"""Options that several commands share, and how those of a repair become a job spec."""
+"""Options that several commands share. The command line loads this before it knows what it is to do."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 import typer
-from pydantic import ValidationError
 
-from client.errors import UsageError
-from jobkit.schema import SELF, JobSpec, OutputFormat, Preset, Recipe, conflict_of
-from shared_rules.rule_text import RuleTextError, read_rule
+from shared_rules.option_words import OutputFormat, Preset, Recipe
 
 DEFAULT_URL = "http://127.0.0.1:8000"
 MethodName = Literal["dictionary", "cnn", "smooth"]
+# `JobState` of the wire schema, without loading it.
+JobStateName = Literal["queued", "running", "canceling", "canceled", "succeeded", "succeeded_with_warnings", "failed"]
 
 UrlOption = Annotated[
     str, typer.Option("--url", envvar="QUADPATCH_CLIENT_URL", help="Address of the service.", show_default=True)
@@ -147,56 +145,9 @@ class MethodChoice:
     preset: Preset | None = None
 
 
-def make_spec(mesh_id: str, holes: HoleChoice, method: MethodChoice, **rest: Any) -> JobSpec:
-    """Build a job spec from what was given; the service fills in the defaults of what was not.
-
-    Raises
-    ------
-    UsageError
-        If an option is out of its range, or does not go with the method or with another option.
-    """
-    chosen = _given({**vars(holes), "rules": _rules(holes.rules)})
-    values = {"mesh_id": mesh_id, "holes": chosen, **_given({"method": _method(method)}), **_given(rest)}
-    try:
-        spec = JobSpec.model_validate(values)
-    except ValidationError as error:
-        lines = [f"{'.'.join(str(step) for step in e['loc'])}: {e['msg']}" for e in error.errors()]
-        raise UsageError("; ".join(lines)) from error
-    conflict = conflict_of(spec)
-    if conflict is not None:
-        raise UsageError(conflict)
-    return spec
-
-
 def tolerance(word: str | None) -> float | str | None:
     """Read `--weld-tolerance`: a number where it is one; the job spec refuses other words than `auto`."""
     try:
         return None if word is None else float(word)
     except ValueError:
         return word
-
-
-def _method(choice: MethodChoice) -> dict[str, Any]:
-    patches = _given({name: getattr(choice, name) for name in ("length", "resolution", "overlap", "preset")})
-    fitting = _given({"steps": choice.fit_steps, "seconds": choice.fit_seconds})
-    if choice == MethodChoice():
-        return {}  # the service has a default of its own for each task
-    if fitting and (choice.method, choice.model) != ("cnn", SELF):
-        raise UsageError("only the method 'cnn' with the model 'self' fits a network; others take no time to fit")
-    if choice.method == "smooth":
-        if choice.model is not None or choice.recipe is not None or patches:
-            raise UsageError("the method 'smooth' takes no model, no recipe and no patch options")
-        return {"method": "smooth"}
-    rest = _given({"model": choice.model, "recipe": choice.recipe, "fitting": fitting})
-    return {"method": choice.method, "patches": patches, **rest}
-
-
-def _given(values: dict[str, Any]) -> dict[str, Any]:
-    return {name: value for name, value in values.items() if value not in (None, [], {})}
-
-
-def _rules(texts: Sequence[str] | None) -> list[dict[str, Any]]:
-    try:
-        return [read_rule(text) for text in texts or ()]
-    except RuleTextError as error:
-        raise UsageError(str(error)) from error

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Literal, cast, get_args
+from typing import TYPE_CHECKING, Any, Literal, cast, get_args
 
 from client.closeups import check_closeups_folder
 from client.errors import (
@@ -18,13 +18,14 @@ from client.errors import (
     WaitTimeoutError,
 )
 from client.interruption import HeldInterrupt
-from client.options import HoleChoice, MethodChoice, make_spec
+from client.options import HoleChoice, MethodChoice
 from client.outputs import check_place, is_same_file, is_stream, shown
 from client.screen import Screen
-from client.sdk import Client
-from client.summary import paragraph
-from client.transfers import sent_name
-from jobkit.schema import Job, JobState, OutputFormat
+from shared_rules.option_words import OutputFormat
+
+if TYPE_CHECKING:
+    from client.sdk import Client
+    from jobkit.schema import Job
 
 # A mesh that can't be read fails here; its analysis may still be waiting for a worker.
 _FIRST_STAGE = "read"
@@ -89,7 +90,7 @@ class Files:
             check_closeups_folder(self.closeups, [path for path in files if path is not None])
 
 
-def repair(client: Client, screen: Screen, task: Task) -> Job:
+def repair(client: "Client", screen: Screen, task: Task) -> "Job":
     """Upload, start, wait, fetch; a job is canceled when the wait for it ends early.
 
     Raises
@@ -99,6 +100,9 @@ def repair(client: Client, screen: Screen, task: Task) -> Job:
     KeyboardInterrupt
         After the job has been canceled.
     """
+    from client.spec import make_spec  # noqa: PLC0415  loads the wire schema, which --help does without
+    from client.transfers import sent_name  # noqa: PLC0415  loads HTTP
+
     # A wrong option or path should show before a large file has been sent and an hour been spent on it.
     make_spec("0" * 64, task.holes, task.method, **_rest(task, "0" * 64))
     check_outputs(task)
@@ -112,7 +116,7 @@ def repair(client: Client, screen: Screen, task: Task) -> Job:
     return job
 
 
-def _upload(client: Client, screen: Screen, path: Path) -> str:
+def _upload(client: "Client", screen: Screen, path: Path) -> str:
     with screen.transfer("uploading") as progress:
         mesh = client.upload(path, progress)
     screen.say(f"{path.name}: {_size(mesh.size_bytes)} uploaded")
@@ -170,7 +174,9 @@ def format_of(output: Path) -> OutputFormat | None:
     return cast(OutputFormat, suffix)
 
 
-def _wait(client: Client, screen: Screen, job: Job, timeout_s: float | None, interrupt: HeldInterrupt) -> Job:
+def _wait(client: "Client", screen: Screen, job: "Job", timeout_s: float | None, interrupt: HeldInterrupt) -> "Job":
+    from jobkit.schema import JobState  # noqa: PLC0415  see repair
+
     screen.say(f"job {job.id} " + ("accepted" if job.state is JobState.QUEUED else "is there already"))
     try:
         with _canceled_on_the_way_out(client, screen, job), screen.repair() as on_change:
@@ -184,7 +190,7 @@ def _wait(client: Client, screen: Screen, job: Job, timeout_s: float | None, int
         raise
 
 
-def _raise_for_mesh(client: Client, failed: JobFailedError) -> None:
+def _raise_for_mesh(client: "Client", failed: JobFailedError) -> None:
     """Raise MeshRejectedError where the mesh is at fault.
 
     A bad mesh ends a job that was there before the analysis, and refuses one that comes after it: for scripts it has
@@ -199,7 +205,7 @@ def _raise_for_mesh(client: Client, failed: JobFailedError) -> None:
 
 
 @contextmanager
-def _canceled_on_the_way_out(client: Client, screen: Screen, job: Job) -> Iterator[None]:
+def _canceled_on_the_way_out(client: "Client", screen: Screen, job: "Job") -> Iterator[None]:
     try:
         yield
     except (KeyboardInterrupt, WaitTimeoutError):
@@ -212,8 +218,10 @@ def _canceled_on_the_way_out(client: Client, screen: Screen, job: Job) -> Iterat
         raise
 
 
-def fetch(client: Client, screen: Screen, files: Files, job: Job) -> None:
+def fetch(client: "Client", screen: Screen, files: Files, job: "Job") -> None:
     """Fetch the mesh first: it is there whatever happens to the files that come with it."""
+    from client.summary import paragraph  # noqa: PLC0415  see repair
+
     with screen.transfer("downloading") as progress:
         client.download(job, "result", files.output, progress)
     written = [files.output]
@@ -234,7 +242,7 @@ def fetch(client: Client, screen: Screen, files: Files, job: Job) -> None:
         screen.say(f"wrote {shown(path)}", style="green")
 
 
-def _is_fetched(client: Client, screen: Screen, job: Job, role: Literal["report", "preview"], path: Path) -> bool:
+def _is_fetched(client: "Client", screen: Screen, job: "Job", role: Literal["report", "preview"], path: Path) -> bool:
     """Fetch a file that is optional: without it the repair has succeeded all the same."""
     try:
         client.download(job, role, path)
@@ -244,7 +252,7 @@ def _is_fetched(client: Client, screen: Screen, job: Job, role: Literal["report"
     return True
 
 
-def _fetch_closeups(client: Client, screen: Screen, job: Job, folder: Path) -> list[Path]:
+def _fetch_closeups(client: "Client", screen: Screen, job: "Job", folder: Path) -> list[Path]:
     """Fetch close-ups, which are optional too; return what was written."""
     try:
         return client.download_closeups(job, folder)

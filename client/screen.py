@@ -5,20 +5,14 @@ All of it goes to stderr by default; stdout is for data.
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
-from rich.progress import (
-    BarColumn,
-    DownloadColumn,
-    Progress,
-    TaskProgressColumn,
-    TextColumn,
-    TimeElapsedColumn,
-    TransferSpeedColumn,
-)
 
-from client.transfers import ByteProgress, no_progress
-from jobkit.schema import Job, JobState
+from client.progress import ByteProgress, no_progress
+
+if TYPE_CHECKING:
+    from jobkit.schema import Job
 
 _LABEL_WIDTH = 12
 
@@ -58,13 +52,16 @@ class Screen:
         if self._quiet or not self.console.is_terminal:
             yield no_progress
             return
-        columns = (_label_column(), BarColumn(), TaskProgressColumn(), DownloadColumn(), TransferSpeedColumn())
-        with Progress(*columns, console=self.console, transient=True) as bar:
+        from rich.progress import DownloadColumn, Progress, TransferSpeedColumn  # noqa: PLC0415  no script needs it
+
+        with Progress(
+            *_columns(), DownloadColumn(), TransferSpeedColumn(), console=self.console, transient=True
+        ) as bar:
             task = bar.add_task(label, total=None)
             yield lambda done, total: bar.update(task, completed=done, total=total)
 
     @contextmanager
-    def repair(self) -> Iterator[Callable[[Job], None]]:
+    def repair(self) -> Iterator[Callable[["Job"], None]]:
         """Show the progress of a job; yields the callback for its changes."""
         if self._quiet:
             yield lambda job: None
@@ -72,13 +69,15 @@ class Screen:
         if not self.console.is_terminal:
             yield _StageLines(self)
             return
-        columns = (_label_column(), BarColumn(), TaskProgressColumn(), TextColumn("{task.fields[status]}"))
-        with Progress(*columns, TimeElapsedColumn(), console=self.console, transient=True) as bar:
+        from rich.progress import Progress, TextColumn, TimeElapsedColumn  # noqa: PLC0415  see above
+
+        status = TextColumn("{task.fields[status]}")
+        with Progress(*_columns(), status, TimeElapsedColumn(), console=self.console, transient=True) as bar:
             task = bar.add_task("repairing", total=100.0, status="")
             yield lambda job: bar.update(task, completed=job.percent, status=status_line(job))
 
 
-def status_line(job: Job) -> str:
+def status_line(job: "Job") -> str:
     """Describe the progress of a job: its stage or state, its place in the queue, and the seconds left."""
     position = None if job.queue_position is None else f"number {job.queue_position} in line"
     remaining = None if job.eta_s is None else f"about {_duration(job.eta_s)} left"
@@ -92,18 +91,22 @@ class _StageLines:
         self._screen = screen
         self._last: tuple[str, int | None] | None = None
 
-    def __call__(self, job: Job) -> None:
+    def __call__(self, job: "Job") -> None:
         progress = (_stage(job), job.queue_position)
         if progress != self._last:
             self._last = progress
             self._screen.say(f"{job.percent:5.1f} %  {status_line(job)}")
 
 
-def _label_column() -> TextColumn:
-    return TextColumn(f"{{task.description:<{_LABEL_WIDTH}}}")
+def _columns() -> list[Any]:
+    from rich.progress import BarColumn, TaskProgressColumn, TextColumn  # noqa: PLC0415  see above
+
+    return [TextColumn(f"{{task.description:<{_LABEL_WIDTH}}}"), BarColumn(), TaskProgressColumn()]
 
 
-def _stage(job: Job) -> str:
+def _stage(job: "Job") -> str:
+    from jobkit.schema import JobState  # noqa: PLC0415  loaded by the time that there is a job
+
     if job.state == JobState.RUNNING:
         return job.stage or "starting"
     return job.state.value.replace("_", " ")

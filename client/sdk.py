@@ -33,7 +33,8 @@ from client.errors import (
 )
 from client.packing import packed
 from client.polling import parse, poll
-from client.transfers import ByteProgress, download, file_chunks, no_progress, sent_name, sha256_of
+from client.progress import ByteProgress, no_progress
+from client.transfers import download, file_chunks, sent_name, sha256_of
 from client.transport import Transport
 from client.watching import watch
 from jobkit.schema import FileRole, Job, JobPage, JobSpec, JobState, Mesh, MeshState, ModelList, Plan, identity_of

@@ -2,14 +2,16 @@
 
 from collections.abc import Iterable
 from datetime import UTC
+from typing import TYPE_CHECKING
 
 from rich.console import Console
 from rich.table import Table
 
-from jobkit.schema import Job, MeshFacts, ModelList, ModelVersion, Plan, PlannedHole
+if TYPE_CHECKING:
+    from jobkit.schema import Job, MeshFacts, ModelList, ModelVersion, Plan, PlannedHole
 
 
-def print_holes(console: Console, facts: MeshFacts, plan: Plan) -> None:
+def print_holes(console: Console, facts: "MeshFacts", plan: "Plan") -> None:
     """Print every hole of a mesh, and whether a job would fill it."""
     unit = facts.unit or "mesh units"
     counts = f"{facts.vertices or 0:,} vertices, {facts.triangles or 0:,} triangles, {len(plan.holes):,} holes"
@@ -34,13 +36,13 @@ def print_holes(console: Console, facts: MeshFacts, plan: Plan) -> None:
     console.print(f"{plan.selected:,} of {len(plan.holes):,} would be filled")
 
 
-def _fate(hole: PlannedHole) -> str:
+def _fate(hole: "PlannedHole") -> str:
     if hole.joined_to is not None:
         return f"yes: joined to hole {hole.joined_to}"
     return f"yes: {hole.action}" if hole.selected else f"no: {(hole.reason or 'by rule').replace('_', ' ')}"
 
 
-def print_models(console: Console, models: ModelList) -> None:
+def print_models(console: Console, models: "ModelList") -> None:
     """Print every version of every model."""
     table = _table(None)
     for name in ("model", "kind", "patch", "size", "aliases", "state", "description"):
@@ -59,14 +61,14 @@ def print_models(console: Console, models: ModelList) -> None:
     console.print(table if table.row_count else "no models")
 
 
-def _standing(version: ModelVersion) -> str:
+def _standing(version: "ModelVersion") -> str:
     """Say whether a version may be used, and why not."""
     if version.problem is not None:
         return f"{version.state}: {version.problem.message}"
     return "deprecated" if version.deprecated is not None else str(version.state)
 
 
-def print_jobs(console: Console, jobs: Iterable[Job]) -> None:
+def print_jobs(console: Console, jobs: Iterable["Job"]) -> None:
     """Print jobs, one a line."""
     table = _table(None)
     for name in ("job", "task", "state", "done", "created (UTC)"):

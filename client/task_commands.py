@@ -28,7 +28,7 @@ from client.options import (
 from client.outputs import is_stream
 from client.repairing import Task, format_of
 from client.running import Connection, run
-from jobkit.schema import RestorationBase
+from shared_rules.option_words import RestorationBase
 
 _SUFFIX = ".qpz"
 ModelOption = Annotated[

@@ -4,24 +4,19 @@ import hashlib
 import os
 import re
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 import httpx
 
 from client.errors import DamagedTransferError
 from client.outputs import current_umask, deliver, folder_of
+from client.progress import ByteProgress
 from client.transport import Transport
 
 CHUNK_BYTES = 1 << 18
 _CONTROL = re.compile(r"[\x00-\x1f\x7f]")
 _LONGEST_NAME = 255
-# Called with the bytes done so far and the bytes in all.
-ByteProgress = Callable[[int, int], None]
-
-
-def no_progress(done: int, total: int) -> None:
-    """Ignore progress."""
 
 
 def sha256_of(path: Path) -> str:

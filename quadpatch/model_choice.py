@@ -1,20 +1,22 @@
 """Which inpainter a model's name, a shipped model or a model file stands for, and which options go with it.
 
+Each inpainter is imported where it is asked for: geometry alone needs none of them, nor the libraries behind them.
+
 Tested in `tests/quadpatch/test_repair_by_fitting.py`.
 """
 
 import hashlib
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from quadpatch.errors import ModelError, OptionError, TorchMissingError
-from quadpatch.inpainters.dictionary import DictionaryInpainter, SelfDictionary
 from quadpatch.inpainters.inpainter import Inpainter
-from quadpatch.inpainters.model_file import Model, load_model, shipped_model
-from quadpatch.inpainters.paper_dictionary import HeightsInpainter, SelfHeights
 from quadpatch.options import DictionaryOptions, NetworkOptions, RepairOptions
-from quadpatch.sparse.dictionary import Dictionary
-from quadpatch.types import Progress
+from quadpatch.progress import Progress
+
+if TYPE_CHECKING:
+    from quadpatch.inpainters.model_file import Model
+    from quadpatch.sparse.dictionary import Dictionary
 
 SMOOTH = "smooth"
 SELF = "self"
@@ -68,16 +70,14 @@ def choose_model(
     if model == SMOOTH:
         return None, {"name": SMOOTH}
     if model == SELF:
-        is_paper = options.recipe == "paper"
-        learned = SelfHeights(options.dictionary, options.seed, progress) if is_paper else SelfDictionary()
-        return learned, {"name": SELF}
+        return _dictionary_of_the_mesh(options, progress), {"name": SELF}
     loaded, facts = find_model(model)
     if loaded.dictionary is None:
         return _network(loaded.path, options, network_card), facts
     return _dictionary(loaded, loaded.dictionary, options), facts
 
 
-def find_model(model: str | Path) -> tuple[Model, dict[str, Any]]:
+def find_model(model: str | Path) -> tuple["Model", dict[str, Any]]:
     """Read a model file, or the shipped model of a name.
 
     Returns
@@ -91,6 +91,8 @@ def find_model(model: str | Path) -> tuple[Model, dict[str, Any]]:
     ModelError
         If there is no such model, or its file is none.
     """
+    from quadpatch.inpainters.model_file import load_model, shipped_model  # noqa: PLC0415  see the module docstring
+
     path = Path(model)
     if not path.is_file():
         path = shipped_model(str(model))
@@ -105,15 +107,27 @@ def sha256_of(path: Path) -> str:
         return hashlib.file_digest(file, "sha256").hexdigest()
 
 
-def _dictionary(loaded: Model, dictionary: Dictionary, options: RepairOptions) -> Inpainter:
+def _dictionary_of_the_mesh(options: RepairOptions, progress: Progress) -> Inpainter:
+    """Learn a dictionary from the mesh itself."""
+    from quadpatch.inpainters.dictionary import SelfDictionary  # noqa: PLC0415  see the module docstring
+    from quadpatch.inpainters.paper_dictionary import SelfHeights  # noqa: PLC0415
+
+    is_paper = options.recipe == "paper"
+    return SelfHeights(options.dictionary, options.seed, progress) if is_paper else SelfDictionary()
+
+
+def _dictionary(loaded: "Model", dictionary: "Dictionary", options: RepairOptions) -> Inpainter:
     """Take a dictionary for the recipe that it was learned for."""
+    from quadpatch.inpainters.dictionary import DictionaryInpainter  # noqa: PLC0415  see the module docstring
+    from quadpatch.inpainters.paper_dictionary import HeightsInpainter  # noqa: PLC0415
+
     _check_recipe(loaded, options)
     if loaded.recipe == "paper":
         return HeightsInpainter(dictionary, length_share(loaded))
     return DictionaryInpainter(dictionary)
 
 
-def length_share(model: Model) -> float | None:
+def length_share(model: "Model") -> float | None:
     """Read how wide the patches were that a dictionary of heights was learned from."""
     share = model.card.get("length_share")
     if share is None:
@@ -142,6 +156,8 @@ def _network_to_fit(options: RepairOptions, progress: Progress) -> tuple[Inpaint
     """Open the shipped network for training."""
     if options.recipe == "paper":
         raise OptionError(f"the recipe paper goes with dictionaries; {SELF_NETWORK} has a recipe of its own")
+    from quadpatch.inpainters.model_file import shipped_model  # noqa: PLC0415  see the module docstring
+
     path = shipped_model(BASE_NETWORK)
     try:
         from quadpatch.networks.fitting import FittingInpainter  # noqa: PLC0415  an extra, and slow to load
@@ -157,7 +173,7 @@ def _network_to_fit(options: RepairOptions, progress: Progress) -> tuple[Inpaint
     }
 
 
-def _check_recipe(model: Model, options: RepairOptions) -> None:
+def _check_recipe(model: "Model", options: RepairOptions) -> None:
     """Refuse a dictionary that was learned for the other recipe, and a size for one that has a size."""
     name = model.path.name
     if model.recipe != options.recipe:

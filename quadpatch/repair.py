@@ -21,8 +21,8 @@ from quadpatch.mesh.orientation import triangles_facing_flipped
 from quadpatch.mesh.weld import Weld, weld
 from quadpatch.model_choice import SELF, choose_model
 from quadpatch.options import RepairOptions, check_weld_tolerance
+from quadpatch.progress import Progress, no_progress
 from quadpatch.recipes.default import inpaint
-from quadpatch.recipes.paper import inpaint_as_paper
 from quadpatch.recipes.result import Repair
 from quadpatch.report import (
     UNKNOWN_UNIT,
@@ -34,7 +34,6 @@ from quadpatch.report import (
     with_hole_numbers,
 )
 from quadpatch.stages import Stages, harmless
-from quadpatch.types import Progress, no_progress
 from shared_rules.hole_selection import Choice, choose_holes, join_islands
 
 # Formats whose lengths have a unit by definition, or by the default that our writer leaves standing.
@@ -197,6 +196,8 @@ def _inpaint(welded: Weld, inpainter: Inpainter | None, options: RepairOptions, 
         return inpaint(
             welded.mesh, inpainter, options, stages, obstacles=welded.ignored_triangles, survey=welded.survey
         )
+    from quadpatch.recipes.paper import inpaint_as_paper  # noqa: PLC0415  the other recipe does without it
+
     return inpaint_as_paper(welded.mesh, inpainter, options, stages, obstacles=welded.ignored_triangles)
 
 

@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 
 from quadpatch.errors import QuadpatchError
-from quadpatch.types import Progress, no_progress
+from quadpatch.progress import Progress, no_progress
 from shared_rules.stages import Stage
 
 _log = logging.getLogger(__name__)

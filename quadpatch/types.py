@@ -5,7 +5,6 @@ Every length is in mesh units unless its name says otherwise (`_bins`, `_s`).
 Tested in `tests/quadpatch/patches/test_height_map.py`.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,13 +18,6 @@ Vertices = FloatArray  # (n_vertices, 3)
 Triangles = IntArray  # (n_triangles, 3), counter-clockwise seen from outside
 Quads = IntArray  # (n_quads, 4), counter-clockwise seen from outside
 Frames = FloatArray  # (n, 3, 3), rows x, y, z; right-handed; z is the surface normal
-
-# Called as progress(stage, fraction done of that stage in 0..1).
-Progress = Callable[[str, float], None]
-
-
-def no_progress(stage: str, fraction: float) -> None:
-    """Ignore progress."""
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,8 @@ from quadpatch.errors import OptionError
 from quadpatch.mesh.measures import mean_edge_length
 from quadpatch.patches import residual_input
 from quadpatch.patches.normalisation import HEIGHTS
-from quadpatch.types import Progress, TriangleMesh, no_progress
+from quadpatch.progress import Progress, no_progress
+from quadpatch.types import TriangleMesh
 from training import training_pairs
 from training.corpus import PatchRecipe, cut_patches, read_mesh
 from training.dictionary import HOLDOUT_SEED_OFFSET, PROCEDURAL_SEEDS

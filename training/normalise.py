@@ -13,8 +13,9 @@ import numpy as np
 from quadpatch.errors import EmptyMeshError, OptionError
 from quadpatch.mesh.measures import longest_side, mean_edge_length, surface_area
 from quadpatch.mesh.meshlab import collapse_edges, split_edges, write_ply
+from quadpatch.progress import Progress, no_progress
 from quadpatch.quads.vertex_clustering import split_fans
-from quadpatch.types import Progress, TriangleMesh, no_progress
+from quadpatch.types import TriangleMesh
 from training.corpus import read_mesh
 from training.sources import MANIFEST, Source
 

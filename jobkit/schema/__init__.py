@@ -33,8 +33,6 @@ from jobkit.schema.methods import (
     Fitting,
     Method,
     PatchOptions,
-    Preset,
-    Recipe,
     SmoothMethod,
 )
 from jobkit.schema.models import (
@@ -59,7 +57,6 @@ from jobkit.schema.spec import (
     JobSpec,
     Limits,
     Output,
-    OutputFormat,
     RepairSpec,
     identity_of,
 )
@@ -74,7 +71,6 @@ from jobkit.schema.tasks import (
     Region,
     RegionBox,
     RegionByProperty,
-    RestorationBase,
     Restoring,
 )
 from jobkit.schema.webhooks import (
@@ -95,6 +91,7 @@ from jobkit.schema.webhooks import (
     WebhookWithSecret,
 )
 from shared_rules.hole_selection import HoleAction, HoleKind
+from shared_rules.option_words import OutputFormat, Preset, Recipe, RestorationBase
 from shared_rules.stages import STAGES
 from shared_rules.tasks import TASKS, Task
 

@@ -10,9 +10,10 @@ from pydantic import Field
 from jobkit.schema.base import JobId, MeshId, Moment, Response, Sha256
 from jobkit.schema.meshes import Hole
 from jobkit.schema.models import ResolvedModel
-from jobkit.schema.spec import JobSpec, Limits, OutputFormat
+from jobkit.schema.spec import JobSpec, Limits
 from jobkit.schema.states import JobState
 from shared_rules.hole_selection import HoleAction
+from shared_rules.option_words import OutputFormat
 from shared_rules.tasks import FILL, Task
 
 # What a job hands back: a mesh in a format of its own choice, or an encoded surface.

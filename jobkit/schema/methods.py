@@ -8,6 +8,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from jobkit.schema.base import REFERENCE_PATTERN, WHOLE, Request
+from shared_rules.option_words import Preset, Recipe
 
 DEFAULT_MODEL = "default"
 DEFAULT_NETWORK = "default-network"
@@ -15,8 +16,6 @@ DEFAULT_NETWORK = "default-network"
 DEFAULT_PAPER_MODEL = "default-paper"
 DEFAULT_PAPER_NETWORK = "default-paper-network"
 SELF = "self"
-Recipe = Literal["default", "paper"]
-Preset = Literal["type1", "type2"]
 
 Resolution = Annotated[int, Field(ge=8, le=128), WHOLE]
 Overlap = Annotated[int, Field(ge=0, le=8), WHOLE]

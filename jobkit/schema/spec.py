@@ -8,11 +8,11 @@ from jobkit.schema.base import TEXT_PATTERN, WHOLE, MeshId, Request
 from jobkit.schema.methods import DEFAULT_MODEL, SELF, DictionaryMethod, Method
 from jobkit.schema.tasks import Denoising, Encoding, Restoring
 from shared_rules.hole_selection import Cap, HoleKind, RuleAction
+from shared_rules.option_words import OutputFormat
 from shared_rules.tasks import FILL, Task
 
 # `qpz` is what the task `encode` hands back and `decode` reads; it is a mesh that is no list of triangles.
 Format = Literal["ply", "stl", "obj", "off", "glb", "gltf", "3mf", "qpz"]
-OutputFormat = Literal["ply", "stl", "obj", "off", "glb", "3mf"]
 
 HoleId = Annotated[int, Field(ge=0, le=2**31 - 1), WHOLE]
 MemoryMb = Annotated[int, Field(ge=256, le=1_048_576), WHOLE]

@@ -5,6 +5,7 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, model_validator
 
 from jobkit.schema.base import WHOLE, MeshId, Request
+from shared_rules.option_words import RestorationBase
 
 VertexIndex = Annotated[int, Field(ge=0, le=2**31 - 1), WHOLE]
 VertexIndices = Annotated[list[VertexIndex], Field(min_length=1, max_length=100_000)]
@@ -35,7 +36,6 @@ class MissingByIndex(Request):
     indices: VertexIndices = Field(description="Numbers of vertices in the file, from 0.", examples=[[7, 19, 20]])
 
 
-RestorationBase = Literal["mesh", "poisson"]
 Missing = Annotated[MissingAsNan | MissingByProperty | MissingByIndex, Field(discriminator="kind")]
 
 

@@ -23,7 +23,7 @@ from quadpatch.cli.flags import (
 )
 from quadpatch.cli.tasks import Files, given, run_task, vertices
 from quadpatch.errors import OptionError
-from quadpatch.types import Progress
+from quadpatch.progress import Progress
 
 if TYPE_CHECKING:
     from quadpatch.tasks.result import TaskResult

@@ -10,7 +10,7 @@ import typer
 
 from quadpatch.cli.flags import Model, Output, PatchLength, Preview, Quiet, Report, Resolution, Seed, Source
 from quadpatch.cli.tasks import Files, given, run_task, vertices
-from quadpatch.types import Progress
+from quadpatch.progress import Progress
 
 if TYPE_CHECKING:
     from quadpatch.tasks.result import TaskResult

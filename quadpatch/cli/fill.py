@@ -24,6 +24,7 @@ from quadpatch.cli.flags import (
 )
 from quadpatch.cli.messages import clear_errors, progress_bars, say
 from quadpatch.cli.reports import closing_words, n_holes, write_report
+from quadpatch.cli.scipy_start import put_off_unused
 from quadpatch.errors import OptionError
 from quadpatch.formats.output_files import check_folder, check_outputs, is_stream
 from quadpatch.options import (
@@ -95,8 +96,6 @@ def fill(  # noqa: PLR0913, PLR0917  one argument per flag
     quiet: Quiet = False,
 ) -> None:
     """Repair a mesh file."""
-    from quadpatch.repair import repair_and_keep  # noqa: PLC0415  the libraries behind it take a second to load
-
     with clear_errors(), progress_bars(quiet) as progress:
         options = RepairOptions(
             HoleOptions(
@@ -119,6 +118,9 @@ def fill(  # noqa: PLR0913, PLR0917  one argument per flag
         check_outputs(source, output, others, may_overwrite=overwrite)
         if closeups:
             check_folder(closeups, [source, output, *others])
+        put_off_unused()
+        from quadpatch.repair import repair_and_keep  # noqa: PLC0415  numerical libraries, once there is work to do
+
         repaired = repair_and_keep(source, output, model, options, progress)
         logging.getLogger("quadpatch").addHandler(logging.NullHandler())  # what people read is in the warnings
         if report and not is_stream(report):  # drawing may take the process down
@@ -156,6 +158,8 @@ def _reasons(report: dict[str, Any], *verdicts: str) -> str:
 
 def _draw(repaired: "RepairedFile", preview: Path | None, closeups: Path | None) -> None:
     """Draw what was asked for; what fails is a warning in the report."""
+    if not (preview or closeups):
+        return
     from quadpatch.preview.drawing import add_close_ups, add_picture  # noqa: PLC0415  see fill
 
     if preview:

@@ -6,14 +6,16 @@ Tested in `tests/quadpatch/cli/test_fill.py`.
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import NoReturn
+from typing import TYPE_CHECKING, NoReturn
 
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn
 from rich.text import Text
 
-from quadpatch import types
 from quadpatch.errors import QuadpatchError
+from quadpatch.progress import Progress, no_progress
+
+if TYPE_CHECKING:
+    from rich.progress import TaskID
 
 errors = Console(stderr=True)
 
@@ -42,13 +44,19 @@ def _fail(code: str, message: str) -> NoReturn:
 
 
 @contextmanager
-def progress_bars(quiet: bool) -> Iterator[types.Progress]:
+def progress_bars(quiet: bool) -> Iterator[Progress]:
     """Show a bar for each stage on a terminal; nothing elsewhere."""
     if quiet or not errors.is_terminal:
-        yield types.no_progress
+        yield no_progress
         return
-    columns = TextColumn("{task.description:<14}"), BarColumn(), TimeElapsedColumn()
-    with Progress(*columns, console=errors) as bars:
+    from rich import progress as rich_progress  # noqa: PLC0415  no script needs it
+
+    columns = (
+        rich_progress.TextColumn("{task.description:<14}"),
+        rich_progress.BarColumn(),
+        rich_progress.TimeElapsedColumn(),
+    )
+    with rich_progress.Progress(*columns, console=errors) as bars:
         tasks: dict[str, TaskID] = {}
 
         def progress(stage: str, fraction: float) -> None:

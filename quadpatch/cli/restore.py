@@ -22,7 +22,7 @@ from quadpatch.cli.flags import (
     Source,
 )
 from quadpatch.cli.tasks import Files, given, run_task
-from quadpatch.types import Progress
+from quadpatch.progress import Progress
 
 if TYPE_CHECKING:
     from quadpatch.tasks.result import TaskResult

@@ -8,7 +8,6 @@ there and never folds, and new vertices lie on the plane.
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-import manifold3d
 import numpy as np
 
 from quadpatch.filling.filled_mesh import FilledMesh
@@ -138,6 +137,8 @@ def _plane_of(vertices: Vertices, loops: Sequence[IntArray]) -> _Plane | None:
 
 def _triangulate(flat: FloatArray, counts: list[int]) -> Triangles | None:
     """Triangulate rims (n, 2), laid end to end, without new vertices; None where they cross."""
+    import manifold3d  # noqa: PLC0415  most repairs have no flat cap
+
     # A patch runs along its rims the other way than the surface does.
     turned = [np.arange(end - 1, end - 1 - count, -1) for count, end in zip(counts, np.cumsum(counts), strict=True)]
     found = manifold3d.triangulate([np.ascontiguousarray(flat[part]) for part in turned], allow_convex=False)

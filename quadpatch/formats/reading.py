@@ -9,18 +9,16 @@ from pathlib import Path
 
 from quadpatch.errors import ReadError
 from quadpatch.formats.detection import detect_format
-from quadpatch.formats.gltf.reader import read_gltf
 from quadpatch.formats.limits import ReadLimits
 from quadpatch.formats.obj import read_obj
 from quadpatch.formats.off import read_off
 from quadpatch.formats.ply.reader import read_ply
 from quadpatch.formats.scan import Scan
 from quadpatch.formats.stl import read_stl
-from quadpatch.formats.threemf.reader import read_threemf
 
 __all__ = ["ReadLimits", "read_bytes", "read_scan"]
 
-_READERS = {"ply": read_ply, "stl": read_stl, "obj": read_obj, "off": read_off, "3mf": read_threemf}
+_READERS = {"ply": read_ply, "stl": read_stl, "obj": read_obj, "off": read_off}
 
 
 def read_scan(path: Path, limits: ReadLimits | None = None, *, allow_missing: bool = False) -> Scan:
@@ -73,6 +71,13 @@ def read_bytes(data: bytes, kind: str, limits: ReadLimits, folder: Path | None =
     MeshError
         As `read_scan`.
     """
+    # These two are packages, whose libraries the other formats do without.
     if kind in ("glb", "gltf"):
+        from quadpatch.formats.gltf.reader import read_gltf  # noqa: PLC0415
+
         return read_gltf(data, limits, folder)
+    if kind == "3mf":
+        from quadpatch.formats.threemf.reader import read_threemf  # noqa: PLC0415
+
+        return read_threemf(data, limits)
     return _READERS[kind](data, limits)

@@ -5,21 +5,38 @@ from pathlib import Path
 
 from quadpatch.errors import FormatError
 from quadpatch.formats.conversion import encode_as_obj, encode_as_off, encode_as_ply, encode_as_stl
-from quadpatch.formats.gltf.encoder import encode_as_glb, encode_as_gltf
-from quadpatch.formats.merged_scene import merge_scene
+from quadpatch.formats.merged_scene import MergedScene, merge_scene
 from quadpatch.formats.output_files import is_stream, write_whole
 from quadpatch.formats.scan import Fill, Scan
-from quadpatch.formats.threemf.encoder import encode_as_threemf
 from quadpatch.stages import failure_of
+
+
+def _encode_as_glb(scene: MergedScene) -> bytes:
+    from quadpatch.formats.gltf.encoder import encode_as_glb  # noqa: PLC0415  other formats do without it
+
+    return encode_as_glb(scene)
+
+
+def _encode_as_gltf(scene: MergedScene) -> bytes:
+    from quadpatch.formats.gltf.encoder import encode_as_gltf  # noqa: PLC0415  see above
+
+    return encode_as_gltf(scene)
+
+
+def _encode_as_threemf(scene: MergedScene) -> bytes:
+    from quadpatch.formats.threemf.encoder import encode_as_threemf  # noqa: PLC0415  see above
+
+    return encode_as_threemf(scene)
+
 
 ENCODERS = {
     "ply": encode_as_ply,
     "stl": encode_as_stl,
     "obj": encode_as_obj,
     "off": encode_as_off,
-    "glb": encode_as_glb,
-    "gltf": encode_as_gltf,
-    "3mf": encode_as_threemf,
+    "glb": _encode_as_glb,
+    "gltf": _encode_as_gltf,
+    "3mf": _encode_as_threemf,
 }
 
 

@@ -13,10 +13,11 @@ from quadpatch.inpainters.inpainter import UndamagedSurface
 from quadpatch.options import DictionaryOptions
 from quadpatch.patches.normalisation import raw_heights
 from quadpatch.patches.paper_layout import LEAST_KNOWN
+from quadpatch.progress import Progress, no_progress
 from quadpatch.sparse.dictionary import Dictionary
 from quadpatch.sparse.ksvd import KsvdOptions, OnIteration, masked_ksvd
 from quadpatch.sparse.omp import masked_omp
-from quadpatch.types import BoolArray, FloatArray, Patches, Progress, no_progress
+from quadpatch.types import BoolArray, FloatArray, Patches
 
 # The paper finds no gain beyond 50 to 100 atoms on the patches of one shape, and takes 500 for those of many.
 LOCAL_ATOMS = 100

@@ -12,8 +12,6 @@ Transactions on Graphics 33, 2014.
 """
 
 import numpy as np
-from embreex.mesh_construction import TriangleMesh as EmbreeMesh
-from embreex.rtcore_scene import EmbreeScene
 
 from quadpatch.types import FloatArray, IntArray, TriangleMesh
 
@@ -44,6 +42,9 @@ class RayScene:
     """
 
     def __init__(self, mesh: TriangleMesh) -> None:
+        from embreex.mesh_construction import TriangleMesh as EmbreeMesh  # noqa: PLC0415  not every repair casts rays
+        from embreex.rtcore_scene import EmbreeScene  # noqa: PLC0415
+
         self._centre, self._radius = _ball(mesh)
         self.resolution = _RESOLUTION * self._radius
         unit = (mesh.vertices - self._centre) / self._radius

@@ -15,7 +15,8 @@ from quadpatch.networks.precision import has_fast_bfloat16
 from quadpatch.networks.residual import Residual, errors, rotated
 from quadpatch.options import NetworkOptions
 from quadpatch.patches.residual_input import RESOLUTION, corrected, network_input
-from quadpatch.types import FloatArray, Patches, Progress, no_progress
+from quadpatch.progress import Progress, no_progress
+from quadpatch.types import FloatArray, Patches
 
 BATCH = 64
 RATE = 4e-3

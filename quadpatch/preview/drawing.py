@@ -18,10 +18,10 @@ from quadpatch.preview.comparison import render_comparison
 from quadpatch.preview.hole_pictures import NumberedHole, draw_hole
 from quadpatch.preview.pair import Pair, prepare
 from quadpatch.preview.sheet import render_before_after
+from quadpatch.progress import Progress, no_progress
 from quadpatch.repair import RepairedFile
 from quadpatch.stages import failure_of
 from quadpatch.tasks.result import TaskResult
-from quadpatch.types import Progress, no_progress
 
 # Of an archive of close-ups. One takes about a second of a busy core and a hundred kilobytes.
 MOST_CLOSE_UPS = 100

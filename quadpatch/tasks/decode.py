@@ -12,12 +12,12 @@ from quadpatch.errors import ModelError, ReadError
 from quadpatch.formats.limits import ReadLimits
 from quadpatch.formats.plain import write_mesh
 from quadpatch.formats.writing import check_suffix
+from quadpatch.progress import Progress, no_progress
 from quadpatch.report import UNKNOWN_UNIT, describe_stages, json_ready
 from quadpatch.sparse.dictionary import Dictionary
 from quadpatch.stages import Stages, harmless
 from quadpatch.tasks.encode import load_dictionary
 from quadpatch.tasks.result import TaskResult
-from quadpatch.types import Progress, no_progress
 
 
 def decode_file(

@@ -18,11 +18,12 @@ from quadpatch.formats.writing import check_suffix, written_as
 from quadpatch.mesh.normals import length
 from quadpatch.mesh.weld import Weld
 from quadpatch.model_choice import SELF, SMOOTH, find_model, sha256_of
+from quadpatch.progress import Progress, no_progress
 from quadpatch.repair import read_surface
 from quadpatch.report import describe_redundancy, describe_task, json_ready
 from quadpatch.stages import Stages, harmless
 from quadpatch.tasks.result import TaskResult
-from quadpatch.types import BoolArray, FloatArray, Progress, TriangleMesh, no_progress
+from quadpatch.types import BoolArray, FloatArray, TriangleMesh
 
 # The vertex property that says how far each vertex moved.
 SHIFT = "shift"

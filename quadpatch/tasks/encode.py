@@ -16,13 +16,14 @@ from quadpatch.formats.output_files import is_stream, write_whole
 from quadpatch.formats.scan import Scan
 from quadpatch.mesh.measures import diagonal
 from quadpatch.model_choice import find_model
+from quadpatch.progress import Progress, no_progress
 from quadpatch.repair import read_surface
 from quadpatch.report import describe_redundancy, describe_task, json_ready
 from quadpatch.sparse.dictionary import Dictionary
 from quadpatch.stages import Stages, failure_of, harmless
 from quadpatch.tasks.measures import corrected_patches, entities
 from quadpatch.tasks.result import TaskResult
-from quadpatch.types import Progress, TriangleMesh, no_progress
+from quadpatch.types import TriangleMesh
 
 SUFFIX = ".qpz"
 # Rounding of distances, relative.

@@ -12,13 +12,14 @@ from quadpatch.formats.writing import check_suffix
 from quadpatch.model_choice import SELF, find_model, length_share
 from quadpatch.options import DictionaryOptions
 from quadpatch.patches.normalisation import HEIGHTS, NORMALISATION
+from quadpatch.progress import Progress, no_progress
 from quadpatch.reconstruction.coding import PatchDictionary
 from quadpatch.reconstruction.whole_surface import Reconstruction, ReconstructOptions, reconstruct
 from quadpatch.repair import read_surface
 from quadpatch.report import describe_redundancy, describe_task, json_ready
 from quadpatch.stages import Stages, harmless
 from quadpatch.tasks.result import TaskResult
-from quadpatch.types import Progress, TriangleMesh, no_progress
+from quadpatch.types import TriangleMesh
 
 ERROR = "reconstruction_error"
 OVERLAP = "overlap"

@@ -14,12 +14,13 @@ from quadpatch.formats.writing import check_suffix
 from quadpatch.mesh.weld import Weld, weld
 from quadpatch.model_choice import SELF, SELF_NETWORK, SELF_NETWORK_KIND, choose_model
 from quadpatch.options import RepairOptions
+from quadpatch.progress import Progress, no_progress
 from quadpatch.report import describe_task, json_ready
 from quadpatch.restoration.restore import Restoration, RestoreOptions, restore
 from quadpatch.stages import Stages, harmless
 from quadpatch.tasks.missing_vertices import NAN, missing_vertices
 from quadpatch.tasks.result import TaskResult
-from quadpatch.types import BoolArray, FloatArray, Progress, TriangleMesh, Vertices, no_progress
+from quadpatch.types import BoolArray, FloatArray, TriangleMesh, Vertices
 
 RESTORED = "restored"
 EXPECTED_ERROR = "expected_error"

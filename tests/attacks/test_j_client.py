@@ -17,10 +17,11 @@ from client.exit_codes import ExitCode, exit_code_of
 from client.lenient_json import read_leniently
 from client.options import HoleChoice, MethodChoice
 from client.packing import packed
+from client.progress import no_progress
 from client.repairing import Task, repair
 from client.screen import Screen
 from client.sdk import Client
-from client.transfers import download, no_progress
+from client.transfers import download
 from client.transport import Transport
 from jobkit.schema import Job, JobPage, JobSpec, JobState, Mesh, MeshProblem, MeshState, SmoothMethod
 from tests.client import conftest as scripted

@@ -14,8 +14,9 @@ import pytest
 from client.errors import UsageError
 from client.exit_codes import ExitCode
 from client.outputs import check_stdout, is_stream
+from client.progress import no_progress
 from client.repairing import format_of
-from client.transfers import download, no_progress
+from client.transfers import download
 from client.transport import Transport
 from tests.client import conftest as scripted
 from tests.client.wire_jobs import JOB_ID, PATH, body

@@ -1,7 +1,8 @@
 import pytest
 
 from client.errors import UsageError
-from client.options import HoleChoice, MethodChoice, MethodName, make_spec, tolerance
+from client.options import HoleChoice, MethodChoice, MethodName, tolerance
+from client.spec import make_spec
 from jobkit.schema import CnnMethod, DictionaryMethod, Fitting, HoleRule, PatchOptions
 
 MESH_ID = "0" * 64

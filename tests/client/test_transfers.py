@@ -6,7 +6,8 @@ from typing import Any
 import pytest
 
 from client.errors import DamagedTransferError, UnreachableError
-from client.transfers import download, no_progress
+from client.progress import no_progress
+from client.transfers import download
 from client.transport import Transport
 
 BODY = bytes(range(256)) * 4000

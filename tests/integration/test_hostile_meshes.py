@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 
 from client.errors import JobFailedError, MeshRejectedError, RefusedError
+from client.progress import no_progress
 from client.sdk import Client
-from client.transfers import no_progress
 from jobkit.schema import Job, JobSpec, Mesh
 from tests.waiting import GUARD_S
 

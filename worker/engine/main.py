@@ -16,6 +16,7 @@ from quadpatch.options import RepairOptions
 from quadpatch.preview.drawing import add_close_up_archive, add_comparison, add_picture
 from quadpatch.repair import repair_and_keep
 from quadpatch.tasks.inspect import inspect_any
+from worker.engine import preloading  # noqa: F401  loads what would else be loaded in each engine
 from worker.engine.entry import run_confined
 from worker.engine.reports import Reporter
 from worker.engine.request import CLOSE_UPS_NAME, FACTS_NAME, PREVIEW_NAME, REPORT_NAME, EngineRequest, EngineTask

@@ -8,13 +8,13 @@ from typing import Any
 from quadpatch.compression.encode import EncodeOptions
 from quadpatch.denoising.denoise import DenoiseOptions
 from quadpatch.model_choice import SELF
+from quadpatch.progress import Progress
 from quadpatch.restoration.restore import RestoreOptions
 from quadpatch.tasks.decode import decode_file
 from quadpatch.tasks.denoise import denoise_file
 from quadpatch.tasks.encode import encode_file
 from quadpatch.tasks.restore import restore_file
 from quadpatch.tasks.result import TaskResult
-from quadpatch.types import Progress
 from worker.engine.request import MISSING_NAME, EngineRequest, EngineTask
 
 

@@ -20,8 +20,9 @@ from quadpatch.errors import StageError
 from quadpatch.formats.moving import Moved, write_moved
 from quadpatch.formats.reading import read_scan
 from quadpatch.formats.vertex_properties import vertex_property
+from quadpatch.progress import Progress
 from quadpatch.tasks.result import TaskResult
-from quadpatch.types import Progress, TriangleMesh
+from quadpatch.types import TriangleMesh
 from tests.quadpatch.shapes import bumpy_plate, sphere, write_ply
 from tests.waiting import GUARD_S
 

@@ -83,4 +83,4 @@ def test_the_place_of_a_fill_tells_whether_the_part_was_enough(repaired: Repair)
     part = repair_region(SCAN, loops_of(repaired), reach, None, np.random.default_rng(0))
     assert part.holds(repaired.filled)
     new = repaired.filled.mesh.vertices[repaired.filled.n_measured_vertices :]
-    assert not part.holds(repaired.filled.with_vertices(new + [0.0, 0.0, 1.0]))
+    assert not part.holds(repaired.filled.with_vertices(new + np.array([0.0, 0.0, 1.0])))

@@ -1,0 +1,61 @@
+"""How the options of a command become a job spec.
+
+Tested in `tests/client/test_options.py`.
+"""
+
+from collections.abc import Sequence
+from typing import Any
+
+from pydantic import ValidationError
+
+from client.errors import UsageError
+from client.options import HoleChoice, MethodChoice
+from jobkit.schema import SELF, JobSpec, conflict_of
+from shared_rules.rule_text import RuleTextError, read_rule
+
+
+def make_spec(mesh_id: str, holes: HoleChoice, method: MethodChoice, **rest: Any) -> JobSpec:
+    """Build a job spec from what was given; the service fills in the defaults of what was not.
+
+    Raises
+    ------
+    UsageError
+        If an option is out of its range, or does not go with the method or with another option.
+    """
+    chosen = _given({**vars(holes), "rules": _rules(holes.rules)})
+    values = {"mesh_id": mesh_id, "holes": chosen, **_given({"method": _method(method)}), **_given(rest)}
+    try:
+        spec = JobSpec.model_validate(values)
+    except ValidationError as error:
+        lines = [f"{'.'.join(str(step) for step in e['loc'])}: {e['msg']}" for e in error.errors()]
+        raise UsageError("; ".join(lines)) from error
+    conflict = conflict_of(spec)
+    if conflict is not None:
+        raise UsageError(conflict)
+    return spec
+
+
+def _method(choice: MethodChoice) -> dict[str, Any]:
+    patches = _given({name: getattr(choice, name) for name in ("length", "resolution", "overlap", "preset")})
+    fitting = _given({"steps": choice.fit_steps, "seconds": choice.fit_seconds})
+    if choice == MethodChoice():
+        return {}  # the service has a default of its own for each task
+    if fitting and (choice.method, choice.model) != ("cnn", SELF):
+        raise UsageError("only the method 'cnn' with the model 'self' fits a network; others take no time to fit")
+    if choice.method == "smooth":
+        if choice.model is not None or choice.recipe is not None or patches:
+            raise UsageError("the method 'smooth' takes no model, no recipe and no patch options")
+        return {"method": "smooth"}
+    rest = _given({"model": choice.model, "recipe": choice.recipe, "fitting": fitting})
+    return {"method": choice.method, "patches": patches, **rest}
+
+
+def _given(values: dict[str, Any]) -> dict[str, Any]:
+    return {name: value for name, value in values.items() if value not in (None, [], {})}
+
+
+def _rules(texts: Sequence[str] | None) -> list[dict[str, Any]]:
+    try:
+        return [read_rule(text) for text in texts or ()]
+    except RuleTextError as error:
+        raise UsageError(str(error)) from error

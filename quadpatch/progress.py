@@ -1,0 +1,15 @@
+"""How a task tells its caller how far it is.
+
+A module of its own, without numpy: the command line needs it before it knows whether there is anything to do.
+
+Tested in `tests/quadpatch/cli/test_start.py`.
+"""
+
+from collections.abc import Callable
+
+# Called as progress(stage, fraction done of that stage in 0..1).
+Progress = Callable[[str, float], None]
+
+
+def no_progress(stage: str, fraction: float) -> None:
+    """Ignore progress."""
