@@ -42,6 +42,12 @@ def dictionary(  # noqa: PLR0913 - one parameter for each option of the command 
         Preset | None, typer.Option(help="The paper's patches: 0.03 of the longest side in 16 bins, or 0.06 in 24.")
     ] = None,
     overlap: Annotated[int, typer.Option(min=0, max=8, help="Every quad carries 4 k offset patches.")] = 1,
+    edge: Annotated[
+        float | None,
+        typer.Option(
+            "--normalise", min=1e-4, max=0.5, help="Scale meshes to the unit cube and this edge length first."
+        ),
+    ] = None,
     procedural: Annotated[int, typer.Option(min=0, help="Procedural reliefs of each pattern to learn from.")] = 0,
     holdout: Annotated[list[str] | None, typer.Option(help="Mesh (file name without suffix) to measure on.")] = None,
     seed: Annotated[int, typer.Option(min=0, help="Starts every random choice.")] = 0,
@@ -55,7 +61,7 @@ def dictionary(  # noqa: PLR0913 - one parameter for each option of the command 
         bins = resolution or (PRESETS[preset][1] if preset else usual.recipe.resolution)
         patches = replace(usual.recipe, resolution=bins, length=_length(patch_length), overlap=overlap, preset=preset)
         ksvd = KsvdOptions(atoms or usual.ksvd.n_atoms, nonzero or usual.ksvd.n_nonzero, iterations)
-        options = LearningOptions(patches, ksvd, procedural, seed=seed)
+        options = LearningOptions(patches, ksvd, procedural, seed=seed, edge_length=edge)
         file = output or Path(f"{name}.safetensors")
         run(Request(name, meshes, holdout or [], options, command_line(), file, curve, register), console)
 

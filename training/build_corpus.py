@@ -20,8 +20,9 @@ from quadpatch.patches.normalisation import HEIGHTS
 from quadpatch.progress import Progress, no_progress
 from quadpatch.types import TriangleMesh
 from training import training_pairs
-from training.corpus import PatchRecipe, cut_patches, read_mesh
+from training.corpus import PatchRecipe, cut_patches
 from training.dictionary import HOLDOUT_SEED_OFFSET, PROCEDURAL_SEEDS
+from training.normalise import read_normalised
 from training.patterns import PATTERNS
 from training.procedural import Relief, reliefs
 from training.shards import Arrays, Corpus, CorpusWriter, Facts
@@ -57,6 +58,8 @@ class CorpusOptions:
     relief_side : int
         Vertices along one side of a procedural mesh.
     seed : int
+    edge_length : float or None
+        Meshes are scaled into the unit cube and brought to this edge length first; None leaves them as they are.
     command : str
         What was typed, for the cards of the networks that learn from it.
     """
@@ -70,6 +73,7 @@ class CorpusOptions:
     n_procedural: int = 0
     relief_side: int = 120
     seed: int = 0
+    edge_length: float | None = None
     command: str = ""
 
     def __post_init__(self) -> None:
@@ -86,6 +90,7 @@ class CorpusOptions:
             "overlap": self.overlap,
             "max_places_per_mesh_and_scale": self.places,
             "procedural": {"patterns": sorted(PATTERNS), "n_each": self.n_procedural} if self.n_procedural else {},
+            **({"edge_length": self.edge_length} if self.edge_length is not None else {}),
             "seed": self.seed,
             "command": self.command,
         }
@@ -131,7 +136,7 @@ def build_corpus(
         for source in meshes:
             progress(source.name, done / n_all)
             rng = np.random.default_rng([options.seed, 0, done])
-            writer.add(source, split, cut(read_mesh(source.path), options, rng))
+            writer.add(source, split, cut(read_normalised(source.path, options.edge_length), options, rng))
             done += 1
     few = replace(options, places=min(options.places, PROCEDURAL_SEEDS))
     for split, n_each, seed in (

@@ -109,6 +109,7 @@ def dictionary_card(
         "recipe": {
             "signal": _SIGNALS[recipe.normalisation],
             "training_patch_length": f"patches {base}; times {scales}",
+            **({"edge_length": f"{options.edge_length:g} of the longest side"} if options.edge_length else {}),
             "n_iterations": ksvd.n_iterations,
             "overlap": recipe.overlap,
             "max_places_per_mesh": recipe.max_seeds,

@@ -34,6 +34,12 @@ def corpus(  # noqa: PLR0913 - one parameter for each option of the command line
     edges: Annotated[float, typer.Option(min=1.0, help="Side of the smallest patches, in mean edges.")] = EDGES,
     overlap: Annotated[int, typer.Option(min=0, max=8, help="Every quad carries 4 k offset patches.")] = 2,
     places: Annotated[int, typer.Option(min=1, help="Patches of one mesh and size, at most.")] = 2000,
+    edge: Annotated[
+        float | None,
+        typer.Option(
+            "--normalise", min=1e-4, max=0.5, help="Scale meshes to the unit cube and this edge length first."
+        ),
+    ] = None,
     procedural: Annotated[int, typer.Option(min=0, help="Procedural reliefs of each pattern to add.")] = 0,
     holdout: Annotated[list[str] | None, typer.Option(help="Mesh (file name without suffix) to validate on.")] = None,
     seed: Annotated[int, typer.Option(min=0, help="Starts every random choice.")] = 0,
@@ -49,6 +55,7 @@ def corpus(  # noqa: PLR0913 - one parameter for each option of the command line
             places=places,
             n_procedural=procedural,
             seed=seed,
+            edge_length=edge,
             command=command_line(),
         )
         sources, held_out = split_holdout(find_sources(meshes), holdout or [])

@@ -17,8 +17,9 @@ from quadpatch.progress import Progress, no_progress
 from quadpatch.sparse.dictionary import Dictionary
 from quadpatch.sparse.ksvd import KsvdOptions, OnIteration, masked_ksvd
 from quadpatch.types import FloatArray
-from training.corpus import PatchRecipe, TrainingPatches, cut_patches, read_mesh, turn_at_random
+from training.corpus import PatchRecipe, TrainingPatches, cut_patches, turn_at_random
 from training.evaluation import evaluate
+from training.normalise import read_normalised
 from training.patterns import PATTERNS
 from training.procedural import reliefs
 from training.sources import Source
@@ -42,6 +43,8 @@ class LearningOptions:
     relief_side : int
         Vertices along one side of a procedural mesh.
     seed : int
+    edge_length : float or None
+        Meshes are scaled into the unit cube and brought to this edge length first; None leaves them as they are.
     """
 
     recipe: PatchRecipe = field(default_factory=PatchRecipe)
@@ -49,6 +52,7 @@ class LearningOptions:
     n_procedural: int = 0
     relief_side: int = 120
     seed: int = 0
+    edge_length: float | None = None
 
 
 # What is learned where nothing else is asked for, for each recipe of a repair.
@@ -172,7 +176,8 @@ def _gather(
     n_all = len(sources) + n_procedural * len(PATTERNS)
     cut: list[TrainingPatches] = []
     for source in sources:
-        cut.append(cut_patches(read_mesh(source.path), recipe, np.random.default_rng([seed, 0, len(cut)])))
+        mesh = read_normalised(source.path, options.edge_length)
+        cut.append(cut_patches(mesh, recipe, np.random.default_rng([seed, 0, len(cut)])))
         progress("", len(cut) / n_all)
     for relief in reliefs(n_procedural, seed, options.relief_side):
         cut.append(cut_patches(relief.mesh, few, np.random.default_rng([seed, 0, len(cut)])))

@@ -55,6 +55,12 @@ def normalised(mesh: TriangleMesh, edge_length: float) -> TriangleMesh:
     return collapse_edges(split, n_wanted) if mean_edge_length(split) < edge_length else split
 
 
+def read_normalised(path: Path, edge_length: float | None) -> TriangleMesh:
+    """Read a training mesh; with an edge length, a share of the longest side, it is normalised. Raises MeshError."""
+    mesh = read_mesh(path)
+    return mesh if edge_length is None else normalised(mesh, edge_length)
+
+
 def normalise_dataset(
     sources: list[Source], edge_length: float, folder: Path, progress: Progress = no_progress
 ) -> list[Path]:
@@ -85,7 +91,7 @@ def normalise_dataset(
     for done, source in enumerate(sources):
         progress(source.name, done / len(sources))
         path = folder / f"{source.name}.ply"
-        write_ply(normalised(read_mesh(source.path), edge_length), path)
+        write_ply(read_normalised(source.path, edge_length), path)
         written.append(path)
     entries = [{**asdict(source), "path": source.path.name, "edge_length": edge_length} for source in sources]
     (folder / MANIFEST).write_text(json.dumps(entries, indent=1) + "\n", "utf-8")

@@ -1,3 +1,4 @@
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -27,6 +28,16 @@ def test_heights_do_not_change_with_the_unit_of_length(relief: TriangleMesh) -> 
     larger = cut_heights(TriangleMesh(1024.0 * relief.vertices, relief.triangles), OPTIONS, np.random.default_rng(0))
     np.testing.assert_array_equal(larger["known"], known)
     np.testing.assert_allclose(larger["heights"], heights, atol=1e-5)
+
+
+def test_a_corpus_of_normalised_meshes_is_the_same_for_every_unit(relief: TriangleMesh, tmp_path: Path) -> None:
+    counts = []
+    for name, scale in (("one", 1.0), ("other", 1024.0)):
+        write_ply(tmp_path / f"{name}.ply", TriangleMesh(scale * relief.vertices, relief.triangles))
+        options = replace(OPTIONS, edge_length=0.03)
+        corpus = build_corpus(find_sources([tmp_path / f"{name}.ply"]), [], options, tmp_path / name)
+        counts.append(corpus.meshes("train")[0]["count"])
+    assert counts[0] == counts[1] > 0
 
 
 def test_a_mesh_too_small_for_a_patch_gives_none(relief: TriangleMesh) -> None:

@@ -10,7 +10,7 @@ from quadpatch.mesh.measures import longest_side, mean_edge_length
 from quadpatch.types import TriangleMesh
 from tests.quadpatch.shapes import moved, sphere, write_ply
 from training.corpus import read_mesh
-from training.normalise import normalise_dataset, normalised
+from training.normalise import normalise_dataset, normalised, read_normalised
 from training.sources import find_sources
 
 
@@ -35,6 +35,16 @@ def test_a_mesh_with_an_edge_of_three_faces_is_cut_there() -> None:
 def test_a_mesh_without_extent_is_an_error() -> None:
     with pytest.raises(EmptyMeshError):
         normalised(TriangleMesh(np.zeros((3, 3)), np.array([[0, 1, 2]])), 0.1)
+
+
+def test_training_normalises_on_demand_as_the_command_does(tmp_path: Path) -> None:
+    write_ply(tmp_path / "ball.ply", sphere(3, 5.0))
+    write_ply(tmp_path / "half.ply", sphere(3, 2.5))
+    (made,) = normalise_dataset(find_sources([tmp_path / "ball.ply"]), 0.1, tmp_path / "unit")
+    on_demand, half = (read_normalised(tmp_path / f"{name}.ply", 0.1) for name in ("ball", "half"))
+    assert np.abs(on_demand.vertices - read_mesh(made).vertices).max() < 1e-6
+    assert abs(longest_side(half) - longest_side(on_demand)) < 1e-6
+    assert longest_side(read_normalised(tmp_path / "half.ply", None)) == pytest.approx(5.0, rel=0.01)
 
 
 def test_a_dataset_keeps_its_names_and_licences(tmp_path: Path) -> None:
