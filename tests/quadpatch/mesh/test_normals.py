@@ -2,7 +2,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from quadpatch.mesh.normals import area_vectors, triangle_normals, unit, vertex_normals
+from quadpatch.mesh.normals import area_vectors, normals_at, triangle_normals, unit, vertex_normals
 from tests.quadpatch.shapes import bumpy_plate, open_grid, random_rotation, sphere
 
 
@@ -31,6 +31,16 @@ def test_a_vertex_normal_is_weighted_by_area() -> None:
     normals = vertex_normals(vertices, np.array([[0, 1, 2], [0, 2, 3]]))
     np.testing.assert_allclose(normals[0], np.array([3, 0, 1]) / np.sqrt(10), atol=1e-15)
     np.testing.assert_allclose(normals[1], [0, 0, 1], atol=1e-15)
+
+
+def test_normals_at_some_vertices_are_those_of_all() -> None:
+    mesh = bumpy_plate(12, 2.0)
+    vertices = np.concatenate([mesh.vertices, [[9.0, 9.0, 9.0]]])
+    wanted = np.array([144, 5, 77, 5, 0])
+    found = normals_at(vertices, mesh.triangles, wanted)
+    np.testing.assert_allclose(found, vertex_normals(vertices, mesh.triangles)[wanted], atol=1e-14)
+    assert not found[0].any()
+    assert normals_at(vertices, mesh.triangles, wanted[:0]).shape == (0, 3)
 
 
 def test_without_area_or_triangles_there_is_no_normal() -> None:
