@@ -13,3 +13,11 @@ Progress = Callable[[str, float], None]
 
 def no_progress(stage: str, fraction: float) -> None:
     """Ignore progress."""
+
+
+# Called with the done fraction of some work, 0..1.
+Fraction = Callable[[float], None]
+
+
+def no_fraction(done: float) -> None:
+    """Ignore how far it is."""

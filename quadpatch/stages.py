@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 
 from quadpatch.errors import QuadpatchError
-from quadpatch.progress import Progress, no_progress
+from quadpatch.progress import Fraction, Progress, no_progress
 from shared_rules.stages import Stage
 
 _log = logging.getLogger(__name__)
@@ -23,10 +23,22 @@ class Stages:
 
     progress: Progress = no_progress
     seconds: dict[str, float] = field(default_factory=dict)
+    _current: Stage | None = None
+
+    def part(self, start: float, end: float) -> Fraction:
+        """Return what turns the done fraction of a part of this stage into one of the whole stage, and reports it."""
+        name = self._current
+
+        def reach(fraction: float) -> None:
+            if name is not None:
+                self.progress(name, start + fraction * (end - start))
+
+        return reach
 
     @contextmanager
     def stage(self, name: Stage) -> Iterator[None]:
         """Time what happens inside."""
+        self._current = name
         self.progress(name, 0.0)
         start = time.perf_counter()
         try:

@@ -13,7 +13,6 @@ from dataclasses import dataclass
 from typing import Self
 
 from jobkit.errors import DatabaseError, DatabaseUnavailableError, StaleAttemptError
-from shared_rules.tasks import FILL, Task
 from worker.failures import StopReason
 from worker.progress import Progress
 
@@ -52,11 +51,11 @@ class HeartbeatCalls:
 
 
 class Heartbeat:
-    """Beats from entering a `with` block until leaving it; progress is that of the task."""
+    """Beats from entering a `with` block until leaving it; progress is that of a job."""
 
-    def __init__(self, heartbeat_calls: HeartbeatCalls, task: Task = FILL) -> None:
+    def __init__(self, heartbeat_calls: HeartbeatCalls, progress: Progress | None = None) -> None:
         self._heartbeat_calls = heartbeat_calls
-        self._progress = Progress(task)
+        self._progress = progress or Progress()
         self._written_progress = ("", 0.0)
         self._peak_mb = 0
         self._stop_event = threading.Event()

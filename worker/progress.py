@@ -4,20 +4,29 @@ from collections.abc import Mapping
 
 from shared_rules.tasks import FILL, Task
 
-# Share of a typical job's time, in percent; a stage that a method leaves out is skipped.
+# Share of a typical job's time, in percent. A repair by geometry alone is one long stage, `fill`.
+_BY_GEOMETRY: Mapping[str, int] = {
+    "read": 6,
+    "holes": 4,
+    "fill": 76,
+    "judge": 4,
+    "write": 4,
+    "preview": 3,
+    "closeups": 3,
+}
 _SHARES: Mapping[Task, Mapping[str, int]] = {
     "fill": {
-        "read": 4,
+        "read": 3,
         "holes": 2,
-        "fill": 10,
+        "fill": 44,
         "smooth": 3,
-        "quadrangulate": 10,
-        "patchify": 12,
-        "learn": 22,
-        "inpaint": 15,
-        "reconstruct": 8,
-        "judge": 4,
-        "write": 4,
+        "quadrangulate": 7,
+        "patchify": 8,
+        "learn": 15,
+        "inpaint": 5,
+        "reconstruct": 3,
+        "judge": 3,
+        "write": 2,
         "preview": 2,
         "closeups": 3,
     },
@@ -60,10 +69,10 @@ _MOST = 99.0
 
 
 class Progress:
-    """The furthest point that an attempt at a task has reached."""
+    """The furthest point that an attempt at a task has reached; whether geometry alone fills says how long it takes."""
 
-    def __init__(self, task: Task = FILL) -> None:
-        self._shares = _SHARES[task]
+    def __init__(self, task: Task = FILL, *, by_geometry: bool = False) -> None:
+        self._shares = _BY_GEOMETRY if by_geometry and task == FILL else _SHARES[task]
         self.stage = ""
         self.percent = 0.0
 

@@ -22,6 +22,7 @@ from jobkit.jobs.attempts import StartedAttempt
 from jobkit.jobs.stage_seconds import StageSeconds
 from jobkit.requeue import submit_job
 from jobkit.schema import JobError, JobResult, JobState
+from jobkit.schema.methods import SmoothMethod
 from jobkit.telemetry import StageSpans
 from quadpatch.stages import failure_of
 from worker.context import Context
@@ -32,6 +33,7 @@ from worker.failures import OUTAGE_DELAY_S, Failure, StopReason
 from worker.heartbeat import OUTAGE_TIMEOUT_S, Heartbeat, HeartbeatCalls
 from worker.models import deprecation, model_argument, network_card
 from worker.outcomes import folder_with_mesh, outcome_of
+from worker.progress import Progress
 from worker.results import (
     drop_result,
     missing_pictures,
@@ -108,8 +110,9 @@ def _drop(context: Context, started_attempt: StartedAttempt) -> None:
 
 
 def _run(context: Context, started_attempt: StartedAttempt) -> _Repaired:
-    calls, task = _heartbeat_calls(context, started_attempt), started_attempt.job.spec.task
-    with Heartbeat(calls, task) as heartbeat:
+    spec = started_attempt.job.spec
+    progress = Progress(spec.task, by_geometry=isinstance(spec.method, SmoothMethod))
+    with Heartbeat(_heartbeat_calls(context, started_attempt), progress) as heartbeat:
         return _work(context, started_attempt, heartbeat)
 
 

@@ -75,7 +75,7 @@ class CalibrationSet:
 
 def most_holes(diameter: float, edge_length: float) -> int:
     """Say how many calibration holes of a diameter are worth their time, both in mesh units."""
-    vertices = _VERTICES_PER_SQUARE * (diameter / edge_length) ** 2
+    vertices = _VERTICES_PER_SQUARE * (diameter / edge_length) ** 2 if edge_length > 0 else 1.0
     return int(np.clip(_MOST_VERTICES / max(vertices, 1.0), _ENOUGH, MAX_HOLES))
 
 

@@ -15,10 +15,11 @@ from scipy.spatial import cKDTree
 from quadpatch.calibration.calibration_set import ROUNDING, CalibrationSet, choose_energy, error_per_hole
 from quadpatch.calibration.synthetic_holes import new_loops
 from quadpatch.filling.fairing import Energy, triangles_around
-from quadpatch.filling.fill import close_holes, fair_holes
+from quadpatch.filling.fill import ClosedMesh, close_holes, fair_holes
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.mesh.averages import mean_by
 from quadpatch.mesh.distance import distance_to_mesh
+from quadpatch.progress import Fraction, no_fraction
 from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh
 
 # Weights of fills fall with this power of their expected error: at 8, one that is 10 % worse counts half.
@@ -50,13 +51,13 @@ class EnergyBlend:
         """Fill every hole by the same energy."""
         return cls((energy,), np.zeros(1), np.zeros(1))
 
-    def fill(self, mesh: TriangleMesh, loops: list[IntArray]) -> FilledMesh:
-        """Close boundary loops of a mesh, given as `boundary_loops` gives them."""
+    def fill(self, mesh: TriangleMesh, loops: list[IntArray], reach: Fraction = no_fraction) -> FilledMesh:
+        """Close boundary loops of a mesh, given as `boundary_loops` gives them; `reach` is told the done fraction."""
         closed = close_holes(mesh, loops)
-        fills = [fair_holes(closed, energy) for energy in self.energies]
+        fills = _faired(closed, self.energies, reach)
         if len(fills) == 1 or not loops:
             return replace(fills[0], energy_weights=np.ones((len(loops), len(fills))))
-        weights = self.weights(leave_one_ring_out(mesh, loops, self.energies))
+        weights = self.weights(leave_one_ring_out(mesh, loops, self.energies, reach))
         return replace(_blended(fills, weights), energy_weights=weights)
 
     def weights(self, misses: FloatArray) -> FloatArray:
@@ -71,9 +72,17 @@ class EnergyBlend:
 
 
 def learn_energy_blend(
-    calibration: CalibrationSet, energies: Sequence[Energy], default: Energy
+    calibration: CalibrationSet, energies: Sequence[Energy], default: Energy, reach: Fraction = no_fraction
 ) -> tuple[EnergyBlend, FilledMesh]:
     """Learn from calibration holes how to fill: by one energy, as `choose_energy` picks it, unless weighing beats it.
+
+    Parameters
+    ----------
+    calibration : CalibrationSet
+    energies : sequence of Energy
+    default : Energy
+    reach : callable
+        Told the done fraction.
 
     Returns
     -------
@@ -81,9 +90,9 @@ def learn_energy_blend(
     FilledMesh
         The calibration holes, filled by it.
     """
-    fills = [fair_holes(calibration.closed, energy) for energy in energies]
+    fills = _faired(calibration.closed, energies, reach)
     errors = np.array([error_per_hole(calibration, fill) for fill in fills])
-    misses = leave_one_ring_out(calibration.closed.mesh, calibration.loops, energies)
+    misses = leave_one_ring_out(calibration.closed.mesh, calibration.loops, energies, reach)
     best = energies.index(choose_energy(errors, calibration.diameter, energies, default))
     typical = np.nanmean(misses, axis=0) if np.isfinite(misses).any() else np.ones(len(energies))
     tiny = np.finfo(np.float64).tiny
@@ -95,7 +104,18 @@ def learn_energy_blend(
     return EnergyBlend.of_one(energies[best]), fills[best]
 
 
-def leave_one_ring_out(mesh: TriangleMesh, loops: list[IntArray], energies: Sequence[Energy]) -> FloatArray:
+def _faired(closed: ClosedMesh, energies: Sequence[Energy], reach: Fraction) -> list[FilledMesh]:
+    """Fair holes by each energy: the first half of the work."""
+    fills = []
+    for energy in energies:
+        fills.append(fair_holes(closed, energy))
+        reach(0.5 * len(fills) / len(energies))
+    return fills
+
+
+def leave_one_ring_out(
+    mesh: TriangleMesh, loops: list[IntArray], energies: Sequence[Energy], reach: Fraction = no_fraction
+) -> FloatArray:
     """Open holes one ring wider, close them by each energy, and measure how far it misses the vertices that were there.
 
     Parameters
@@ -104,6 +124,8 @@ def leave_one_ring_out(mesh: TriangleMesh, loops: list[IntArray], energies: Sequ
         With the holes open.
     loops : list of (n_loop,) int64
     energies : sequence of Energy
+    reach : callable
+        Told the done fraction, from one half on.
 
     Returns
     -------
@@ -137,6 +159,7 @@ def leave_one_ring_out(mesh: TriangleMesh, loops: list[IntArray], energies: Sequ
             new = TriangleMesh(filled.mesh.vertices, filled.mesh.triangles[filled.n_measured_triangles :])
             distance = distance_to_mesh(mesh.vertices[removed], new)
             misses[has_residual, number] = mean_by(hole_of_removed, distance, len(loops))[has_residual]
+            reach(0.5 + 0.5 * (number + 1) / len(energies))
     return misses
 
 

@@ -5,10 +5,11 @@ geometric fill, base surface, quads, patches, learning, completion, reconstructi
 """
 
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
-from quadpatch.calibration.calibration_set import CalibrationSet, cut_calibration_set, expect
+from quadpatch.calibration.calibration_set import CalibrationSet, cut_calibration_set, expect, most_holes
 from quadpatch.calibration.energy_selection import EnergyBlend, learn_energy_blend
 from quadpatch.calibration.error_model import PRIOR
 from quadpatch.errors import NoQuadsError
@@ -23,6 +24,7 @@ from quadpatch.mesh.holes import Hole, Selection, find_holes, select_holes
 from quadpatch.mesh.measures import EdgeStatistics, diagonal, edge_statistics, longest_side
 from quadpatch.options import RepairOptions
 from quadpatch.patches.scale import choose_scale, preset_scale
+from quadpatch.progress import Fraction, no_fraction
 from quadpatch.recipes.assessment import assess
 from quadpatch.recipes.learned_detail import Calibration, complete
 from quadpatch.recipes.repair_region import Reach, RepairRegion, repair_region
@@ -160,8 +162,10 @@ def _repair(task: _Task, region: Region, obstacles: Triangles | None, stages: St
     rng = np.random.default_rng(task.options.seed)
     with stages.stage("fill"):
         wanted = replace(task.wanted, loops=[region.local(loop) for loop in rims.loops])
-        calibration = _calibrate(task, mesh, rng)
-        checked = fill_checked(mesh, wanted, calibration.blend.fill, obstacles)
+        share = _share_of_calibration(task)
+        calibration = _calibrate(task, mesh, rng, stages.part(0.0, share))
+        fill = partial(calibration.blend.fill, reach=stages.part(share, 1.0))
+        checked = fill_checked(mesh, wanted, fill, obstacles)
     completion, warnings, by_model = None, [], task.by_model
     if inpainter is not None and by_model[checked.filled.vertex_hole].any():
         try:
@@ -193,17 +197,26 @@ def _filled_ones(selection: Selection, rims: JoinedRims) -> Selection:
     return Selection(rims.chosen, {**selection.skipped, **joined}, selection.actions)
 
 
-def _calibrate(task: _Task, mesh: TriangleMesh, rng: np.random.Generator) -> Calibration:
+def _share_of_calibration(task: _Task) -> float:
+    """Estimate the share of the work of filling that calibration is: its holes are like the real ones."""
+    diameter = task.typical_diameter()
+    n_calibration = 0 if diameter is None else most_holes(diameter, task.edges.mean)
+    return n_calibration / max(n_calibration + len(task.rims.loops), 1)
+
+
+def _calibrate(task: _Task, mesh: TriangleMesh, rng: np.random.Generator, reach: Fraction) -> Calibration:
     """Learn from calibration holes how to fill, and how large an error to expect of that."""
     diameter, edge = task.typical_diameter(), task.edges.mean
     holes = None if diameter is None else cut_calibration_set(mesh, diameter, edge, rng)
-    blend, filled = suitable_blend(holes)
+    blend, filled = suitable_blend(holes, reach)
     error_model = PRIOR if holes is None or filled is None else expect(holes, filled)
     return Calibration(task.diameters, edge, blend, error_model, holes, filled)
 
 
-def suitable_blend(holes: CalibrationSet | None) -> tuple[EnergyBlend, FilledMesh | None]:
+def suitable_blend(
+    holes: CalibrationSet | None, reach: Fraction = no_fraction
+) -> tuple[EnergyBlend, FilledMesh | None]:
     """Learn how this surface is continued best, as far as calibration tells; also the calibration holes, filled."""
     if holes is None:
         return EnergyBlend.of_one(PRIOR_ENERGY), None
-    return learn_energy_blend(holes, FAIRING_ENERGIES, DEFAULT_ENERGY)
+    return learn_energy_blend(holes, FAIRING_ENERGIES, DEFAULT_ENERGY, reach)

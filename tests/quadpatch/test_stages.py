@@ -18,6 +18,18 @@ def test_a_stage_tells_when_it_starts_and_ends() -> None:
     assert all(seconds >= 0 for seconds in stages.seconds.values())
 
 
+def test_parts_of_a_stage_report_as_shares_of_it() -> None:
+    told: list[tuple[str, float]] = []
+    stages = Stages(lambda name, fraction: told.append((name, fraction)))
+    with stages.stage("fill"):
+        first, second = stages.part(0.0, 0.8), stages.part(0.8, 1.0)
+        first(0.5)
+        second(0.5)
+    assert told[1:-1] == [("fill", 0.4), ("fill", 0.9)]
+    stages.part(0.0, 1.0)(0.5)
+    Stages().part(0.0, 1.0)(0.5)
+
+
 def test_a_stage_that_comes_twice_adds_up() -> None:
     stages = Stages()
     with stages.stage("learn"):

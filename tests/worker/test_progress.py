@@ -29,6 +29,17 @@ def test_every_stage_of_the_contract_moves_it_on() -> None:
     assert progress.percent == 99.0
 
 
+def test_a_repair_by_geometry_spends_most_of_its_time_filling() -> None:
+    progress = Progress(by_geometry=True)
+    progress.reach("fill", 0.0)
+    start = progress.percent
+    progress.reach("fill", 0.5)
+    assert progress.percent - start > 30.0
+    for stage in ("judge", "write", "preview", "closeups"):
+        progress.reach(stage, 1.0)
+    assert progress.percent == 99.0
+
+
 @pytest.mark.parametrize("task", TASKS)
 def test_a_task_that_reaches_its_picture_is_all_but_done(task: Task) -> None:
     progress = Progress(task)

@@ -46,6 +46,15 @@ def learned_relief() -> Repair:
     return inpaint(RELIEF, SelfDictionary(), RepairOptions())
 
 
+def test_filling_tells_how_far_it_is() -> None:
+    told: list[float] = []
+    stages = Stages(lambda name, fraction: told.append(fraction) if name == "fill" else None)
+    inpaint(SMALL_RELIEF, None, RepairOptions(), stages)
+    assert told == sorted(told)
+    assert len(told) > 8
+    assert max(np.diff(told)) < 0.5
+
+
 def new_vertices(repair: Repair) -> FloatArray:
     return repair.filled.mesh.vertices[repair.filled.n_measured_vertices :]
 
