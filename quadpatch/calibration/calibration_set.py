@@ -7,6 +7,7 @@ error to expect.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -17,7 +18,7 @@ from quadpatch.filling.fairing import Energy, triangles_around
 from quadpatch.filling.fill import ClosedMesh, close_holes
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.mesh.averages import mean_by
-from quadpatch.mesh.distance import distance_to_mesh
+from quadpatch.mesh.distance import DistanceTree, distance_to_mesh
 from quadpatch.mesh.loop_diameter import loop_diameter
 from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Vertices
 
@@ -71,6 +72,11 @@ class CalibrationSet:
     closed: ClosedMesh
     diameter: float
     diameters: FloatArray
+
+    @cached_property
+    def truth_tree(self) -> DistanceTree:
+        """For distances to the truth."""
+        return DistanceTree(self.truth)
 
 
 def most_holes(diameter: float, edge_length: float) -> int:
@@ -159,7 +165,7 @@ def error_per_hole(calibration: CalibrationSet, filled: FilledMesh) -> FloatArra
     new = filled.mesh.triangles[filled.n_measured_triangles :]
     points = np.concatenate([vertices[filled.n_measured_vertices :], vertices[new].mean(axis=1)])
     hole = np.concatenate([filled.vertex_hole, filled.triangle_hole])
-    there = mean_by(hole, distance_to_mesh(points, calibration.truth), n_holes)
+    there = mean_by(hole, calibration.truth_tree.distance(points), n_holes)
     # Every removed vertex belongs to the hole whose new surface is nearest.
     centroids = vertices[new].mean(axis=1)
     nearest = filled.triangle_hole[cKDTree(centroids).query(calibration.removed)[1]]
@@ -170,7 +176,7 @@ def error_per_hole(calibration: CalibrationSet, filled: FilledMesh) -> FloatArra
 def distance_per_hole(calibration: CalibrationSet, filled: FilledMesh) -> FloatArray:
     """Mean distance (n_holes,) of each calibration hole's new vertices to the true surface; 0 without any."""
     new = filled.mesh.vertices[filled.n_measured_vertices :]
-    return mean_by(filled.vertex_hole, distance_to_mesh(new, calibration.truth), len(filled.disagreement))
+    return mean_by(filled.vertex_hole, calibration.truth_tree.distance(new), len(filled.disagreement))
 
 
 def expect(calibration: CalibrationSet, filled: FilledMesh) -> ErrorModel:

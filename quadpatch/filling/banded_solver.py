@@ -10,7 +10,7 @@ E. Cuthill, J. McKee, "Reducing the bandwidth of sparse symmetric matrices", ACM
 A. George, J. Liu, "Computer Solution of Large Sparse Positive Definite Systems", 1981.
 """
 
-from collections.abc import Iterator
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -60,48 +60,85 @@ class EliminationOrder:
         starts = np.flatnonzero(np.diff(group[order], prepend=-1))
         return cls(position, np.append(starts, n))
 
-    def solve(self, matrix: "sparse.csr_array[np.float64]", right: FloatArray) -> FloatArray:
-        """Solve a symmetric positive definite system (n, n) for right sides (n, k).
+    def banded(self, matrix: "sparse.csr_array[np.float64] | sparse.csc_array[np.float64]") -> "BandedMatrix":
+        """Bring a symmetric matrix (n, n) into this order."""
+        entries = matrix.tocoo()
+        row, column = self.position[entries.row], self.position[entries.col]
+        is_upper = column >= row
+        row, column, values = row[is_upper], column[is_upper], entries.data[is_upper]
+        group = np.searchsorted(self.starts, row, side="right") - 1
+        bands: list[FloatArray | None] = []
+        for i, (start, end) in enumerate(zip(self.starts[:-1].tolist(), self.starts[1:].tolist(), strict=True)):
+            mine = group == i if len(self.starts) > 2 else slice(None)
+            offset = column[mine] - row[mine]
+            width = int(offset.max(initial=0))
+            if (width + 1) * (end - start) > _LARGEST_BAND:
+                bands.append(None)
+                continue
+            # As LAPACK wants it: by columns, the diagonal last.
+            band = np.zeros((end - start, width + 1))
+            band[column[mine] - start, width - offset] = values[mine]
+            bands.append(band)
+        return BandedMatrix(matrix, bands)
+
+    def solve(self, terms: "Sequence[tuple[float, BandedMatrix]]", right: FloatArray) -> FloatArray:
+        """Solve the positive definite system of a weighted sum of matrices for right sides (n, k).
 
         Raises
         ------
         RuntimeError
             If the matrix is singular.
         """
-        solution = np.empty_like(right)
-        for rows, band in self._bands(matrix):
-            solution[rows] = _solved(band, right[rows]) if band is not None else np.nan
+        solution = np.full(right.shape, np.nan)
+        unknown = np.empty(len(self.position), np.int64)
+        unknown[self.position] = np.arange(len(unknown))
+        for i, (start, end) in enumerate(zip(self.starts[:-1].tolist(), self.starts[1:].tolist(), strict=True)):
+            band, rows = _sum([(weight, term.bands[i]) for weight, term in terms]), unknown[start:end]
+            if band is None:
+                break
+            solution[rows] = _solved(band.T, right[rows])
         if np.isfinite(solution).all():
             return solution
         # Rounding may leave a matrix that is not definite, and a band may be too wide.
+        whole = sparse.csc_array((len(right), len(right)))
+        for weight, term in terms:
+            whole = whole + weight * sparse.csc_array(term.matrix)
         factors = splu(
-            sparse.csc_array(matrix),
+            whole,
             permc_spec="MMD_AT_PLUS_A",
             options={"SymmetricMode": True},
             diag_pivot_thresh=0.0,
         )
         return np.asarray(factors.solve(right))
 
-    def _bands(self, matrix: "sparse.csr_array[np.float64]") -> Iterator[tuple[IntArray, FloatArray | None]]:
-        """Unknowns and upper band of each group; None for a band that is too large."""
-        entries = matrix.tocoo()
-        row, column = self.position[entries.row], self.position[entries.col]
-        is_upper = column >= row
-        row, column, values = row[is_upper], column[is_upper], entries.data[is_upper]
-        unknown = np.empty(len(self.position), np.int64)
-        unknown[self.position] = np.arange(len(unknown))
-        group = np.searchsorted(self.starts, row, side="right") - 1
-        for i, (start, end) in enumerate(zip(self.starts[:-1].tolist(), self.starts[1:].tolist(), strict=True)):
-            mine = group == i
-            offset = column[mine] - row[mine]
-            width = int(offset.max(initial=0))
-            if (width + 1) * (end - start) > _LARGEST_BAND:
-                yield unknown[start:end], None
-                continue
-            # As LAPACK wants it: by columns.
-            band = np.zeros((end - start, width + 1))
-            band[column[mine] - start, width - offset] = values[mine]
-            yield unknown[start:end], band.T
+
+@dataclass(frozen=True)
+class BandedMatrix:
+    """A symmetric matrix in an order of elimination.
+
+    Attributes
+    ----------
+    matrix : (n, n) sparse array
+        As it was.
+    bands : list of (n_group, width + 1) float64 or None
+        Upper band of each group of blocks, by columns, the diagonal last; None where it would be too large.
+    """
+
+    matrix: "sparse.csr_array[np.float64] | sparse.csc_array[np.float64]"
+    bands: list[FloatArray | None]
+
+
+def _sum(terms: list[tuple[float, FloatArray | None]]) -> FloatArray | None:
+    """Add bands of several widths; None if one of them is missing."""
+    bands = [(weight, band) for weight, band in terms if band is not None]
+    if len(bands) < len(terms):
+        return None
+    n = len(bands[0][1])
+    width = max(band.shape[1] for _, band in bands)
+    total = np.zeros((n, width))
+    for weight, band in bands:
+        total[:, width - band.shape[1] :] += weight * band
+    return total
 
 
 def _solved(band: FloatArray, right: FloatArray) -> FloatArray:

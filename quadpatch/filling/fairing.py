@@ -18,7 +18,7 @@ import numpy as np
 from scipy import sparse
 
 from quadpatch.errors import StageError
-from quadpatch.filling.banded_solver import EliminationOrder
+from quadpatch.filling.banded_solver import BandedMatrix, EliminationOrder
 from quadpatch.mesh.normals import cross, length
 from quadpatch.types import BoolArray, FloatArray, IntArray, Triangles, Vertices
 
@@ -98,18 +98,20 @@ class FairingEquations:
         self._step = sparse.csr_array(sparse.diags_array(area[free].mean() / area) @ laplacian)
         # Rows of free vertices only: those of the outermost ring have lost triangles at the cut.
         self._rows = [sparse.csr_array(laplacian[free])]
+        self._terms: dict[int, _Term] = {}
 
     def minimise(self, energy: Energy) -> Vertices:
         """Return the vertices (n, 3) of least energy, as `fair` does."""
-        result, free = self._vertices.copy(), self._free
-        if not free.any():
+        result = self._vertices.copy()
+        if not self._free.any():
             return result
         weights = (energy.membrane, energy.plate, energy.variation)
-        equations = sum(weight * self._rows_of(power) for power, weight in enumerate(weights) if weight)
-        columns = sparse.csc_array(equations)
-        right = -(columns[:, ~free] @ self._vertices[~free])
+        terms = [(weight, self._term(power)) for power, weight in enumerate(weights) if weight]
+        right = np.zeros((int(self._free.sum()), 3))
+        for weight, term in terms:
+            right -= weight * term.fixed_part
         try:
-            result[free] = self.order.solve(columns[:, free], right)
+            result[self._free] = self.order.solve([(weight, term.matrix) for weight, term in terms], right)
         except RuntimeError as error:
             raise StageError("the surface around a hole is so small that its areas vanish in float64") from error
         return result
@@ -122,11 +124,34 @@ class FairingEquations:
             self._order = EliminationOrder.of(sparse.csr_array(self._rows_of(2)[:, self._free]))
         return self._order
 
+    def _term(self, power: int) -> "_Term":
+        if power not in self._terms:
+            columns, free = sparse.csc_array(self._rows_of(power)), self._free
+            fixed_part = np.asarray(columns[:, ~free] @ self._vertices[~free])
+            self._terms[power] = _Term(self.order.banded(columns[:, free]), fixed_part)
+        return self._terms[power]
+
     def _rows_of(self, power: int) -> "sparse.csr_array[np.float64]":
         """Rows of the free vertices of ``L``, ``L M^-1 L`` and ``L M^-1 L M^-1 L``."""
         while len(self._rows) <= power:
             self._rows.append(self._rows[-1] @ self._step)
         return self._rows[power]
+
+
+@dataclass(frozen=True)
+class _Term:
+    """One of the three terms of an energy.
+
+    Attributes
+    ----------
+    matrix : BandedMatrix
+        Of the free vertices.
+    fixed_part : (n_free, 3) float64
+        What the fixed vertices add.
+    """
+
+    matrix: BandedMatrix
+    fixed_part: FloatArray
 
 
 def _laplacian(vertices: Vertices, triangles: Triangles, *, uniform: bool) -> tuple[sparse.csr_array, FloatArray]:

@@ -30,6 +30,29 @@ def nearest_triangles(points: Vertices, mesh: TriangleMesh) -> tuple[FloatArray,
     return np.asarray(np.sqrt(squared)), np.asarray(triangle, np.int64)
 
 
+class DistanceTree:
+    """Distances to one mesh, asked for many times: its tree of bounding boxes is built once.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+    """
+
+    def __init__(self, mesh: TriangleMesh) -> None:
+        used, local = np.unique(mesh.triangles, return_inverse=True)
+        self._vertices, self._triangles = mesh.vertices[used], local.reshape(-1, 3)
+        self._tree = igl.AABB()
+        if len(self._triangles):
+            self._tree.init(self._vertices, self._triangles)
+
+    def distance(self, points: Vertices) -> FloatArray:
+        """Measure how far points (n, 3) are from the nearest triangle, as `distance_to_mesh` does."""
+        if not len(self._triangles) or not len(points):
+            return np.full(len(points), np.inf)
+        squared = self._tree.squared_distance(self._vertices, self._triangles, np.ascontiguousarray(points))[0]
+        return np.asarray(np.sqrt(squared))
+
+
 def nearest_points(points: Vertices, mesh: TriangleMesh) -> Vertices:
     """Find the nearest point (n, 3) of a mesh, which has triangles, to each of some points (n, 3)."""
     return np.asarray(_nearest(points, mesh)[2])

@@ -1,6 +1,7 @@
 """Edges and connected components."""
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
@@ -23,9 +24,8 @@ def components(links: IntArray, n: int) -> IntArray:
     if not len(links):
         return np.arange(n, dtype=np.int64)
     # Short integers, where they do: scipy would look for the largest one and copy.
-    index = np.int32 if n <= np.iinfo(np.int32).max else np.int64
-    start, end = links[:, 0].astype(index), links[:, 1].astype(index)
-    graph = coo_array((np.ones(len(links), np.int8), (start, end)), shape=(n, n))
+    short: NDArray[np.int32] | IntArray = links.astype(np.int32) if n <= np.iinfo(np.int32).max else links
+    graph = coo_array((np.ones(len(links), np.int8), (short[:, 0], short[:, 1])), shape=(n, n))
     return np.asarray(connected_components(graph, directed=False)[1], np.int64)
 
 

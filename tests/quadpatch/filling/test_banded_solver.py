@@ -20,6 +20,13 @@ def blocks(sizes: list[int], seed: int) -> "sparse.csr_array[np.float64]":
     return sparse.csr_array(sparse.csr_array(sparse.block_diag(parts))[names][:, names])
 
 
+def solved(
+    matrix: "sparse.csr_array[np.float64]", right: FloatArray, order: EliminationOrder | None = None
+) -> FloatArray:
+    order = order or EliminationOrder.of(matrix)
+    return order.solve([(1.0, order.banded(matrix))], right)
+
+
 def right_sides(n: int) -> FloatArray:
     return np.random.default_rng(1).normal(size=(n, 3))
 
@@ -28,36 +35,42 @@ def right_sides(n: int) -> FloatArray:
 def test_blocks_of_any_sizes_are_solved(sizes: list[int], seed: int) -> None:
     matrix = blocks(sizes, seed)
     right = right_sides(sum(sizes))
-    assert matrix @ EliminationOrder.of(matrix).solve(matrix, right) == pytest.approx(right, abs=1e-8)
+    assert matrix @ solved(matrix, right) == pytest.approx(right, abs=1e-8)
 
 
 def test_one_order_serves_other_matrices_of_the_same_pattern() -> None:
     matrix = blocks([30, 8, 21], 5)
     other = sparse.csr_array(matrix + 3 * sparse.eye_array(59))
     right = right_sides(59)
-    assert other @ EliminationOrder.of(matrix).solve(other, right) == pytest.approx(right, abs=1e-8)
+    assert other @ solved(other, right, EliminationOrder.of(matrix)) == pytest.approx(right, abs=1e-8)
+
+
+def test_a_sum_of_matrices_of_several_widths_is_solved() -> None:
+    wide = blocks([30, 8, 21], 5)
+    narrow = sparse.csr_array(sparse.diags_array(np.arange(1.0, 60.0)))
+    order, right = EliminationOrder.of(wide), right_sides(59)
+    found = order.solve([(0.3, order.banded(narrow)), (2.0, order.banded(wide))], right)
+    assert (0.3 * narrow + 2.0 * wide) @ found == pytest.approx(right, abs=1e-8)
 
 
 def test_a_band_that_is_too_large_is_left_to_a_general_solver(monkeypatch: pytest.MonkeyPatch) -> None:
     matrix, right = blocks([30, 8], 2), right_sides(38)
-    expected = EliminationOrder.of(matrix).solve(matrix, right)
+    expected = solved(matrix, right)
     monkeypatch.setattr(banded_solver, "_LARGEST_BAND", 50)
-    assert EliminationOrder.of(matrix).solve(matrix, right) == pytest.approx(expected, abs=1e-10)
+    assert solved(matrix, right) == pytest.approx(expected, abs=1e-10)
 
 
 def test_a_matrix_that_is_not_definite_is_solved_all_the_same() -> None:
     matrix = sparse.csr_array(np.array([[0.0, 2.0], [2.0, 0.0]]))
-    assert EliminationOrder.of(matrix).solve(matrix, np.array([[2.0], [4.0]])) == pytest.approx(
-        np.array([[2.0], [1.0]])
-    )
+    assert solved(matrix, np.array([[2.0], [4.0]])) == pytest.approx(np.array([[2.0], [1.0]]))
 
 
 def test_a_singular_matrix_is_an_error() -> None:
     matrix = sparse.csr_array(np.ones((2, 2)))
     with pytest.raises(RuntimeError):
-        EliminationOrder.of(matrix).solve(matrix, np.ones((2, 1)))
+        solved(matrix, np.ones((2, 1)))
 
 
 def test_nothing_has_no_unknowns() -> None:
     empty = sparse.csr_array((0, 0))
-    assert EliminationOrder.of(empty).solve(empty, np.zeros((0, 3))).shape == (0, 3)
+    assert solved(empty, np.zeros((0, 3))).shape == (0, 3)

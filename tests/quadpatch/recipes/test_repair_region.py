@@ -3,11 +3,11 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
+from quadpatch.filling.checked_fill import fill_checked
 from quadpatch.filling.region import Region
 from quadpatch.mesh.distance import distance_to_mesh
 from quadpatch.mesh.measures import edge_statistics
 from quadpatch.options import RepairOptions
-from quadpatch.recipes import default
 from quadpatch.recipes.default import inpaint
 from quadpatch.recipes.repair_region import Reach, repair_region
 from quadpatch.recipes.result import Repair
@@ -64,13 +64,13 @@ def test_a_part_gives_as_good_a_repair_as_the_whole(repaired: Repair, monkeypatc
 
 def test_a_fill_that_leaves_the_part_is_made_again_on_the_whole(monkeypatch: pytest.MonkeyPatch) -> None:
     seen: list[int] = []
-    usual = default.fill_checked
+    usual = fill_checked
 
     def watched(mesh: TriangleMesh, *rest: object) -> object:
         seen.append(len(mesh.triangles))
         return usual(mesh, *rest)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(default, "fill_checked", watched)
+    monkeypatch.setattr("quadpatch.recipes.default.fill_checked", watched)
     monkeypatch.setattr("quadpatch.recipes.repair_region._RINGS", 5.0)
     monkeypatch.setattr("quadpatch.recipes.repair_region.RepairRegion.holds", lambda self, filled: False)
     inpaint(SCAN, None, RepairOptions())
