@@ -26,7 +26,7 @@ PICTURES = {"PIL", "matplotlib"}
 NOT_FOR_GEOMETRY = {
     *PICTURES,
     *("constriction", "embreex", "manifold3d", "networkx", "onnxruntime", "pandas", "pymeshlab", "safetensors"),
-    *("threadpoolctl", "torch", "trimesh", "xml.parsers.expat", "rich.progress", "scipy.optimize"),
+    *("torch", "trimesh", "xml.parsers.expat", "rich.progress", "scipy.optimize"),
     *("numpy.f2py.crackfortran", "numpy.testing._private", "quadpatch.preview", "quadpatch.formats.gltf"),
 }
 
