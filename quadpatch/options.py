@@ -7,6 +7,7 @@ from typing import Any, Literal, TypeVar, get_args
 
 from quadpatch.errors import OptionError
 from shared_rules.hole_selection import MODEL_FILLS_ONLY, Cap, HoleKind, RuleAction, names_fills
+from shared_rules.option_words import Preset, Recipe
 
 RESOLUTION_RANGE = (8, 128)
 OVERLAP_RANGE = (0, 8)
@@ -18,12 +19,6 @@ Options = TypeVar("Options")
 
 # Options that are groups of their own.
 _NESTED = ("holes", "patches", "dictionary", "network")
-
-# How a model's patches become surface: `default` is this project's own way, `paper` that of the paper, step by step.
-Recipe = Literal["default", "paper"]
-
-# The paper's two kinds of patches, in units of the object's longest side: 0.03 with 16 bins, 0.06 with 24.
-Preset = Literal["type1", "type2"]
 
 
 @dataclass(frozen=True)

@@ -1,10 +1,10 @@
-"""Words that options of a job may have, on the wire and on the command line of the client."""
+"""Words that options may have: of the method, on the wire, and on the command line of the client."""
 
 from typing import Literal
 
-# How the model is put to use: our own way, or that of the paper.
+# How a model's patches become surface: `default` is this project's own way, `paper` that of the paper, step by step.
 Recipe = Literal["default", "paper"]
-# The paper's two kinds of patches.
+# The paper's two kinds of patches, in units of the object's longest side: 0.03 with 16 bins, 0.06 with 24.
 Preset = Literal["type1", "type2"]
 # What says where missing vertices lie: the triangles around them, or a Poisson surface as well.
 RestorationBase = Literal["mesh", "poisson"]

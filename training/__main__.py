@@ -8,9 +8,9 @@ import typer
 from rich.console import Console
 
 from quadpatch.errors import OptionError
-from quadpatch.options import Preset, Recipe
 from quadpatch.patches.scale import PRESETS
 from quadpatch.sparse.ksvd import KsvdOptions
+from shared_rules.option_words import Preset, Recipe
 from training.commands import corpus, network, normalise
 from training.dictionary import USUAL, LearningOptions
 from training.run import Request, run

@@ -16,7 +16,7 @@ from quadpatch.formats.reading import read_scan
 from quadpatch.mesh.measures import longest_side, mean_edge_length
 from quadpatch.mesh.smoothing import laplacian_smooth
 from quadpatch.mesh.weld import weld
-from quadpatch.options import PatchOptions, Preset
+from quadpatch.options import PatchOptions
 from quadpatch.patches.folding import is_unfolded
 from quadpatch.patches.layout import lay_out, patchify, take
 from quadpatch.patches.normalisation import HEIGHTS, NORMALISATION, to_signals
@@ -26,6 +26,7 @@ from quadpatch.patches.scale import EDGES_PER_BIN, PatchScale, base_surface_iter
 from quadpatch.recipes.paper import LEAST_EDGES_PER_BIN
 from quadpatch.recipes.paper import RESOLUTION as USUAL_RESOLUTION
 from quadpatch.types import BoolArray, FloatArray, Patches, TriangleMesh
+from shared_rules.option_words import Preset
 
 # Patches that vary less than this part of their side show noise, not a pattern worth an atom.
 LEAST_RELIEF = 1e-4

@@ -19,8 +19,9 @@ from quadpatch.filling.fill import ClosedMesh, close_holes, fair_holes
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.mesh.averages import mean_by
 from quadpatch.mesh.distance import distance_to_mesh
+from quadpatch.mesh.measures import used_vertices
 from quadpatch.progress import Fraction, no_fraction
-from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh
+from quadpatch.types import FloatArray, IntArray, TriangleMesh
 
 # Weights of fills fall with this power of their expected error: at 8, one that is 10 % worse counts half.
 SHARPNESS = 8.0
@@ -138,7 +139,7 @@ def leave_one_ring_out(
     ring = np.zeros(len(mesh.triangles), bool)
     ring[triangles_around(mesh.triangles, rim, n_vertices, 1)] = True
     remaining = mesh.triangles[~ring]
-    removed = np.flatnonzero(_used(mesh.triangles, n_vertices) & ~_used(remaining, n_vertices))
+    removed = np.flatnonzero(used_vertices(mesh.triangles, n_vertices) & ~used_vertices(remaining, n_vertices))
     rim_tree = cKDTree(mesh.vertices[rim])
     wider_loops = new_loops(mesh, remaining)
     closed = close_holes(TriangleMesh(mesh.vertices, remaining), wider_loops)
@@ -167,9 +168,3 @@ def _blended(fills: list[FilledMesh], weights: FloatArray) -> FilledMesh:
     invented = np.stack([fill.mesh.vertices[fill.n_measured_vertices :] for fill in fills], axis=1)
     of_vertex = weights[fills[0].vertex_hole]
     return fills[0].with_vertices(np.einsum("vek,ve->vk", invented, of_vertex))
-
-
-def _used(triangles: IntArray, n_vertices: int) -> BoolArray:
-    used = np.zeros(n_vertices, bool)
-    used[triangles] = True
-    return used

@@ -6,6 +6,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from quadpatch.mesh.boundary import boundary_loops, boundary_vertices
+from quadpatch.mesh.measures import used_vertices
 from quadpatch.mesh.normals import vertex_normals
 from quadpatch.types import BoolArray, IntArray, TriangleMesh, Triangles
 
@@ -94,8 +95,7 @@ def _disks(mesh: TriangleMesh, radius: float, spacing: Spacing, rng: np.random.G
 
 def _far_from_boundary(mesh: TriangleMesh, distance: float) -> BoolArray:
     """Vertices (n,) that a triangle uses and that keep a distance from every boundary edge."""
-    far = np.zeros(len(mesh.vertices), bool)
-    far[mesh.triangles] = True
+    far = used_vertices(mesh.triangles, len(mesh.vertices))
     rim = boundary_vertices(mesh.triangles)
     if len(rim):
         nearest, _ = cKDTree(mesh.vertices[rim]).query(mesh.vertices, distance_upper_bound=distance)

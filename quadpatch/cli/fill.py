@@ -27,16 +27,9 @@ from quadpatch.cli.reports import closing_words, n_holes, write_report
 from quadpatch.cli.scipy_start import put_off_unused
 from quadpatch.errors import OptionError
 from quadpatch.formats.output_files import check_folder, check_outputs, is_stream
-from quadpatch.options import (
-    DictionaryOptions,
-    HoleOptions,
-    HoleRule,
-    NetworkOptions,
-    PatchOptions,
-    Recipe,
-    RepairOptions,
-)
+from quadpatch.options import DictionaryOptions, HoleOptions, HoleRule, NetworkOptions, PatchOptions, RepairOptions
 from shared_rules.hole_selection import Cap
+from shared_rules.option_words import Recipe
 from shared_rules.rule_text import RuleTextError, read_rule
 
 if TYPE_CHECKING:

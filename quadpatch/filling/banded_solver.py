@@ -71,7 +71,7 @@ class EliminationOrder:
         group = np.searchsorted(self.starts, row, side="right") - 1
         bands: list[FloatArray | None] = []
         for i, (start, end) in enumerate(zip(self.starts[:-1].tolist(), self.starts[1:].tolist(), strict=True)):
-            mine = group == i if len(self.starts) > 2 else slice(None)
+            mine = group == i
             offset = column[mine] - row[mine]
             width = int(offset.max(initial=0))
             if (width + 1) * (end - start) > _LARGEST_BAND:

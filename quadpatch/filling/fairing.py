@@ -20,6 +20,7 @@ from scipy import sparse
 from quadpatch.errors import StageError
 from quadpatch.filling.banded_solver import BandedMatrix, EliminationOrder
 from quadpatch.mesh.normals import cross, length
+from quadpatch.mesh.topology import directed_edges
 from quadpatch.types import BoolArray, FloatArray, IntArray, Triangles, Vertices
 
 
@@ -90,7 +91,7 @@ class FairingEquations:
         uniform: bool = False,
         order: EliminationOrder | None = None,
     ) -> None:
-        self._vertices, self._free, self._order = vertices, free, order
+        self._vertices, self._triangles, self._free, self._order = vertices, triangles, free, order
         if not free.any():
             self._order = EliminationOrder(np.zeros(0, np.int64), np.zeros(1, np.int64))
             return
@@ -120,8 +121,7 @@ class FairingEquations:
     def order(self) -> EliminationOrder:
         """The order in which vertices are eliminated, fit for all energies on these triangles."""
         if self._order is None:
-            # The widest of the three: it links all vertices that the others do.
-            self._order = EliminationOrder.of(sparse.csr_array(self._rows_of(2)[:, self._free]))
+            self._order = EliminationOrder.of(_links(self._triangles, self._free))
         return self._order
 
     def _term(self, power: int) -> "_Term":
@@ -152,6 +152,17 @@ class _Term:
 
     matrix: BandedMatrix
     fixed_part: FloatArray
+
+
+def _links(triangles: Triangles, free: BoolArray) -> "sparse.csr_array[np.float64]":
+    """Find which free vertices the widest term links: up to three edges apart, whatever shape the triangles have.
+
+    The term itself would not do: a link may have the weight 0 in one shape, and another one in the next.
+    """
+    n, (start, end) = len(free), directed_edges(triangles).T
+    edges = sparse.csr_array((np.ones(len(start)), (start, end)), shape=(n, n))
+    step = sparse.csr_array(edges + edges.T + sparse.eye_array(n))
+    return sparse.csr_array((step[free] @ step @ step)[:, free])
 
 
 def _laplacian(vertices: Vertices, triangles: Triangles, *, uniform: bool) -> tuple[sparse.csr_array, FloatArray]:

@@ -84,7 +84,7 @@ def region_around(
     radii : (k,) float64
         In mesh units. Every triangle of the mesh that comes so near to a centre is in the region.
     obstacles : (j, 3) int64, optional
-        Further triangles, whose vertices the region is to hold if they come as near.
+        Further triangles, whose vertices the region is to hold if they come as near, or are long.
     """
     # The corners of a triangle that touches a ball are no further from it than the longest edge.
     slack = min(edges.longest, LONG_EDGE * edges.mean)
@@ -98,7 +98,7 @@ def region_around(
     is_used = near
     is_used[triangles] = True
     if obstacles is not None and len(obstacles):
-        is_used[obstacles[_touching(obstacles, near)]] = True
+        is_used[obstacles[_touching(obstacles, near) | _long(TriangleMesh(mesh.vertices, obstacles), slack)]] = True
     vertices = np.flatnonzero(is_used)
     number = np.zeros(len(is_used), np.int64)
     number[vertices] = np.arange(len(vertices))

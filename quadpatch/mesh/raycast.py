@@ -13,6 +13,7 @@ Transactions on Graphics 33, 2014.
 
 import numpy as np
 
+from quadpatch.mesh.measures import bounding_box
 from quadpatch.types import FloatArray, IntArray, TriangleMesh
 
 # In the unit ball a float32 coordinate is off by up to 6e-8; two surfaces closer than this can't be told apart.
@@ -122,10 +123,7 @@ def _ball(mesh: TriangleMesh) -> tuple[FloatArray, float]:
     """Centre of the bounding box of all used vertices, and half its diagonal (1 for an empty or pointlike mesh)."""
     if len(mesh.triangles) == 0:
         return np.zeros(3), 1.0
-    is_used = np.zeros(len(mesh.vertices), dtype=bool)
-    is_used[mesh.triangles] = True
-    used = mesh.vertices[is_used]
-    low, high = used.min(axis=0), used.max(axis=0)
+    low, high = bounding_box(mesh)
     return 0.5 * (low + high), float(np.linalg.norm(high - low)) / 2 or 1.0
 
 

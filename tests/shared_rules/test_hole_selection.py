@@ -12,8 +12,9 @@ from hypothesis import strategies as st
 import jobkit.schema as wire
 from quadpatch.errors import OptionError
 from quadpatch.mesh import holes as method
-from quadpatch.options import HoleOptions, HoleRule, Recipe, RepairOptions
+from quadpatch.options import HoleOptions, HoleRule, RepairOptions
 from shared_rules.hole_selection import Cap, Choice, HoleAction, HoleKind, RuleAction, choose_holes, join_islands
+from shared_rules.option_words import Recipe
 
 LENGTHS = st.floats(0.1, 100.0)
 MAYBE_LENGTHS = st.none() | LENGTHS

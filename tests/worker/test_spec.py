@@ -13,6 +13,7 @@ from quadpatch.denoising.denoise import DenoiseOptions
 from quadpatch.inpainters.model_file import RECIPES
 from quadpatch.options import HoleOptions, HoleRule, NetworkOptions, PatchOptions, RepairOptions
 from quadpatch.restoration.restore import RestoreOptions
+from shared_rules.option_words import Recipe
 from worker.engine.limits import EngineLimits
 from worker.spec import inspect_request, job_request, method_options, output_format, source_name, task_options
 
@@ -86,8 +87,8 @@ def test_fitting_leaves_a_third_of_the_time_to_the_rest_of_the_job() -> None:
     RepairOptions.from_dict(request.options)
 
 
-def test_the_recipes_of_the_contract_are_those_of_the_method() -> None:
-    assert get_args(jobkit.schema.Recipe) == get_args(quadpatch.options.Recipe)
+def test_every_recipe_has_a_normalisation_of_its_models() -> None:
+    assert set(RECIPES.values()) == set(get_args(Recipe))
     assert RECIPES[PAPER_NORMALISATION] == "paper"
     assert list(RECIPES.values()).count("paper") == 1
 

@@ -3,6 +3,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy import sparse
+from scipy.linalg import solveh_banded
+from threadpoolctl import threadpool_info, threadpool_limits
 
 from quadpatch.filling import banded_solver
 from quadpatch.filling.banded_solver import EliminationOrder
@@ -63,6 +65,20 @@ def test_a_band_that_is_too_large_is_left_to_a_general_solver(monkeypatch: pytes
 def test_a_matrix_that_is_not_definite_is_solved_all_the_same() -> None:
     matrix = sparse.csr_array(np.array([[0.0, 2.0], [2.0, 0.0]]))
     assert solved(matrix, np.array([[2.0], [4.0]])) == pytest.approx(np.array([[2.0], [1.0]]))
+
+
+def test_bands_are_factored_on_one_thread(monkeypatch: pytest.MonkeyPatch) -> None:
+    threads: list[int] = []
+
+    def watched(band: FloatArray, right: FloatArray, **options: bool) -> FloatArray:
+        threads.extend(pool["num_threads"] for pool in threadpool_info() if pool["user_api"] == "blas")
+        return np.asarray(solveh_banded(band, right, **options))
+
+    monkeypatch.setattr("quadpatch.filling.banded_solver.solveh_banded", watched)
+    matrix = blocks([30, 8], 2)
+    with threadpool_limits(2, user_api="blas"):
+        solved(matrix, right_sides(38))
+    assert set(threads) == {1}
 
 
 def test_a_singular_matrix_is_an_error() -> None:

@@ -69,8 +69,11 @@ def test_a_long_triangle_belongs_to_every_region() -> None:
 def test_obstacles_near_a_hole_are_kept_with_their_vertices() -> None:
     rim = int(HOLES[0][0])
     far_from_all = int(np.linalg.norm(SHEET.vertices - CENTRES[0], axis=1).argmax())
-    obstacles = np.array([[rim, rim + 1, far_from_all], [far_from_all, far_from_all - 1, far_from_all - 2]])
+    # The last one runs across the sheet, with no corner near the hole.
+    across = [0, 119, 120 * 120 - 1]
+    elsewhere = [far_from_all - 121, far_from_all - 122, far_from_all - 241]
+    obstacles = np.array([[rim, rim + 1, far_from_all], elsewhere, across])
     region = region_around(SHEET, edge_statistics(SHEET), CENTRES[:1], np.array([0.1]), obstacles)
     local = region.local_triangles(obstacles)
     assert local is not None
-    assert region.vertices[local].tolist() == [obstacles[0].tolist()]
+    assert region.vertices[local].tolist() == obstacles[[0, 2]].tolist()
