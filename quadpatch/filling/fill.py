@@ -69,11 +69,12 @@ def close_holes(mesh: TriangleMesh, loops: list[IntArray]) -> ClosedMesh:
     loops : list of (n_loop,) int64
         Simple loops with the surface on their left, as `boundary_loops` gives them.
     """
-    near = RimNeighbourhood.of(mesh, loops)
+    near = RimNeighbourhood.of(mesh, loops).straightened()
     patch, unfilled = near.triangulate()
     # A first, crumpled fairing; its bulge makes room for more vertices, and its shape better weights.
     patch = fair_refined(refine(patch, near.edges), near.adjacent_triangles, THIN_PLATE, uniform=True)
     patch = relax(refine(patch, near.edges), near.adjacent_triangles, near.edges)
+    patch = near.with_flat_corners(patch)
     equations = equations_of(patch, near.adjacent_triangles)
     plate = replace(patch, vertices=equations.minimise(THIN_PLATE))
     equations = equations_of(plate, near.adjacent_triangles, equations.order)
@@ -98,9 +99,9 @@ def close_flat(mesh: TriangleMesh, loops: list[IntArray]) -> FilledMesh:
     FilledMesh
         Its disagreement and rim variation are NaN: nothing is known of its error.
     """
-    near = RimNeighbourhood.of(mesh, loops)
+    near = RimNeighbourhood.of(mesh, loops).straightened()
     patch, unfilled = near.triangulate()
-    return near.filled(refine(patch, near.edges), unfilled)
+    return near.filled(near.with_flat_corners(refine(patch, near.edges)), unfilled)
 
 
 def fair_holes(closed: ClosedMesh, energy: Energy) -> FilledMesh:

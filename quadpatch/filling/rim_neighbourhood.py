@@ -1,9 +1,6 @@
-"""The measured surface next to holes, which is all that filling them reads.
+"""The measured surface next to holes, which is all that filling them reads."""
 
-Tested in `tests/quadpatch/filling/test_constrained_fill.py`.
-"""
-
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -11,6 +8,7 @@ from quadpatch.filling.fairing import triangles_around
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.filling.refinement import Refined
 from quadpatch.filling.triangulation import EdgeSet, Forbidden, triangulate_loops
+from quadpatch.mesh.intersections import LEAST_HEIGHT, heights
 from quadpatch.mesh.normals import triangle_normals, unit, vertex_normals
 from quadpatch.mesh.topology import directed_edges
 from quadpatch.types import FloatArray, IntArray, TriangleMesh, Triangles
@@ -18,6 +16,10 @@ from quadpatch.types import FloatArray, IntArray, TriangleMesh, Triangles
 # The minimum variation surface asks for the Laplacian at the rim and at one ring of vertices outside it, and that for
 # all triangles around these.
 _RINGS = 2
+# Corners of a triangle, from each of them on.
+_TURNS = [[0, 1, 2], [1, 2, 0], [2, 0, 1]]
+# A loop keeps at least so many vertices.
+_SHORTEST_LOOP = 3
 
 
 @dataclass(frozen=True)
@@ -39,6 +41,8 @@ class RimNeighbourhood:
         In local vertices.
     edges : EdgeSet
         Those of the input triangles.
+    flat_corners : (j, 3) int64
+        Rim vertices that `straightened` took out, each between its neighbours on the rim.
     """
 
     mesh: TriangleMesh
@@ -48,6 +52,7 @@ class RimNeighbourhood:
     adjacent_triangles: Triangles
     loops: list[IntArray]
     edges: EdgeSet
+    flat_corners: IntArray = field(default_factory=lambda: np.zeros((0, 3), np.int64))
 
     @classmethod
     def of(cls, mesh: TriangleMesh, loops: list[IntArray]) -> "RimNeighbourhood":
@@ -60,6 +65,40 @@ class RimNeighbourhood:
         local_loops = [np.searchsorted(used, loop) for loop in loops]
         edges = EdgeSet(directed_edges(adjacent_triangles))
         return cls(mesh, used, centre, mesh.vertices[used] - centre, adjacent_triangles, local_loops, edges)
+
+    def straightened(self) -> "RimNeighbourhood":
+        """Take out of the loops the tips of triangles without a height, which lie on an edge of the next triangle.
+
+        A fill may touch that triangle nowhere but in such a tip, and rounding decides whether it runs through it. So
+        the fill is made along the edge, and `with_flat_corners` divides its triangle there.
+        """
+        turns = self.adjacent_triangles[heights(self.vertices, self.adjacent_triangles) < LEAST_HEIGHT][:, _TURNS]
+        a, tip, b = turns.reshape(-1, 3).T
+        is_between = (
+            np.einsum("ij,ij->i", self.vertices[a] - self.vertices[tip], self.vertices[b] - self.vertices[tip]) < 0
+        )
+        flat = np.stack([a, tip, b], axis=1)[is_between]
+        loops, taken = list(self.loops), []
+        for i in range(len(loops)):
+            of_loop = flat[np.isin(flat, loops[i]).all(axis=1)].tolist()
+            # Where one tip is taken out, the next one may come to lie between its neighbours.
+            while len(loops[i]) > _SHORTEST_LOOP:
+                corner = next((c for c in of_loop if _is_corner(loops[i], c)), None)
+                if corner is None:
+                    break
+                taken.append(corner)
+                loops[i] = loops[i][loops[i] != corner[1]]
+        return replace(self, loops=loops, flat_corners=np.array(taken, np.int64).reshape(-1, 3))
+
+    def with_flat_corners(self, patch: Refined) -> Refined:
+        """Put the vertices that `straightened` took out back, each on the edge between its neighbours."""
+        triangles, hole = patch.triangles, patch.hole
+        for a, tip, b in self.flat_corners[::-1].tolist():
+            for at in np.flatnonzero((triangles == a).any(axis=1) & (triangles == b).any(axis=1)):
+                divided = np.stack([np.where(triangles[at] == end, tip, triangles[at]) for end in (b, a)])
+                triangles = np.concatenate([triangles[:at], divided, triangles[at + 1 :]])
+                hole = np.insert(hole, at, hole[at])
+        return replace(patch, triangles=triangles, hole=hole)
 
     def triangulate(self, forbidden: Forbidden | None = None) -> tuple[Refined, list[int]]:
         """Triangulate all loops, without new vertices.
@@ -84,8 +123,9 @@ class RimNeighbourhood:
         return Refined(self.vertices, triangles, hole, self._spacing(), len(self.vertices)), unfilled
 
     def _spacing(self) -> FloatArray:
-        """Mean length (n_local,) of the edges at every vertex; 0 without any."""
+        """Mean length (n_local,) of the edges at every vertex, save those to flat corners; 0 without any."""
         edges = directed_edges(self.adjacent_triangles)
+        edges = edges[~np.isin(edges, self.flat_corners[:, 1]).any(axis=1)]
         lengths = np.linalg.norm(self.vertices[edges[:, 0]] - self.vertices[edges[:, 1]], axis=1)
         count = np.bincount(edges.ravel(), minlength=len(self.vertices))
         total = np.bincount(edges.ravel(), np.repeat(lengths, 2), minlength=len(self.vertices))
@@ -123,6 +163,12 @@ class RimNeighbourhood:
             unknown if rim_variation is None else rim_variation,
             unfilled,
         )
+
+
+def _is_corner(loop: IntArray, corner: list[int]) -> bool:
+    """Whether the three vertices follow each other on a loop, and the loop passes the middle one once."""
+    (at,) = np.nonzero(loop == corner[1])
+    return len(at) == 1 and [int(loop[at[0] - 1]), int(loop[(at[0] + 1) % len(loop)])] == corner[::2]
 
 
 def _rim_normals(vertices: FloatArray, adjacent_triangles: Triangles, loops: list[IntArray]) -> list[FloatArray]:

@@ -29,7 +29,7 @@ def relieve_rims(filled: FilledMesh) -> FilledMesh:
     Returns
     -------
     FilledMesh
-        With one vertex and two triangles more for every edge that was relieved.
+        With one vertex and two triangles more for every edge that was relieved, or for two that lie on a line.
     """
     everywhere = np.ones(len(filled.disagreement), bool)
     for _ in range(_MAX_ROUNDS):
@@ -45,27 +45,37 @@ def relieve_rims(filled: FilledMesh) -> FilledMesh:
 
 
 def _split(filled: FilledMesh, new: IntArray, measured: IntArray, edges: IntArray) -> FilledMesh:
-    """Split new triangles (k,) by a vertex close to the edges (k, 2) that they share with measured ones (k,)."""
+    """Split new triangles (k,) by a vertex close to the edges (k, 2) that they share with measured ones (k,).
+
+    Two edges of one measured triangle lie on a line. Their triangles share the new vertex, on the edge between them: no
+    other piece touches the line in the vertex where the two meet, since rounding would decide whether it crosses there.
+    """
     vertices, triangles = filled.mesh.vertices, filled.mesh.triangles
     hole = filled.triangle_hole[new - filled.n_measured_triangles]
     # Turn the triangles so that the shared edge runs from the first corner to the second.
     apex = ~(triangles[new][:, :, None] == edges[:, None, :]).any(axis=2)
     a, b, c = (triangles[new, (apex.argmax(axis=1) + k) % 3] for k in (1, 2, 0))
-    middle = _tilted(vertices[a], vertices[b], vertices[c], unit(area_vectors(vertices, triangles[measured])))
-    x = len(vertices) + np.arange(len(new))
+    one, other = np.nonzero((measured[:, None] == measured) & (c[:, None] == c) & (b[:, None] == a))
+    starts, ends = (np.isin(np.arange(len(new)), rows) for rows in (one, other))
+    x = len(vertices) + np.cumsum(~ends) - 1
+    x[other] = x[one]
+    middle = (vertices[a] + vertices[b]) / 2
+    middle[one] = vertices[b[one]]
+    against = unit(area_vectors(vertices, triangles[measured]))
+    middle += _across(vertices[a], vertices[b], vertices[c], against)
     changed = triangles.copy()
     changed[new] = np.stack([a, b, x], axis=1)
-    added = np.concatenate([np.stack([b, c, x], axis=1), np.stack([c, a, x], axis=1)])
+    added = np.concatenate([np.stack([b, c, x], axis=1)[~starts], np.stack([c, a, x], axis=1)[~ends]])
     return replace(
         filled,
-        mesh=TriangleMesh(np.concatenate([vertices, middle]), np.concatenate([changed, added])),
-        triangle_hole=np.concatenate([filled.triangle_hole, hole, hole]),
-        vertex_hole=np.concatenate([filled.vertex_hole, hole]),
+        mesh=TriangleMesh(np.concatenate([vertices, middle[~ends]]), np.concatenate([changed, added])),
+        triangle_hole=np.concatenate([filled.triangle_hole, hole[~starts], hole[~ends]]),
+        vertex_hole=np.concatenate([filled.vertex_hole, hole[~ends]]),
     )
 
 
-def _tilted(a: FloatArray, b: FloatArray, c: FloatArray, against: FloatArray) -> FloatArray:
-    """Place a vertex (k, 3) beside the edges from a to b, so that a triangle there turns away from some normals."""
+def _across(a: FloatArray, b: FloatArray, c: FloatArray, against: FloatArray) -> FloatArray:
+    """Give the vectors (k, 3) across strips at the edges from a to b, such that they turn away from some normals."""
     along = unit(b - a)
     normal = unit(cross(b - a, c - a))
     inwards = cross(normal, along)
@@ -76,4 +86,4 @@ def _tilted(a: FloatArray, b: FloatArray, c: FloatArray, against: FloatArray) ->
     height = np.einsum("ij,ij->i", c - a, inwards)
     width = np.minimum(_STRIP * edge, _MOST_OF_HEIGHT * height)
     direction = np.cos(tilt)[:, None] * inwards - np.sin(tilt)[:, None] * normal
-    return np.asarray((a + b) / 2 + width[:, None] * direction)
+    return np.asarray(width[:, None] * direction)

@@ -51,11 +51,11 @@ def test_a_rim_without_height_folds_no_more_and_the_surface_hardly_moves(edges: 
     after = relieve_rims(before)
     assert find_faults(after).n_folds.tolist() == [0]
     assert_keeps(after, TriangleMesh(before.mesh.vertices[:-1], before.mesh.triangles[: before.n_measured_triangles]))
-    # One vertex and two triangles more for every edge.
+    # One vertex and two triangles more for the two edges of every tip.
     n_more = len(after.mesh.vertices) - len(before.mesh.vertices)
     assert len(after.mesh.triangles) - len(before.mesh.triangles) == 2 * n_more
     if depth >= 1e-12:
-        assert n_folds == n_more == 2 * len(edges)
+        assert n_folds == 2 * n_more == 2 * len(edges)
     new = after.mesh.vertices[len(before.mesh.vertices) :]
     if len(new):
         assert distance_to_mesh(new, surface(before)).max() < 0.02 * EDGE
@@ -93,3 +93,14 @@ def test_a_fill_without_such_rims_comes_back_as_it_is(fill: FilledMesh) -> None:
 def test_folds_of_a_sound_rim_stay() -> None:
     folded = tent((1.03, 0.01, 0.0))
     assert find_faults(relieve_rims(folded)).n_folds.tolist() == find_faults(folded).n_folds.tolist()
+
+
+@pytest.mark.parametrize("edges", [(0,), (3, 7), tuple(range(N))])
+def test_no_piece_touches_the_line_of_a_flat_triangle_in_its_tip_alone(edges: tuple[int, ...]) -> None:
+    before = with_flat_rim(edges, 0.0)
+    after = relieve_rims(before)
+    tips = np.setdiff1d(before.mesh.triangles[: before.n_measured_triangles], PLATE.triangles)
+    pieces = after.mesh.triangles[after.n_measured_triangles :]
+    at_tips = pieces[np.isin(pieces, tips).any(axis=1)]
+    assert len(at_tips) == 2 * len(tips)
+    assert np.isin(at_tips, np.arange(N)).any(axis=1).all()
