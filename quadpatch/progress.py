@@ -21,3 +21,8 @@ Fraction = Callable[[float], None]
 
 def no_fraction(done: float) -> None:
     """Ignore how far it is."""
+
+
+def part_of(whole: Fraction, start: float, end: float) -> Fraction:
+    """Return what turns the done fraction of a part of some work into one of the whole."""
+    return lambda done: whole(start + done * (end - start))

@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 
 from quadpatch.errors import QuadpatchError
-from quadpatch.progress import Fraction, Progress, no_progress
+from quadpatch.progress import Fraction, Progress, no_progress, part_of
 from shared_rules.stages import Stage
 
 _log = logging.getLogger(__name__)
@@ -31,9 +31,9 @@ class Stages:
 
         def reach(fraction: float) -> None:
             if name is not None:
-                self.progress(name, start + fraction * (end - start))
+                self.progress(name, fraction)
 
-        return reach
+        return part_of(reach, start, end)
 
     @contextmanager
     def stage(self, name: Stage) -> Iterator[None]:

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.spatial import cKDTree
+from scipy.special import ndtr
 
 from quadpatch.calibration.calibration_set import ROUNDING, CalibrationSet, choose_energy, error_per_hole
 from quadpatch.calibration.synthetic_holes import new_loops
@@ -20,11 +21,16 @@ from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.mesh.averages import mean_by
 from quadpatch.mesh.distance import distance_to_mesh
 from quadpatch.mesh.measures import used_vertices
-from quadpatch.progress import Fraction, no_fraction
+from quadpatch.progress import Fraction, no_fraction, part_of
 from quadpatch.types import FloatArray, IntArray, TriangleMesh
 
 # Weights of fills fall with this power of their expected error: at 8, one that is 10 % worse counts half.
 SHARPNESS = 8.0
+# An energy takes no part in a hole with less weight than this, and in no hole if its error is so many times the best.
+_LEAST_WEIGHT = 0.01
+_LOST = 2.0
+# Weighing that loses by more than a standard error takes no part either.
+_LEAST_BELIEF = 0.16
 # Smaller misses of a rim, in shares of the largest, are rounding.
 _LEAST_MISS = 1e-6
 
@@ -41,11 +47,17 @@ class EnergyBlend:
         Logarithm of each one's mean error on calibration holes.
     log_miss : (n_energies,) float64
         Logarithm of how far each one misses the rims of calibration holes on average, opened one ring wider.
+    best : int
+        Position of the energy that is best for all holes alike.
+    belief : float
+        Probability that weighing by each hole's own rim is better than that one: 0 to 1.
     """
 
     energies: Sequence[Energy]
     log_error: FloatArray
     log_miss: FloatArray
+    best: int = 0
+    belief: float = 1.0
 
     @classmethod
     def of_one(cls, energy: Energy) -> "EnergyBlend":
@@ -54,28 +66,42 @@ class EnergyBlend:
 
     def fill(self, mesh: TriangleMesh, loops: list[IntArray], reach: Fraction = no_fraction) -> FilledMesh:
         """Close boundary loops of a mesh, given as `boundary_loops` gives them; `reach` is told the done fraction."""
-        closed = close_holes(mesh, loops)
-        fills = _faired(closed, self.energies, reach)
-        if len(fills) == 1 or not loops:
-            return replace(fills[0], energy_weights=np.ones((len(loops), len(fills))))
-        weights = self.weights(leave_one_ring_out(mesh, loops, self.energies, reach))
-        return replace(_blended(fills, weights), energy_weights=weights)
+        if len(self.energies) == 1 or not loops:
+            fill = fair_holes(close_holes(mesh, loops), self.energies[0])
+            return replace(fill, energy_weights=np.ones((len(loops), 1)))
+        misses = leave_one_ring_out(mesh, loops, self.energies, part_of(reach, 0.0, 0.5))
+        return self.fill_weighted(mesh, loops, self.weights(misses), part_of(reach, 0.5, 1.0))
+
+    def fill_weighted(
+        self, mesh: TriangleMesh, loops: list[IntArray], weights: FloatArray, reach: Fraction = no_fraction
+    ) -> FilledMesh:
+        """Close boundary loops, by weights (n_loops, n_energies) whose rows sum to 1."""
+        weights = np.where(weights >= _LEAST_WEIGHT, weights, 0.0)
+        weights /= weights.sum(axis=1, keepdims=True)
+        used = np.flatnonzero(weights.any(axis=0)).tolist()
+        fills = _faired(close_holes(mesh, loops), [self.energies[i] for i in used], reach)
+        return replace(_blended(fills, weights[:, used]), energy_weights=weights)
 
     def weights(self, misses: FloatArray) -> FloatArray:
-        """Turn misses (n_holes, n_energies), NaN where unknown, into weights of the fills: rows sum to 1."""
+        """Turn misses (n_holes, n_energies), NaN where unknown, into weights of the fills: rows sum to 1.
+
+        They are the mean of both ways to choose, by the belief in each: a few dozen holes often can't tell.
+        """
         largest = np.nanmax(misses, initial=0.0)
         log_miss = np.log(np.maximum(misses, _LEAST_MISS * largest + np.finfo(np.float64).tiny))
         own = log_miss - self.log_miss
         own = np.nan_to_num(own - own.mean(axis=1, keepdims=True))
         expected = self.log_error + own
         weights = np.exp(-SHARPNESS * (expected - expected.min(axis=1, keepdims=True)))
-        return np.asarray(weights / weights.sum(axis=1, keepdims=True))
+        weights *= self.belief / weights.sum(axis=1, keepdims=True)
+        weights[:, self.best] += 1.0 - self.belief
+        return np.asarray(weights)
 
 
 def learn_energy_blend(
     calibration: CalibrationSet, energies: Sequence[Energy], default: Energy, reach: Fraction = no_fraction
 ) -> tuple[EnergyBlend, FilledMesh]:
-    """Learn from calibration holes how to fill: by one energy, as `choose_energy` picks it, unless weighing beats it.
+    """Learn from calibration holes how to fill: by one energy, as `choose_energy` picks it, by weighing, or by both.
 
     Parameters
     ----------
@@ -89,28 +115,36 @@ def learn_energy_blend(
     -------
     EnergyBlend
     FilledMesh
-        The calibration holes, filled by it.
+        The calibration holes, filled by it as densely as those of `calibration` are.
     """
-    fills = _faired(calibration.closed, energies, reach)
+    fills = _faired(calibration.closed, energies, part_of(reach, 0.0, 0.5))
     errors = np.array([error_per_hole(calibration, fill) for fill in fills])
-    misses = leave_one_ring_out(calibration.closed.mesh, calibration.loops, energies, reach)
-    best = energies.index(choose_energy(errors, calibration.diameter, energies, default))
+    chosen = choose_energy(errors, calibration.diameter, energies, default)
+    mean = errors.mean(axis=1)
+    kept = [i for i, energy in enumerate(energies) if mean[i] <= _LOST * mean.min() or energy is chosen]
+    energies, fills, errors = [energies[i] for i in kept], [fills[i] for i in kept], errors[kept]
+    misses = leave_one_ring_out(calibration.closed.mesh, calibration.loops, energies, part_of(reach, 0.5, 1.0))
+    best = energies.index(chosen)
     typical = np.nanmean(misses, axis=0) if np.isfinite(misses).any() else np.ones(len(energies))
     tiny = np.finfo(np.float64).tiny
     blend = EnergyBlend(energies, np.log(errors.mean(axis=1) + tiny), np.log(typical + tiny))
     blended = _blended(fills, blend.weights(misses))
-    gain = errors[best].mean() - error_per_hole(calibration, blended).mean()
-    if gain > ROUNDING * calibration.diameter:
-        return blend, blended
-    return EnergyBlend.of_one(energies[best]), fills[best]
+    gains = errors[best] - error_per_hole(calibration, blended)
+    rounding = ROUNDING * calibration.diameter
+    belief = float(ndtr(gains.mean() / (gains.std() / np.sqrt(len(gains)) + rounding)))
+    blend = replace(blend, best=best, belief=belief)
+    if belief < _LEAST_BELIEF or errors[best].mean() <= rounding:
+        return EnergyBlend.of_one(energies[best]), replace(fills[best], energy_weights=np.ones((len(misses), 1)))
+    weights = blend.weights(misses)
+    return blend, replace(_blended(fills, weights), energy_weights=weights)
 
 
 def _faired(closed: ClosedMesh, energies: Sequence[Energy], reach: Fraction) -> list[FilledMesh]:
-    """Fair holes by each energy: the first half of the work."""
+    """Fair holes by each energy."""
     fills = []
     for energy in energies:
         fills.append(fair_holes(closed, energy))
-        reach(0.5 * len(fills) / len(energies))
+        reach(len(fills) / len(energies))
     return fills
 
 
@@ -126,7 +160,7 @@ def leave_one_ring_out(
     loops : list of (n_loop,) int64
     energies : sequence of Energy
     reach : callable
-        Told the done fraction, from one half on.
+        Told the done fraction.
 
     Returns
     -------
@@ -142,7 +176,7 @@ def leave_one_ring_out(
     removed = np.flatnonzero(used_vertices(mesh.triangles, n_vertices) & ~used_vertices(remaining, n_vertices))
     rim_tree = cKDTree(mesh.vertices[rim])
     wider_loops = new_loops(mesh, remaining)
-    closed = close_holes(TriangleMesh(mesh.vertices, remaining), wider_loops)
+    closed = close_holes(TriangleMesh(mesh.vertices, remaining), wider_loops, graded=True)
     opened = np.zeros(len(loops), bool)
     for number, loop in enumerate(wider_loops):
         if number not in closed.unfilled:
@@ -160,7 +194,7 @@ def leave_one_ring_out(
             new = TriangleMesh(filled.mesh.vertices, filled.mesh.triangles[filled.n_measured_triangles :])
             distance = distance_to_mesh(mesh.vertices[removed], new)
             misses[has_residual, number] = mean_by(hole_of_removed, distance, len(loops))[has_residual]
-            reach(0.5 + 0.5 * (number + 1) / len(energies))
+            reach((number + 1) / len(energies))
     return misses
 
 

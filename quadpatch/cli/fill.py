@@ -24,7 +24,7 @@ from quadpatch.cli.flags import (
 )
 from quadpatch.cli.messages import clear_errors, progress_bars, say
 from quadpatch.cli.reports import closing_words, n_holes, write_report
-from quadpatch.cli.scipy_start import put_off_unused
+from quadpatch.cli.scipy_start import prepare_libraries
 from quadpatch.errors import OptionError
 from quadpatch.formats.output_files import check_folder, check_outputs, is_stream
 from quadpatch.options import DictionaryOptions, HoleOptions, HoleRule, NetworkOptions, PatchOptions, RepairOptions
@@ -111,7 +111,7 @@ def fill(  # noqa: PLR0913, PLR0917  one argument per flag
         check_outputs(source, output, others, may_overwrite=overwrite)
         if closeups:
             check_folder(closeups, [source, output, *others])
-        put_off_unused()
+        prepare_libraries()
         from quadpatch.repair import repair_and_keep  # noqa: PLC0415  numerical libraries, once there is work to do
 
         repaired = repair_and_keep(source, output, model, options, progress)

@@ -15,7 +15,7 @@ from rich.text import Text
 from quadpatch.cli.flags import Source, WeldTolerance, read_tolerance
 from quadpatch.cli.messages import clear_errors, say
 from quadpatch.cli.reports import n_holes
-from quadpatch.cli.scipy_start import put_off_unused
+from quadpatch.cli.scipy_start import prepare_libraries
 
 MAX_TABLE_WIDTH = 100
 
@@ -26,7 +26,7 @@ def holes(
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
     """List the holes of a mesh file, and which of them would be filled."""
-    put_off_unused()
+    prepare_libraries()
     from quadpatch.repair import inspect_file  # noqa: PLC0415  slow to load
 
     with clear_errors():

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from quadpatch.cli.messages import clear_errors, progress_bars, say
 from quadpatch.cli.reports import closing_words, write_report
-from quadpatch.cli.scipy_start import put_off_unused
+from quadpatch.cli.scipy_start import prepare_libraries
 from quadpatch.formats.output_files import check_outputs, is_stream
 from quadpatch.progress import Progress
 
@@ -62,7 +62,7 @@ def run_task(
         others = [path for path in (files.report, files.preview) if path]
         check_outputs(files.source, files.output, others, may_overwrite=files.may_overwrite, inputs=files.inputs)
         logging.getLogger("quadpatch").addHandler(logging.NullHandler())  # what people read is in the warnings
-        put_off_unused()
+        prepare_libraries()
         result = task(progress)
         if files.report and not is_stream(files.report):  # drawing may take the process down
             write_report(result.report, files.report)

@@ -25,6 +25,8 @@ from quadpatch.types import FloatArray, IntArray
 
 # A band with more numbers than this, 240 MB, takes longer than a general solver that keeps to the non-zeros.
 _LARGEST_BAND = 30_000_000
+# Blocks share a band of up to so many numbers, 2 MB: small ones are solved together, and no band leaves the cache.
+_GROUP = 250_000
 
 
 @dataclass(frozen=True)
@@ -34,7 +36,7 @@ class EliminationOrder:
     Attributes
     ----------
     position : (n,) int64
-        Of each unknown; the unknowns of a block follow each other, and blocks of like bandwidth.
+        Of each unknown; the unknowns of a block follow each other.
     starts : (n_groups + 1,) int64
         Where the groups of blocks that are solved together begin.
     """
@@ -56,35 +58,21 @@ class EliminationOrder:
         width = np.zeros(n_blocks, np.int64)
         np.maximum.at(width, block[entries.row], np.abs(position[entries.row] - position[entries.col]))
         # Blocks up to twice as wide share a band.
-        group = np.ceil(np.log2(width + 1)).astype(np.int64)[block]
-        order = order[np.argsort(group[order], kind="stable")]
+        kind = np.ceil(np.log2(width + 1)).astype(np.int64)
+        order = order[np.lexsort((block[order], kind[block[order]]))]
         position[order] = np.arange(n)
-        starts = np.flatnonzero(np.diff(group[order], prepend=-1))
-        return cls(position, np.append(starts, n))
+        return cls(position, _groups(kind, np.bincount(block, minlength=n_blocks)))
 
-    def banded(self, matrix: "sparse.csr_array[np.float64] | sparse.csc_array[np.float64]") -> "BandedMatrix":
-        """Bring a symmetric matrix (n, n) into this order."""
-        entries = matrix.tocoo()
-        row, column = self.position[entries.row], self.position[entries.col]
-        is_upper = column >= row
-        row, column, values = row[is_upper], column[is_upper], entries.data[is_upper]
-        group = np.searchsorted(self.starts, row, side="right") - 1
-        bands: list[FloatArray | None] = []
-        for i, (start, end) in enumerate(zip(self.starts[:-1].tolist(), self.starts[1:].tolist(), strict=True)):
-            mine = group == i
-            offset = column[mine] - row[mine]
-            width = int(offset.max(initial=0))
-            if (width + 1) * (end - start) > _LARGEST_BAND:
-                bands.append(None)
-                continue
-            # As LAPACK wants it: by columns, the diagonal last.
-            band = np.zeros((end - start, width + 1))
-            band[column[mine] - start, width - offset] = values[mine]
-            bands.append(band)
-        return BandedMatrix(matrix, bands)
+    def upper_part(self, matrix: "sparse.csc_array[np.float64]") -> "UpperPart":
+        """Take the upper half of a symmetric matrix (n, n) whose unknowns are in this order."""
+        column = np.repeat(np.arange(matrix.shape[1]), np.diff(matrix.indptr))
+        offset = column - matrix.indices
+        is_upper = offset >= 0
+        column, offset = column[is_upper], offset[is_upper]
+        return UpperPart(matrix, column, offset, matrix.data[is_upper], np.searchsorted(column, self.starts))
 
-    def solve(self, terms: "Sequence[tuple[float, BandedMatrix]]", right: FloatArray) -> FloatArray:
-        """Solve the positive definite system of a weighted sum of matrices for right sides (n, k).
+    def solve(self, terms: "Sequence[tuple[float, UpperPart]]", right: FloatArray) -> FloatArray:
+        """Solve the positive definite system of a weighted sum of matrices for right sides (n, k), in this order.
 
         Raises
         ------
@@ -92,19 +80,22 @@ class EliminationOrder:
             If the matrix is singular.
         """
         solution = np.full(right.shape, np.nan)
-        unknown = np.empty(len(self.position), np.int64)
-        unknown[self.position] = np.arange(len(unknown))
-        for i, (start, end) in enumerate(zip(self.starts[:-1].tolist(), self.starts[1:].tolist(), strict=True)):
-            band, rows = _sum([(weight, term.bands[i]) for weight, term in terms]), unknown[start:end]
-            if band is None:
-                break
-            solution[rows] = _solved(band.T, right[rows])
+        # Threads of the BLAS wait for each other at every block of a narrow band: five times slower on a busy machine.
+        with _blas().limit(limits=1, user_api="blas"):
+            for i, (start, end) in enumerate(zip(self.starts[:-1].tolist(), self.starts[1:].tolist(), strict=True)):
+                band = _band(terms, i, start, end)
+                if band is None:
+                    break
+                try:
+                    solution[start:end] = solveh_banded(band, right[start:end], overwrite_ab=True, check_finite=False)
+                except LinAlgError:
+                    break
         if np.isfinite(solution).all():
             return solution
         # Rounding may leave a matrix that is not definite, and a band may be too wide.
         whole = sparse.csc_array((len(right), len(right)))
         for weight, term in terms:
-            whole = whole + weight * sparse.csc_array(term.matrix)
+            whole = whole + weight * term.matrix
         factors = splu(
             whole,
             permc_spec="MMD_AT_PLUS_A",
@@ -115,44 +106,55 @@ class EliminationOrder:
 
 
 @dataclass(frozen=True)
-class BandedMatrix:
-    """A symmetric matrix in an order of elimination.
+class UpperPart:
+    """The entries of a symmetric matrix on its diagonal and above, by columns.
 
     Attributes
     ----------
     matrix : (n, n) sparse array
-        As it was.
-    bands : list of (n_group, width + 1) float64 or None
-        Upper band of each group of blocks, by columns, the diagonal last; None where it would be too large.
+        With all entries.
+    column, offset : (n_entries,) int64
+        Column, and how far above the diagonal.
+    values : (n_entries,) float64
+    starts : (n_groups + 1,) int64
+        Where the entries of the groups begin.
     """
 
-    matrix: "sparse.csr_array[np.float64] | sparse.csc_array[np.float64]"
-    bands: list[FloatArray | None]
+    matrix: "sparse.csc_array[np.float64]"
+    column: IntArray
+    offset: IntArray
+    values: FloatArray
+    starts: IntArray
+
+
+def _groups(kind: IntArray, size: IntArray) -> IntArray:
+    """Choose where groups begin (n_groups + 1,), for blocks of some kinds (k,) and sizes (k,), by kind and number."""
+    by_kind = np.lexsort((np.arange(len(kind)), kind))
+    starts, in_group, last = [0], 0, -1
+    at = 0
+    for block_kind, block_size in zip(kind[by_kind].tolist(), size[by_kind].tolist(), strict=True):
+        numbers = block_size << block_kind
+        if last >= 0 and (block_kind != last or in_group + numbers > _GROUP):
+            starts.append(at)
+            in_group = 0
+        at, in_group, last = at + block_size, in_group + numbers, block_kind
+    return np.array([*starts, at], np.int64)
+
+
+def _band(terms: "Sequence[tuple[float, UpperPart]]", group: int, start: int, end: int) -> FloatArray | None:
+    """Add up the upper bands (width + 1, end - start) of one group, as LAPACK wants them; None if that is too large."""
+    rows = [slice(term.starts[group], term.starts[group + 1]) for _, term in terms]
+    width = max(int(term.offset[of_group].max(initial=0)) for (_, term), of_group in zip(terms, rows, strict=True))
+    if (width + 1) * (end - start) > _LARGEST_BAND:
+        return None
+    band = np.zeros((end - start) * (width + 1))
+    for (weight, term), of_group in zip(terms, rows, strict=True):
+        # By columns, the diagonal last.
+        at = (term.column[of_group] - start + 1) * (width + 1) - 1 - term.offset[of_group]
+        band[at] += weight * term.values[of_group]
+    return band.reshape(end - start, width + 1).T
 
 
 @cache
 def _blas() -> ThreadpoolController:
     return ThreadpoolController()
-
-
-def _sum(terms: list[tuple[float, FloatArray | None]]) -> FloatArray | None:
-    """Add bands of several widths; None if one of them is missing."""
-    bands = [(weight, band) for weight, band in terms if band is not None]
-    if len(bands) < len(terms):
-        return None
-    n = len(bands[0][1])
-    width = max(band.shape[1] for _, band in bands)
-    total = np.zeros((n, width))
-    for weight, band in bands:
-        total[:, width - band.shape[1] :] += weight * band
-    return total
-
-
-def _solved(band: FloatArray, right: FloatArray) -> FloatArray:
-    try:
-        # Threads of the BLAS wait for each other at every block of a narrow band: five times slower on a busy machine.
-        with _blas().limit(limits=1, user_api="blas"):
-            solution = solveh_banded(band, right, overwrite_ab=True, check_finite=False)
-    except LinAlgError:
-        return np.full(right.shape, np.nan)
-    return np.asarray(solution)

@@ -18,7 +18,7 @@ import numpy as np
 from scipy import sparse
 
 from quadpatch.errors import StageError
-from quadpatch.filling.banded_solver import BandedMatrix, EliminationOrder
+from quadpatch.filling.banded_solver import EliminationOrder, UpperPart
 from quadpatch.mesh.normals import cross, length
 from quadpatch.mesh.topology import directed_edges
 from quadpatch.types import BoolArray, FloatArray, IntArray, Triangles, Vertices
@@ -74,12 +74,17 @@ def fair(
 class FairingEquations:
     """The equations of every energy on one shape; what energies have in common is computed once.
 
+    Attribute `order`: the order in which vertices are eliminated, fit for all energies on these triangles.
+
     Parameters
     ----------
     vertices, triangles, free, uniform
         As for `fair`.
     order : EliminationOrder, optional
         That of an earlier shape of the same triangles.
+    unit_area : float, optional
+        Area whose square root is the unit of lengths in energies, in mesh units squared; without, the mean area at the
+        free vertices.
     """
 
     def __init__(
@@ -90,15 +95,24 @@ class FairingEquations:
         *,
         uniform: bool = False,
         order: EliminationOrder | None = None,
+        unit_area: float | None = None,
     ) -> None:
-        self._vertices, self._triangles, self._free, self._order = vertices, triangles, free, order
+        self._vertices, self._free = vertices, free
+        self.order = EliminationOrder.of(_links(triangles, free)) if order is None else order
+        self._n_fixed = int((~free).sum())
         if not free.any():
-            self._order = EliminationOrder(np.zeros(0, np.int64), np.zeros(1, np.int64))
             return
-        laplacian, area = _laplacian(vertices, triangles, uniform=uniform)
-        self._step = sparse.csr_array(sparse.diags_array(area[free].mean() / area) @ laplacian)
+        # Fixed vertices first, then the free ones as they are eliminated.
+        number = np.empty(len(free), np.int64)
+        number[~free] = np.arange(self._n_fixed)
+        number[free] = self._n_fixed + self.order.position
+        self._numbered = np.empty_like(vertices)
+        self._numbered[number] = vertices
+        laplacian, area = _laplacian(self._numbered, number[triangles], uniform=uniform)
+        unit = area[self._n_fixed :].mean() if unit_area is None else unit_area
+        self._step = sparse.csr_array(sparse.diags_array(unit / area) @ laplacian)
         # Rows of free vertices only: those of the outermost ring have lost triangles at the cut.
-        self._rows = [sparse.csr_array(laplacian[free])]
+        self._rows = [sparse.csr_array(laplacian[self._n_fixed :])]
         self._terms: dict[int, _Term] = {}
 
     def minimise(self, energy: Energy) -> Vertices:
@@ -108,27 +122,21 @@ class FairingEquations:
             return result
         weights = (energy.membrane, energy.plate, energy.variation)
         terms = [(weight, self._term(power)) for power, weight in enumerate(weights) if weight]
-        right = np.zeros((int(self._free.sum()), 3))
+        right = np.zeros((len(self._free) - self._n_fixed, 3))
         for weight, term in terms:
             right -= weight * term.fixed_part
         try:
-            result[self._free] = self.order.solve([(weight, term.matrix) for weight, term in terms], right)
+            solution = self.order.solve([(weight, term.matrix) for weight, term in terms], right)
         except RuntimeError as error:
             raise StageError("the surface around a hole is so small that its areas vanish in float64") from error
+        result[self._free] = solution[self.order.position]
         return result
-
-    @property
-    def order(self) -> EliminationOrder:
-        """The order in which vertices are eliminated, fit for all energies on these triangles."""
-        if self._order is None:
-            self._order = EliminationOrder.of(_links(self._triangles, self._free))
-        return self._order
 
     def _term(self, power: int) -> "_Term":
         if power not in self._terms:
-            columns, free = sparse.csc_array(self._rows_of(power)), self._free
-            fixed_part = np.asarray(columns[:, ~free] @ self._vertices[~free])
-            self._terms[power] = _Term(self.order.banded(columns[:, free]), fixed_part)
+            columns, n = sparse.csc_array(self._rows_of(power)), self._n_fixed
+            fixed_part = np.asarray(columns[:, :n] @ self._numbered[:n])
+            self._terms[power] = _Term(self.order.upper_part(columns[:, n:]), fixed_part)
         return self._terms[power]
 
     def _rows_of(self, power: int) -> "sparse.csr_array[np.float64]":
@@ -144,13 +152,13 @@ class _Term:
 
     Attributes
     ----------
-    matrix : BandedMatrix
-        Of the free vertices.
+    matrix : UpperPart
+        Of the free vertices, as they are eliminated.
     fixed_part : (n_free, 3) float64
         What the fixed vertices add.
     """
 
-    matrix: BandedMatrix
+    matrix: UpperPart
     fixed_part: FloatArray
 
 

@@ -5,7 +5,7 @@ import numpy as np
 from quadpatch.types import FloatArray, IntArray
 
 
-def mean_by(group: IntArray, values: FloatArray, n_groups: int) -> FloatArray:
+def mean_by(group: IntArray, values: FloatArray, n_groups: int, weights: FloatArray | None = None) -> FloatArray:
     """Average values over groups, such as those of all new vertices over their holes.
 
     Parameters
@@ -15,12 +15,14 @@ def mean_by(group: IntArray, values: FloatArray, n_groups: int) -> FloatArray:
     values : (n,) float64
         In any unit.
     n_groups : int
+    weights : (n,) float64, optional
+        At least 0; without, all values weigh the same.
 
     Returns
     -------
     (n_groups,) float64
-        In the unit of the values; 0 for a group without any.
+        In the unit of the values; 0 for a group without any, or without weight.
     """
-    total = np.bincount(group, values, minlength=n_groups)
-    mean: FloatArray = total / np.maximum(np.bincount(group, minlength=n_groups), 1)
-    return mean
+    weighted = values if weights is None else weights * values
+    total, weight = (np.bincount(group, of_value, minlength=n_groups) for of_value in (weighted, weights))
+    return np.asarray(total / np.where(weight > 0, weight, 1))

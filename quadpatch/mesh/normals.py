@@ -53,6 +53,12 @@ def area_vectors(vertices: Vertices, triangles: Triangles) -> FloatArray:
     return cross(b - a, c - a)
 
 
+def vertex_areas(vertices: Vertices, triangles: Triangles) -> FloatArray:
+    """Areas (n_vertices,) of a third of the triangles at every vertex, in mesh units squared."""
+    thirds = length(area_vectors(vertices, triangles)) / 6
+    return np.asarray(np.bincount(triangles.ravel(), np.repeat(thirds, 3), minlength=len(vertices)), np.float64)
+
+
 def unit(vectors: FloatArray) -> FloatArray:
     """Divide vectors (n, 3) by their lengths; zero vectors stay zero."""
     lengths = np.linalg.norm(vectors, axis=1, keepdims=True)

@@ -9,7 +9,7 @@ from functools import partial
 
 import numpy as np
 
-from quadpatch.calibration.calibration_set import CalibrationSet, cut_calibration_set, expect, most_holes
+from quadpatch.calibration.calibration_set import MAX_HOLES, CalibrationSet, cut_calibration_set, expect
 from quadpatch.calibration.energy_selection import EnergyBlend, learn_energy_blend
 from quadpatch.calibration.error_model import PRIOR
 from quadpatch.errors import NoQuadsError
@@ -199,8 +199,7 @@ def _filled_ones(selection: Selection, rims: JoinedRims) -> Selection:
 
 def _share_of_calibration(task: _Task) -> float:
     """Estimate the share of the work of filling that calibration is: its holes are like the real ones."""
-    diameter = task.typical_diameter()
-    n_calibration = 0 if diameter is None else most_holes(diameter, task.edges.mean)
+    n_calibration = 0 if task.typical_diameter() is None else MAX_HOLES
     return n_calibration / max(n_calibration + len(task.rims.loops), 1)
 
 

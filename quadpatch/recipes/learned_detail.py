@@ -161,7 +161,7 @@ def _some(count: int, rng: np.random.Generator) -> BoolArray:
 
 def _calibrate_model(calibration: Calibration, model: _Model) -> tuple[float, ErrorModel | None]:
     """Complete the calibration holes: the blend factor, and the error to expect."""
-    filled = calibration.filled
+    filled = _uniform(calibration)
     if calibration.holes is None or filled is None:
         return PRIOR_BLEND_FACTOR, None
     base_surface = _base_surface(filled, model.scale, calibration.edge_length)
@@ -174,6 +174,14 @@ def _calibrate_model(calibration: Calibration, model: _Model) -> tuple[float, Er
     joined = np.where(agreeing_holes(agreement)[filled.vertex_hole][:, None], joined, 0.0)
     factor = choose_blend_factor(calibration.holes, filled, joined)
     return factor, expect(calibration.holes, filled.displaced(factor * joined))
+
+
+def _uniform(calibration: Calibration) -> FilledMesh | None:
+    """Fill the calibration holes as densely as real ones: what a model says of graded fills is another thing."""
+    holes, filled = calibration.holes, calibration.filled
+    if holes is None or filled is None or filled.energy_weights is None or not holes.is_graded:
+        return filled
+    return calibration.blend.fill_weighted(holes.closed.mesh, holes.loops, filled.energy_weights)
 
 
 def _displacements(filled: FilledMesh, patches: Patches, predicted: FloatArray) -> tuple[FloatArray, PatchAgreement]:

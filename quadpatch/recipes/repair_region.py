@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
-from quadpatch.calibration.calibration_set import MARGIN_EDGES, most_holes
+from quadpatch.calibration.calibration_set import MARGIN_EDGES, MAX_HOLES
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.filling.region import Region, region_around
 from quadpatch.mesh.measures import EdgeStatistics
@@ -101,9 +101,8 @@ def repair_region(
     sizes = np.linalg.norm(high - low, axis=1)
     around = _RINGS * reach.edges.mean + _PATCHES * reach.patch_length
     room = _ROOM * (reach.diameter / 2 + MARGIN_EDGES * reach.edges.mean) + around
-    wanted = most_holes(reach.diameter, reach.edges.mean)
-    sites = _sites(mesh, np.concatenate(loops), room, wanted, rng)
-    if len(sites) < wanted:
+    sites = _sites(mesh, np.concatenate(loops), room, MAX_HOLES, rng)
+    if len(sites) < MAX_HOLES:
         return RepairRegion.all_of(mesh, len(loops))
     centres, radii = (low + high) / 2, (0.5 + _BULGE) * sizes + around
     region = region_around(

@@ -48,8 +48,9 @@ class EngineLimits:
 
 def thread_environment(n_threads: int) -> dict[str, str]:
     """Environment that bounds the thread pools of numerical libraries; read by them once, when they are loaded."""
-    names = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMEXPR_NUM_THREADS", "TBB_NUM_THREADS")
-    return dict.fromkeys(names, str(n_threads))
+    names = ("OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMEXPR_NUM_THREADS", "TBB_NUM_THREADS")
+    # Matrices of repairs are small: threads of numpy's BLAS would wait for each other.
+    return {**dict.fromkeys(names, str(n_threads)), "OPENBLAS_NUM_THREADS": "1"}
 
 
 def _lower(kind: int, wanted: int) -> None:

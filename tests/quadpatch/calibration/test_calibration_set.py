@@ -13,7 +13,6 @@ from quadpatch.calibration.calibration_set import (
     distance_per_hole,
     error_per_hole,
     expect,
-    most_holes,
 )
 from quadpatch.filling.fairing import THIN_PLATE, Energy
 from quadpatch.filling.fill import fair_holes
@@ -73,11 +72,6 @@ def test_calibration_holes_are_about_as_wide_as_the_real_ones_and_apart() -> Non
     assert abs(np.median(widths) - calibration.diameter) < mean_edge_length(SHEET)
     corners = np.concatenate(loops)
     assert len(np.unique(corners)) == len(corners)
-
-
-@pytest.mark.parametrize(("edges", "expected"), [(5.0, 64), (16.0, 43), (45.0, 24), (1e4, 24), (0.1, 64)])
-def test_the_larger_holes_are_for_the_edges_the_fewer_are_worth_their_time(edges: float, expected: int) -> None:
-    assert most_holes(3.0 * edges, 3.0) == expected
 
 
 def test_only_surface_is_cut_away() -> None:

@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -55,6 +57,43 @@ def test_weights_do_not_depend_on_the_unit_of_length() -> None:
         blend_of([0.1, 0.0], np.log(1000) + blend.log_miss).weights(1000 * misses),
     )
     assert metres == pytest.approx(millimetres)
+
+
+def test_weights_are_the_mean_of_both_ways_to_choose_by_the_belief_in_weighing() -> None:
+    blend = blend_of([0.0, 0.0], [0.0, 0.0])
+    misses = np.array([[0.02, 0.01], [0.01, 0.02]])
+    alone, by_rim = np.array([0.0, 1.0]), blend.weights(misses)
+    half = replace(blend, best=1, belief=0.25).weights(misses)
+    assert half == pytest.approx(0.25 * by_rim + 0.75 * alone)
+    assert half.sum(axis=1) == pytest.approx(1.0)
+
+
+def test_an_energy_of_little_weight_takes_no_part() -> None:
+    mesh = punched(bumpy_plate(50, 2.0), (0.4, 0.4, 0), (-0.4, 0.2, 0), radius=0.2)
+    loops = [hole.loop for hole in find_holes(mesh) if hole.diameter < 1.0]
+    blend = blend_of([0.0, 0.0], [0.0, 0.0])
+    filled = blend.fill_weighted(mesh, loops, np.array([[0.995, 0.005], [1.0, 0.0]]))
+    assert filled.energy_weights is not None
+    assert filled.energy_weights.tolist() == [[1.0, 0.0], [1.0, 0.0]]
+    plate = fair_holes(close_holes(mesh, loops), THIN_PLATE)
+    assert filled.mesh.vertices.tobytes() == plate.mesh.vertices.tobytes()
+
+
+def test_energies_rank_on_graded_fills_as_on_uniform_ones() -> None:
+    mesh = bumpy_plate(160, 2.0)
+    calibration = cut_calibration_set(mesh, 0.3, mean_edge_length(mesh), np.random.default_rng(0))
+    assert calibration is not None
+    assert calibration.is_graded
+    uniform = close_holes(calibration.closed.mesh, calibration.loops)
+    graded, dense = (
+        np.array([error_per_hole(calibration, fair_holes(closed, energy)).mean() for energy in FAIRING_ENERGIES])
+        for closed in (calibration.closed, uniform)
+    )
+    assert graded.argsort().tolist() == dense.argsort().tolist()
+    # The others are out of the question.
+    near = dense < 3 * dense.min()
+    assert near.sum() >= 3
+    assert graded[near] / graded.min() == pytest.approx(dense[near] / dense.min(), rel=0.15)
 
 
 def test_a_rim_that_no_energy_misses_tells_nothing() -> None:

@@ -3,6 +3,7 @@
 Seconds differ between machines and say nothing on a busy one; which modules are loaded does not.
 """
 
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -64,10 +65,30 @@ def test_a_repair_by_geometry_loads_what_it_uses(tmp_path: Path) -> None:
 def test_what_was_put_off_is_there_when_it_is_asked_for() -> None:
     """Before scipy, and after it."""
     program = (
-        "import sys; from quadpatch.cli.scipy_start import put_off_unused; put_off_unused(); put_off_unused()\n"
+        "import sys; from quadpatch.cli.scipy_start import prepare_libraries as prepare; prepare(); prepare()\n"
         "import scipy.spatial, numpy; assert 'numpy.testing._private' not in sys.modules\n"
         "from numpy.testing import assert_allclose; assert_allclose(1.0, 1.0); assert numpy.f2py.get_include()\n"
-        "put_off_unused(); assert 'numpy.testing._private' in sys.modules"
+        "prepare(); assert 'numpy.testing._private' in sys.modules"
     )
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, timeout=GUARD_S, check=False)
     assert done.returncode == 0, done.stderr
+
+
+def test_the_blas_gets_one_thread_unless_it_is_told_otherwise() -> None:
+    program = (
+        "import os; from quadpatch.cli.scipy_start import prepare_libraries; prepare_libraries()\n"
+        "from threadpoolctl import threadpool_info\n"
+        "print(*{pool['num_threads'] for pool in threadpool_info() if pool['internal_api'] == 'openblas'})"
+    )
+    for told, expected in ((None, "1"), ("2", "2")):
+        environment = {name: value for name, value in os.environ.items() if name != "OPENBLAS_NUM_THREADS"}
+        environment |= {} if told is None else {"OPENBLAS_NUM_THREADS": told}
+        done = subprocess.run(
+            [sys.executable, "-c", program],
+            env=environment,
+            capture_output=True,
+            text=True,
+            timeout=GUARD_S,
+            check=True,
+        )
+        assert done.stdout.split() == [expected]

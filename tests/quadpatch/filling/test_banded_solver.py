@@ -26,7 +26,14 @@ def solved(
     matrix: "sparse.csr_array[np.float64]", right: FloatArray, order: EliminationOrder | None = None
 ) -> FloatArray:
     order = order or EliminationOrder.of(matrix)
-    return order.solve([(1.0, order.banded(matrix))], right)
+    solution = order.solve([(1.0, order.upper_part(numbered(matrix, order)))], right[np.argsort(order.position)])
+    return np.asarray(solution[order.position])
+
+
+def numbered(matrix: "sparse.csr_array[np.float64]", order: EliminationOrder) -> "sparse.csc_array[np.float64]":
+    """The matrix with its unknowns in some order."""
+    by_position = np.argsort(order.position)
+    return sparse.csc_array(matrix[by_position][:, by_position])
 
 
 def right_sides(n: int) -> FloatArray:
@@ -51,7 +58,8 @@ def test_a_sum_of_matrices_of_several_widths_is_solved() -> None:
     wide = blocks([30, 8, 21], 5)
     narrow = sparse.csr_array(sparse.diags_array(np.arange(1.0, 60.0)))
     order, right = EliminationOrder.of(wide), right_sides(59)
-    found = order.solve([(0.3, order.banded(narrow)), (2.0, order.banded(wide))], right)
+    terms = [(weight, order.upper_part(numbered(matrix, order))) for weight, matrix in ((0.3, narrow), (2.0, wide))]
+    found = order.solve(terms, right[np.argsort(order.position)])[order.position]
     assert (0.3 * narrow + 2.0 * wide) @ found == pytest.approx(right, abs=1e-8)
 
 

@@ -6,6 +6,7 @@ from hypothesis import strategies as st
 from quadpatch.filling.fairing import THIN_PLATE, Energy, fair
 from quadpatch.filling.fill import ALTERNATIVE_ENERGY, close_flat, close_holes, fair_holes
 from quadpatch.filling.filled_mesh import FilledMesh
+from quadpatch.mesh.normals import vertex_areas
 from quadpatch.types import FloatArray, TriangleMesh
 from tests.quadpatch.filling.fills import CLOSED, SMOOTH, all_loops, assert_keeps, filled, short_loops
 from tests.quadpatch.shapes import (
@@ -50,16 +51,17 @@ def test_the_gap_is_the_mean_distance_between_the_thin_plate_and_a_second_opinio
     mesh = CLOSED["sphere"]
     closed = close_holes(mesh, all_loops(mesh))
     plate = closed.plate
-    second = fair(
-        plate.vertices,
-        np.concatenate([closed.near.adjacent_triangles, plate.triangles]),
-        plate.is_new,
-        ALTERNATIVE_ENERGY,
+    triangles = np.concatenate([closed.near.adjacent_triangles, plate.triangles])
+    first, second = (
+        fair(plate.vertices, triangles, plate.is_new, energy) for energy in (THIN_PLATE, ALTERNATIVE_ENERGY)
     )
-    distances = np.linalg.norm(second - plate.vertices, axis=1)[len(closed.near.used) :]
+    n_measured = len(closed.near.used)
+    distances = np.linalg.norm(second - first, axis=1)[n_measured:]
+    areas = vertex_areas(plate.vertices, plate.triangles)[n_measured:]
     for energy in (SMOOTH, THIN_PLATE):
         result = fair_holes(closed, energy)
-        expected = [distances[result.vertex_hole == i].mean() for i in range(3)]
+        holes = [result.vertex_hole == i for i in range(3)]
+        expected = [np.average(distances[hole], weights=areas[hole]) for hole in holes]
         np.testing.assert_allclose(result.disagreement, expected, rtol=1e-9)
         assert (result.disagreement > 0).all()
 
@@ -163,3 +165,24 @@ def test_a_flat_closing_of_no_hole_gives_the_mesh_back() -> None:
     result = close_flat(sphere(2), [])
     assert result.mesh.vertices.tobytes() == sphere(2).vertices.tobytes()
     assert result.mesh.triangles.tobytes() == sphere(2).triangles.tobytes()
+
+
+def test_a_graded_fill_has_few_vertices_far_from_its_rim_and_about_the_same_shape() -> None:
+    mesh = punched(sphere(5), (0.1, 0.2, 1), radius=0.6)
+    loops = all_loops(mesh)
+    uniform, graded = (close_holes(mesh, loops, graded=graded) for graded in (False, True))
+    for energy in (SMOOTH, THIN_PLATE):
+        dense, thin = fair_holes(uniform, energy), fair_holes(graded, energy)
+        assert_keeps(thin, mesh)
+        assert len(thin.vertex_hole) < 0.5 * len(dense.vertex_hole)
+        heights = [np.linalg.norm(fill.mesh.vertices[fill.n_measured_vertices :], axis=1) for fill in (dense, thin)]
+        lowest, other = (1 - height.min() for height in heights)
+        assert other == pytest.approx(lowest, rel=0.25)
+    assert graded.disagreement == pytest.approx(uniform.disagreement, rel=0.2)
+
+
+def test_grading_changes_nothing_where_holes_are_small_for_their_edges() -> None:
+    mesh = punched(sphere(3), (0.1, 0.2, 1), radius=0.3)
+    uniform, graded = (close_holes(mesh, all_loops(mesh), graded=graded) for graded in (False, True))
+    assert graded.plate.grading is None
+    assert graded.plate.vertices.tobytes() == uniform.plate.vertices.tobytes()

@@ -9,6 +9,11 @@ def test_each_group_has_the_mean_of_its_own_values_and_an_empty_one_has_zero() -
     assert mean_by(np.array([2, 0, 2, 2]), np.array([1.0, 5.0, 2.0, 6.0]), 4).tolist() == [5.0, 0.0, 3.0, 0.0]
 
 
+def test_values_weigh_as_much_as_they_are_told_to() -> None:
+    group, values, weights = np.array([0, 0, 1, 2]), np.array([1.0, 4.0, 5.0, 7.0]), np.array([2.0, 1.0, 3.0, 0.0])
+    assert mean_by(group, values, 3, weights).tolist() == [2.0, 5.0, 0.0]
+
+
 def test_no_values_give_zero_for_every_group() -> None:
     assert mean_by(np.zeros(0, np.int64), np.zeros(0), 3).tolist() == [0.0, 0.0, 0.0]
     assert mean_by(np.zeros(0, np.int64), np.zeros(0), 0).shape == (0,)

@@ -1,8 +1,9 @@
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from quadpatch.mesh.normals import area_vectors, normals_at, triangle_normals, unit, vertex_normals
+from quadpatch.mesh.normals import area_vectors, normals_at, triangle_normals, unit, vertex_areas, vertex_normals
 from tests.quadpatch.shapes import bumpy_plate, open_grid, random_rotation, sphere
 
 
@@ -18,6 +19,13 @@ def test_area_vectors_are_twice_as_long_as_areas_and_add_up_to_nothing_on_a_clos
     vectors = area_vectors(mesh.vertices, mesh.triangles)
     assert abs(np.linalg.norm(vectors, axis=1).sum() / 2 / (4 * np.pi * 4) - 1) < 0.02
     np.testing.assert_allclose(vectors.sum(axis=0), 0, atol=1e-12)
+
+
+def test_the_areas_at_vertices_add_up_to_that_of_the_surface() -> None:
+    square = open_grid(11, 2.0)
+    areas = vertex_areas(square.vertices, square.triangles)
+    assert areas.sum() == pytest.approx(4.0)
+    assert areas.reshape(11, 11)[1:-1, 1:-1] == pytest.approx(0.04)
 
 
 def test_vertex_normals_of_a_sphere_point_away_from_its_centre() -> None:
