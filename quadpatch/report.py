@@ -7,7 +7,8 @@ import json
 import math
 from collections.abc import Mapping
 from dataclasses import asdict
-from typing import Any, cast
+from functools import lru_cache
+from typing import Any
 
 import numpy as np
 
@@ -116,11 +117,11 @@ def build_report(
             "count": completion.n_patches,
             "believed_share": completion.blend_factor,
         },
-        "holes": [_hole(result) for result in repair.results],
         "stages": describe_stages(stages),
         "warnings": repair.warnings,
     }
-    return cast(dict[str, Any], json_ready(report))
+    holes = [_hole(result) for result in repair.results]
+    return {**json_ready(report), "holes": holes if _is_plain(holes) else json_ready(holes)}
 
 
 def describe_task(
@@ -165,6 +166,18 @@ def _hole(result: HoleResult) -> dict[str, Any]:
     }
 
 
+def _is_plain(value: Any) -> bool:
+    """Whether nested values are JSON-ready as they are: many times faster than to turn millions of them one by one."""
+    try:
+        text = json.dumps(value, allow_nan=False)
+    except (TypeError, ValueError):
+        return False
+    return "\\" not in text
+
+
+_PLAIN = (int, bool, type(None))
+
+
 def json_ready(value: Any) -> Any:
     """Turn nested values into plain ones.
 
@@ -179,14 +192,21 @@ def json_ready(value: Any) -> Any:
         Dicts, lists, printable strings, booleans, integers, finite floats and None. JSON knows no NaN and no
         infinity: both become None.
     """
-    if isinstance(value, Mapping):
-        return {printable(str(name)): json_ready(item) for name, item in value.items()}
-    if isinstance(value, np.ndarray | np.generic):
-        return json_ready(value.tolist())
+    # Reports of scans with many holes hold millions of values: the usual kinds come first, by their exact type.
+    kind = type(value)
+    if kind in _PLAIN:
+        return value
+    if kind is dict or isinstance(value, Mapping):
+        return {_name(name): json_ready(item) for name, item in value.items()}
     if isinstance(value, list | tuple):
         return [json_ready(item) for item in value]
+    if isinstance(value, np.ndarray | np.generic):
+        return json_ready(value.tolist())
     if isinstance(value, float):
         return value if math.isfinite(value) else None
-    if isinstance(value, str):
-        return printable(value)
-    return value
+    return printable(value) if isinstance(value, str) else value
+
+
+@lru_cache(maxsize=1024)
+def _name(name: Any) -> str:
+    return printable(str(name))

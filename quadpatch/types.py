@@ -20,9 +20,12 @@ Quads = IntArray  # (n_quads, 4), counter-clockwise seen from outside
 Frames = FloatArray  # (n, 3, 3), rows x, y, z; right-handed; z is the surface normal
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class TriangleMesh:
-    """Vertices (n, 3) float64 in mesh units and triangles (m, 3) int64, counter-clockwise seen from outside."""
+    """Vertices (n, 3) float64 in mesh units and triangles (m, 3) int64, counter-clockwise seen from outside.
+
+    Its arrays are not written to: what was measured of a mesh is kept with it.
+    """
 
     vertices: Vertices
     triangles: Triangles

@@ -175,7 +175,7 @@ def leave_one_ring_out(
     remaining = mesh.triangles[~ring]
     removed = np.flatnonzero(used_vertices(mesh.triangles, n_vertices) & ~used_vertices(remaining, n_vertices))
     rim_tree = cKDTree(mesh.vertices[rim])
-    wider_loops = new_loops(mesh, remaining)
+    wider_loops = new_loops(mesh, ring)
     closed = close_holes(TriangleMesh(mesh.vertices, remaining), wider_loops, graded=True)
     opened = np.zeros(len(loops), bool)
     for number, loop in enumerate(wider_loops):

@@ -1,14 +1,15 @@
 """Holes cut into undamaged surface, where it is known what belongs into them."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.spatial import cKDTree
 
-from quadpatch.mesh.boundary import boundary_loops, boundary_vertices
+from quadpatch.mesh.boundary import boundary_loops, on_boundary
+from quadpatch.mesh.edge_groups import survey_edges
 from quadpatch.mesh.measures import used_vertices
 from quadpatch.mesh.normals import vertex_normals
-from quadpatch.types import BoolArray, IntArray, TriangleMesh, Triangles
+from quadpatch.types import BoolArray, IntArray, TriangleMesh
 
 # The rim of a cut lies so much outside the disk of vertices that it takes, in mean edge lengths.
 _RIM_EDGES = 0.7
@@ -70,7 +71,7 @@ def cut_holes(mesh: TriangleMesh, diameter: float, spacing: Spacing, rng: np.ran
     removed = _disks(mesh, radius, spacing, rng)
     cut_away = np.asarray(removed[mesh.triangles].any(axis=1))
     remaining = TriangleMesh(mesh.vertices, mesh.triangles[~cut_away])
-    return MeshWithHoles(remaining, removed, cut_away, new_loops(mesh, remaining.triangles))
+    return MeshWithHoles(remaining, removed, cut_away, new_loops(mesh, cut_away))
 
 
 def _disks(mesh: TriangleMesh, radius: float, spacing: Spacing, rng: np.random.Generator) -> BoolArray:
@@ -96,17 +97,22 @@ def _disks(mesh: TriangleMesh, radius: float, spacing: Spacing, rng: np.random.G
 def _far_from_boundary(mesh: TriangleMesh, distance: float) -> BoolArray:
     """Vertices (n,) that a triangle uses and that keep a distance from every boundary edge."""
     far = used_vertices(mesh.triangles, len(mesh.vertices))
-    rim = boundary_vertices(mesh.triangles)
+    rim = np.flatnonzero(on_boundary(mesh))
     if len(rim):
         nearest, _ = cKDTree(mesh.vertices[rim]).query(mesh.vertices, distance_upper_bound=distance)
         far &= nearest > distance
     return far
 
 
-def new_loops(mesh: TriangleMesh, remaining: Triangles) -> list[IntArray]:
-    """Find the manifold loops of the remaining triangles (k, 3) of a mesh that touch no boundary of the mesh itself."""
-    old = np.zeros(len(mesh.vertices), bool)
-    old[boundary_vertices(mesh.triangles)] = True
-    boundary = boundary_loops(remaining)
+def new_loops(mesh: TriangleMesh, cut_away: BoolArray) -> list[IntArray]:
+    """Find the manifold loops that a mesh gets where triangles (n_triangles,) are cut away, far from its own boundary.
+
+    Loops that touch a boundary of the mesh itself are left out. Only triangles next to the cuts are looked at.
+    """
+    beside = used_vertices(mesh.triangles[cut_away], len(mesh.vertices))
+    near = mesh.triangles[~cut_away & beside[mesh.triangles].any(axis=1)]
+    survey = survey_edges(near, len(mesh.vertices))
+    # Edges between these vertices have all their triangles among the near ones.
+    boundary = boundary_loops(near, replace(survey, on_boundary=beside & ~on_boundary(mesh)))
     pairs = zip(boundary.loops, boundary.is_manifold, strict=True)
-    return [loop for loop, is_manifold in pairs if is_manifold and not old[loop].any()]
+    return [loop for loop, is_manifold in pairs if is_manifold]

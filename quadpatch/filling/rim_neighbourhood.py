@@ -9,7 +9,7 @@ from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.filling.refinement import Refined
 from quadpatch.filling.triangulation import EdgeSet, Forbidden, triangulate_loops
 from quadpatch.mesh.intersections import LEAST_HEIGHT, heights
-from quadpatch.mesh.normals import triangle_normals, unit, vertex_normals
+from quadpatch.mesh.normals import length, triangle_normals, unit, vertex_normals
 from quadpatch.mesh.topology import directed_edges
 from quadpatch.types import FloatArray, IntArray, TriangleMesh, Triangles
 
@@ -78,6 +78,8 @@ class RimNeighbourhood:
             np.einsum("ij,ij->i", self.vertices[a] - self.vertices[tip], self.vertices[b] - self.vertices[tip]) < 0
         )
         flat = np.stack([a, tip, b], axis=1)[is_between]
+        if not len(flat):
+            return self
         loops, taken = list(self.loops), []
         for i in range(len(loops)):
             of_loop = flat[np.isin(flat, loops[i]).all(axis=1)].tolist()
@@ -133,9 +135,14 @@ class RimNeighbourhood:
 
     def rim_variation(self) -> FloatArray:
         """Mean length (n_loops,) of the difference between the unit normals of neighbouring rim vertices."""
-        normals = vertex_normals(self.vertices, self.adjacent_triangles)
-        turns = [np.linalg.norm(normals[loop] - normals[np.roll(loop, -1)], axis=1).mean() for loop in self.loops]
-        return np.array(turns, np.float64)
+        if not self.loops:
+            return np.zeros(0)
+        counts = np.array([len(loop) for loop in self.loops])
+        starts = np.cumsum(counts) - counts
+        normals = vertex_normals(self.vertices, self.adjacent_triangles)[np.concatenate(self.loops)]
+        following = np.arange(len(normals)) + 1
+        following[starts + counts - 1] = starts
+        return np.asarray(np.add.reduceat(length(normals[following] - normals), starts) / counts)
 
     def filled(
         self,

@@ -96,7 +96,9 @@ def _triangulate(
     loops: list[IntArray], vertices: Vertices, rim_normals: list[FloatArray], forbidden: Forbidden
 ) -> list[Triangles | None]:
     """Triangulate every loop for itself."""
-    forbidden = forbidden.with_edges(np.concatenate([np.zeros((0, 2), np.int64), *(_bridges(loop) for loop in loops)]))
+    # Without islands, which are few, no loop passes a vertex twice.
+    bridges = [_bridges(loop) for loop in loops if len(set(loop.tolist())) < len(loop)]
+    forbidden = forbidden.with_edges(np.concatenate(bridges)) if bridges else forbidden
     rims = [RimLoop(loop, normals) for loop, normals in zip(loops, rim_normals, strict=True)]
     parts = [divide(rim, vertices, MAX_TABLE_SIZE, forbidden.edges.pairs) for rim in rims]
     flat = [part for of_loop in parts for part in of_loop]
@@ -119,6 +121,9 @@ def _joined(parts: list[Triangles | None]) -> Triangles | None:
     if not found or len(found) < len(parts):
         return None
     triangles = np.concatenate(found)
+    if len(found) == 1 and len(set(triangles.ravel().tolist())) == len(triangles) + 2:
+        # No vertex comes twice: chords that do not cross are all different.
+        return triangles
     edges = np.sort(directed_edges(triangles), axis=1)
     return triangles if np.unique(edges, axis=0, return_counts=True)[1].max() <= 2 else None
 

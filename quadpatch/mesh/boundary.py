@@ -9,8 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from quadpatch.mesh.edge_groups import EdgeSurvey, survey_edges
+from quadpatch.mesh.measures import once_per_mesh
 from quadpatch.mesh.topology import directed_edges, edge_keys
-from quadpatch.types import BoolArray, IntArray, Triangles
+from quadpatch.types import BoolArray, IntArray, TriangleMesh, Triangles
 
 
 @dataclass(frozen=True)
@@ -55,9 +56,14 @@ def boundary_loops(triangles: Triangles, survey: EdgeSurvey | None = None) -> Bo
     loops = [(loop, True) for walk in walks for loop in _simple_loops(walk)]
     # A chain that can't be closed in the direction of its faces: the faces around it disagree.
     loops += [(chain, False) for chain in open_walks]
-    loops = [(np.roll(loop, -int(np.argmin(loop))), good and not is_bad[loop].any()) for loop, good in loops]
+    loops = [(_from_lowest(loop), good and not is_bad[loop].any()) for loop, good in loops]
     loops.sort(key=lambda item: tuple(item[0][:2]))
     return Boundary([loop for loop, _ in loops], [good for _, good in loops])
+
+
+def _from_lowest(loop: IntArray) -> IntArray:
+    first = int(np.argmin(loop))
+    return np.roll(loop, -first) if first else loop
 
 
 def boundary_edges(triangles: Triangles) -> IntArray:
@@ -68,6 +74,12 @@ def boundary_edges(triangles: Triangles) -> IntArray:
 def boundary_vertices(triangles: Triangles) -> IntArray:
     """Find the vertices of edges that have exactly one face, (n,) int64, ascending."""
     return np.flatnonzero(survey_edges(triangles, int(triangles.max(initial=-1)) + 1).on_boundary)
+
+
+@once_per_mesh
+def on_boundary(mesh: TriangleMesh) -> BoolArray:
+    """Tell the vertices (n_vertices,) of edges that have exactly one face."""
+    return survey_edges(mesh.triangles, len(mesh.vertices)).on_boundary
 
 
 def _boundary_edges(triangles: Triangles, survey: EdgeSurvey) -> tuple[IntArray, BoolArray]:

@@ -7,7 +7,7 @@ import numpy as np
 from quadpatch.mesh.boundary import boundary_loops
 from quadpatch.mesh.edge_groups import EdgeSurvey
 from quadpatch.mesh.hole_kinds import hole_kinds
-from quadpatch.mesh.loop_shapes import LoopShapes, measure_loops, perimeter
+from quadpatch.mesh.loop_shapes import LoopShapes, measure_loops, perimeters
 from quadpatch.mesh.normals import unit
 from quadpatch.mesh.pieces import find_pieces
 from quadpatch.mesh.rims import Rims, rims_of
@@ -93,12 +93,12 @@ def find_holes(mesh: TriangleMesh, survey: EdgeSurvey | None = None) -> list[Hol
     boundary = boundary_loops(mesh.triangles, survey)
     if not boundary.loops:
         return []
-    lengths = [perimeter(mesh.vertices[loop]) for loop in boundary.loops]
-    order = sorted(range(len(lengths)), key=lambda i: -lengths[i])
+    lengths = perimeters(mesh.vertices, boundary.loops)
+    order = np.argsort(-lengths, kind="stable").tolist()
     loops = [boundary.loops[i] for i in order]
     is_manifold = np.array([boundary.is_manifold[i] for i in order])
     rims = rims_of(mesh, loops)
-    shapes = measure_loops(mesh, rims, loops, np.array([lengths[i] for i in order]))
+    shapes = measure_loops(mesh, rims, loops, lengths[order])
     kinds = hole_kinds(mesh.vertices, rims, shapes, find_pieces(mesh, loops), is_manifold)
     centres = _vectors(rims.sums(_moments(rims)) / np.maximum(rims.sums(rims.lengths), 1e-300)[:, None])
     normals = _vectors(_facing(shapes, kinds))

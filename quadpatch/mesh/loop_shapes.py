@@ -3,6 +3,7 @@
 Tested in `tests/quadpatch/mesh/test_hole_measures.py`.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,6 +12,10 @@ from quadpatch.mesh.loop_diameter import loop_diameter
 from quadpatch.mesh.normals import cross, normals_at
 from quadpatch.mesh.rims import Rims
 from quadpatch.types import FloatArray, IntArray, TriangleMesh, Vertices
+
+# Loops of up to so many vertices are measured together, so many at a time.
+_SMALL_LOOP = 16
+_AT_ONCE = 4096
 
 
 @dataclass(frozen=True)
@@ -44,13 +49,40 @@ class LoopShapes:
         return np.asarray(4 * np.pi * areas / np.maximum(self.perimeters, 1e-150) ** 2)
 
 
-def perimeter(points: Vertices) -> float:
-    """Measure the closed loop through points (n, 3)."""
-    return float(np.linalg.norm(np.roll(points, -1, axis=0) - points, axis=1).sum())
+def perimeters(vertices: Vertices, loops: list[IntArray]) -> FloatArray:
+    """Measure closed loops, (n_loops,); a loop's perimeter does not depend on the others."""
+
+    def of_equal(points: FloatArray) -> FloatArray:
+        return np.asarray(np.linalg.norm(np.roll(points, -1, axis=1) - points, axis=2).sum(axis=1))
+
+    return _measured(vertices, loops, of_equal)
 
 
-def measure_loops(mesh: TriangleMesh, rims: Rims, loops: list[IntArray], perimeters: FloatArray) -> LoopShapes:
-    """Measure all loops at once; only their diameters are measured one by one.
+def diameters(vertices: Vertices, loops: list[IntArray]) -> FloatArray:
+    """Measure the largest distances between two vertices of each loop, (n_loops,)."""
+
+    def of_equal(points: FloatArray) -> FloatArray:
+        if points.shape[1] > _SMALL_LOOP:
+            return np.array([loop_diameter(of_loop) for of_loop in points])
+        return np.asarray(np.linalg.norm(points[:, :, None] - points[:, None], axis=3).max(axis=(1, 2)))
+
+    return _measured(vertices, loops, of_equal)
+
+
+def _measured(vertices: Vertices, loops: list[IntArray], of_equal: Callable[[FloatArray], FloatArray]) -> FloatArray:
+    """Measure loops that are equally long (k, n, 3) together: scans have a hundred thousand holes of three edges."""
+    result, by_length = np.zeros(len(loops)), dict[int, list[int]]()
+    for i, loop in enumerate(loops):
+        by_length.setdefault(len(loop), []).append(i)
+    for members in by_length.values():
+        for at in range(0, len(members), _AT_ONCE):
+            part = members[at : at + _AT_ONCE]
+            result[part] = of_equal(vertices[np.stack([loops[i] for i in part])])
+    return result
+
+
+def measure_loops(mesh: TriangleMesh, rims: Rims, loops: list[IntArray], lengths: FloatArray) -> LoopShapes:
+    """Measure all loops at once.
 
     Parameters
     ----------
@@ -58,7 +90,8 @@ def measure_loops(mesh: TriangleMesh, rims: Rims, loops: list[IntArray], perimet
     rims : Rims
         Of the loops.
     loops : list of (n_loop,) int64
-    perimeters : (n_loops,) float64
+    lengths : (n_loops,) float64
+        Their perimeters.
     """
     counts = np.diff(rims.starts)[:, None]
     centres = rims.sums(rims.points) / counts
@@ -71,10 +104,10 @@ def measure_loops(mesh: TriangleMesh, rims: Rims, loops: list[IntArray], perimet
     away = np.sqrt(rims.sums(distances**2) / counts[:, 0])
     reach = 2 * np.maximum.reduceat(np.linalg.norm(centred, axis=1), rims.starts[:-1])
     planarity = np.where(reach > 0, away / np.maximum(reach, 1e-300), 0.0)
-    diameters = np.array([loop_diameter(rims.points[rims.slice_of(i)]) for i in range(rims.n_loops)])
     normals = normals_at(mesh.vertices, mesh.triangles, np.concatenate(loops))
     rim_normals = rims.sums(normals) / counts
-    return LoopShapes(centres, plane_normals, planarity, diameters, perimeters, vector_areas, rim_normals)
+    widths = diameters(mesh.vertices, loops)
+    return LoopShapes(centres, plane_normals, planarity, widths, lengths, vector_areas, rim_normals)
 
 
 def _plane_normals(rims: Rims, centred: FloatArray) -> FloatArray:

@@ -1,6 +1,14 @@
-"""Lengths of a mesh."""
+"""Lengths of a mesh.
 
+A repair asks for the same lengths at several places, and on a large scan each of them is a pass over all triangles: the
+bounding box and the edges of a mesh are measured once, and kept as long as the mesh is.
+"""
+
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import wraps
+from typing import TypeVar
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -11,6 +19,21 @@ _CHUNK = 1 << 16
 # Edges longer than so many mean ones are long.
 LONG_EDGE = 8.0
 
+Measure = TypeVar("Measure")
+
+
+def once_per_mesh(measure: Callable[[TriangleMesh], Measure]) -> Callable[[TriangleMesh], Measure]:
+    """Keep what is measured of a mesh as long as the mesh is."""
+    known: WeakKeyDictionary[TriangleMesh, Measure] = WeakKeyDictionary()
+
+    @wraps(measure)
+    def looked_up(mesh: TriangleMesh) -> Measure:
+        if mesh not in known:
+            known[mesh] = measure(mesh)
+        return known[mesh]
+
+    return looked_up
+
 
 @dataclass(frozen=True)
 class EdgeStatistics:
@@ -20,6 +43,7 @@ class EdgeStatistics:
     longest: float
 
 
+@once_per_mesh
 def edge_statistics(mesh: TriangleMesh) -> EdgeStatistics:
     """Measure all edges in one pass; 0 without triangles."""
     if not len(mesh.triangles):
@@ -47,6 +71,7 @@ def used_vertices(triangles: Triangles, n_vertices: int) -> BoolArray:
     return used
 
 
+@once_per_mesh
 def bounding_box(mesh: TriangleMesh) -> tuple[FloatArray, FloatArray]:
     """Lowest and highest corner (3,) of the box of all vertices that a triangle uses; there is a triangle."""
     used = used_vertices(mesh.triangles, len(mesh.vertices))

@@ -107,7 +107,7 @@ def weld(scan_vertices: Vertices, scan_triangles: Triangles, tolerance: Toleranc
     if n_equal:
         triangles = _without_degenerate(from_file[kept])
         survey = survey_edges(triangles, len(to_file))
-    near, tolerance = join_near(TriangleMesh(scan_vertices[to_file], triangles), survey.on_boundary, tolerance)
+    near, tolerance = join_near(TriangleMesh(_picked(scan_vertices, to_file), triangles), survey.on_boundary, tolerance)
     again = np.zeros(len(triangles), dtype=bool)
     n_near = int((near != np.arange(len(near))).sum())
     if n_near:
@@ -119,14 +119,14 @@ def weld(scan_vertices: Vertices, scan_triangles: Triangles, tolerance: Toleranc
     triangles = triangles[~again] if again.any() else triangles
     fins = triangles[:0]
     if survey.is_crowded:
-        is_fin = fin_triangles(scan_vertices[to_file], triangles)
+        is_fin = fin_triangles(_picked(scan_vertices, to_file), triangles)
         fins, triangles = triangles[is_fin], triangles[~is_fin]
     is_flipped = np.zeros(len(triangles), dtype=bool)
     if survey.is_divided:
         is_flipped = flipped_triangles(triangles, len(to_file))
         triangles = np.where(is_flipped[:, np.newaxis], triangles[:, ::-1], triangles)
     return Weld(
-        TriangleMesh(scan_vertices[to_file], triangles),
+        TriangleMesh(_picked(scan_vertices, to_file), triangles),
         to_file,
         from_file,
         np.concatenate([copies, fins]),
@@ -134,6 +134,11 @@ def weld(scan_vertices: Vertices, scan_triangles: Triangles, tolerance: Toleranc
         WeldCounts(n_equal, n_near, tolerance, len(proper), len(copies), len(fins), int(is_flipped.sum())),
         None if again.any() or survey.is_crowded or survey.is_divided else survey,
     )
+
+
+def _picked(scan_vertices: Vertices, to_file: IntArray) -> Vertices:
+    """Pick the file's vertices (n, 3) that stay; no copy where all of them do."""
+    return scan_vertices if len(to_file) == len(scan_vertices) else scan_vertices[to_file]
 
 
 def _without_degenerate(triangles: Triangles) -> Triangles:

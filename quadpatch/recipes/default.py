@@ -139,8 +139,8 @@ class _Task:
 
     def typical_diameter(self) -> float | None:
         """Return the diameter of calibration holes, in mesh units; None where there is nothing to calibrate for."""
-        curved = [self.diameters[i] for i in np.flatnonzero(~self.wanted.flat)]
-        return float(np.median(curved)) if curved else None
+        curved = np.array(self.diameters)[~self.wanted.flat]
+        return float(np.median(curved)) if len(curved) else None
 
     def reach(self) -> Reach:
         """Say how far around the holes this looks."""

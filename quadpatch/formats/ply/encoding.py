@@ -86,7 +86,7 @@ def fit(values: Values, code: str) -> Values:
     return np.asarray(np.clip(rounded, low, top).astype(code))
 
 
-def insert_behind(data: memoryview, ends: Values, suffix: bytes) -> bytes:
+def insert_behind(data: memoryview, ends: Values, suffix: bytes) -> bytes | memoryview:
     """Insert the same bytes behind every row.
 
     Parameters
@@ -96,15 +96,20 @@ def insert_behind(data: memoryview, ends: Values, suffix: bytes) -> bytes:
         Where each row ends in `data`, ascending.
     suffix : bytes
     """
-    old = np.frombuffer(data, np.uint8)
+    n_rows = len(ends)
+    if n_rows and len(data) == n_rows * int(ends[0]) and (np.diff(ends) == ends[0]).all():
+        return insert_behind_equal(data, n_rows, suffix)
     added = np.frombuffer(suffix, np.uint8)
-    n_rows, size = len(ends), len(added)
-    if n_rows and len(old) == n_rows * int(ends[0]) and (np.diff(ends) == ends[0]).all():
-        table = np.zeros((n_rows, int(ends[0]) + size), np.uint8)
-        table[:, : int(ends[0])] = old.reshape(n_rows, -1)
-        table[:, int(ends[0]) :] = added
-        return table.tobytes()
-    return insert_rows(old, ends, np.broadcast_to(added, (n_rows, size)))
+    return insert_rows(np.frombuffer(data, np.uint8), ends, np.broadcast_to(added, (n_rows, len(added))))
+
+
+def insert_behind_equal(data: memoryview, n_rows: int, suffix: bytes) -> memoryview:
+    """Insert the same bytes behind every one of some rows of the same size, which are all of the data."""
+    old, added = np.frombuffer(data, np.uint8).reshape(n_rows, -1), np.frombuffer(suffix, np.uint8)
+    table = np.empty((n_rows, old.shape[1] + len(added)), np.uint8)
+    table[:, : old.shape[1]] = old
+    table[:, old.shape[1] :] = added
+    return memoryview(table.reshape(-1))
 
 
 def insert_rows(data: Values, ends: Values, pieces: Values) -> bytes:

@@ -84,7 +84,10 @@ def _vertices(rows: Rows | None) -> Vertices:
     columns = [column for name in "xyz" if (column := rows.scalar(name)) is not None]
     if len(columns) < 3:
         raise ReadError("the PLY element `vertex` lacks a number x, y or z")
-    return np.stack([to_float64(column) for column in columns], axis=1)
+    vertices = np.empty((len(columns[0]), 3))
+    for axis, column in enumerate(columns):
+        vertices[:, axis] = to_float64(column)
+    return vertices
 
 
 def _triangles(by_name: dict[str, Rows], vertices: Vertices) -> tuple[Triangles, IntArray, str]:
@@ -110,6 +113,8 @@ def _triangles(by_name: dict[str, Rows], vertices: Vertices) -> tuple[Triangles,
         face_rows.append(row)
     if not pieces:
         _raise_no_faces(by_name)
+    if len(pieces) == 1:
+        return pieces[0], face_rows[0], carrier
     return np.concatenate(pieces), np.concatenate(face_rows), carrier
 
 

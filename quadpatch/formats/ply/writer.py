@@ -20,7 +20,7 @@ know no `face` element beside them, and the old row, often one single strip over
 
 import numpy as np
 
-from quadpatch.formats.ply.encoding import encode_rows, insert_behind
+from quadpatch.formats.ply.encoding import encode_rows, insert_behind, insert_behind_equal
 from quadpatch.formats.ply.file import PlyFile
 from quadpatch.formats.ply.header import rewrite_header
 from quadpatch.formats.ply.new_rows import MARKS, new_carrier_rows, new_vertex_rows
@@ -84,7 +84,12 @@ def _binary_pieces(
     for rows in file.rows:
         old = whole[rows.start : rows.stop]
         suffix = _suffix(file, added.get(rows.element.name, []))
-        pieces.append(insert_behind(old, rows.row_ends() - rows.start, suffix) if suffix else old)
+        if not suffix:
+            pieces.append(old)
+        elif rows.ends is None and rows.element.count:
+            pieces.append(insert_behind_equal(old, rows.element.count, suffix))
+        else:
+            pieces.append(insert_behind(old, rows.row_ends() - rows.start, suffix))
         pieces.append(tails.get(rows.element.name, b""))
         at = rows.stop
     return [*pieces, whole[at:]]
