@@ -47,6 +47,9 @@ DEFAULT_ENERGY = FAIRING_ENERGIES[2]
 # to carry on.
 PRIOR_ENERGY = THIN_PLATE
 
+# Calibration holes are at most so many mean edges wide: wider ones cost more and tell the same.
+WIDEST_CALIBRATION = 64.0
+
 
 def inpaint(
     mesh: TriangleMesh,
@@ -140,7 +143,7 @@ class _Task:
     def typical_diameter(self) -> float | None:
         """Return the diameter of calibration holes, in mesh units; None where there is nothing to calibrate for."""
         curved = np.array(self.diameters)[~self.wanted.flat]
-        return float(np.median(curved)) if len(curved) else None
+        return min(float(np.median(curved)), WIDEST_CALIBRATION * self.edges.mean) if len(curved) else None
 
     def reach(self) -> Reach:
         """Say how far around the holes this looks."""
