@@ -1,8 +1,8 @@
 """``python -m benchmarks.output_hashes FOLDER``: what repairs put out, as hashes.
 
 A change that moves or renames code must leave every bit of a repair as it was. Each mesh of a folder is repaired with
-each model; one line per repair goes to standard output: the sha256 of the repaired file, that of its report without the
-seconds that it took, mesh and model. The output of two runs is compared with ``diff``.
+each model; one line per repair goes to standard output: the sha256 of the repaired file, that of its report without
+seconds and memory, mesh and model. The output of two runs is compared with ``diff``.
 """
 
 import argparse
@@ -15,6 +15,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+_COSTS = ("seconds", "peak_memory_mib")
 MODELS = ("smooth", "self", "general-residual@1")
 
 
@@ -44,15 +45,15 @@ def hashes(scan: Path, model: str) -> tuple[str, str]:
         repaired, report = Path(folder, "repaired" + scan.suffix), Path(folder, "report.json")
         command = [sys.executable, "-m", "quadpatch", "fill", str(scan), "-o", str(repaired), "--report", str(report)]
         subprocess.run([*command, "--model", model], check=True, capture_output=True)
-        comparable = json.dumps(_without_seconds(json.loads(report.read_bytes())), sort_keys=True)
+        comparable = json.dumps(_without_costs(json.loads(report.read_bytes())), sort_keys=True)
         return hashlib.sha256(repaired.read_bytes()).hexdigest(), hashlib.sha256(comparable.encode()).hexdigest()
 
 
-def _without_seconds(value: Any) -> Any:
-    """Leave durations out of a report."""
+def _without_costs(value: Any) -> Any:
+    """Leave out of a report what differs from run to run."""
     if isinstance(value, dict):
-        return {name: _without_seconds(item) for name, item in value.items() if name != "seconds"}
-    return [_without_seconds(item) for item in value] if isinstance(value, list) else value
+        return {name: _without_costs(item) for name, item in value.items() if name not in _COSTS}
+    return [_without_costs(item) for item in value] if isinstance(value, list) else value
 
 
 if __name__ == "__main__":

@@ -146,8 +146,11 @@ def plain_options(options: Any) -> dict[str, Any]:
 
 
 def describe_stages(stages: Stages) -> list[dict[str, Any]]:
-    """Return the seconds of every stage, in order."""
-    return [{"name": name, "seconds": round(seconds, 4)} for name, seconds in stages.seconds.items()]
+    """Return the seconds of every stage, in order, and the most memory that the process had had by its end."""
+    return [
+        {"name": name, "seconds": round(seconds, 4), "peak_memory_mib": stages.peak_memory_mib[name]}
+        for name, seconds in stages.seconds.items()
+    ]
 
 
 def _hole(result: HoleResult) -> dict[str, Any]:

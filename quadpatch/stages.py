@@ -1,4 +1,4 @@
-"""Stages of a repair: progress to the outside, seconds to the report, and steps whose failure is a warning.
+"""Stages of a repair: progress to the outside, seconds and memory to the report, and steps whose failure is a warning.
 
 A picture is such an optional step, and so is what new vertices carry besides their position. A finished mesh is worth
 more than either of them.
@@ -9,6 +9,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from resource import RUSAGE_SELF, getrusage
 
 from quadpatch.errors import QuadpatchError
 from quadpatch.progress import Fraction, Progress, no_progress, part_of
@@ -23,6 +24,7 @@ class Stages:
 
     progress: Progress = no_progress
     seconds: dict[str, float] = field(default_factory=dict)
+    peak_memory_mib: dict[str, int] = field(default_factory=dict)
     _current: Stage | None = None
 
     def part(self, start: float, end: float) -> Fraction:
@@ -45,7 +47,13 @@ class Stages:
             yield
         finally:
             self.seconds[name] = self.seconds.get(name, 0.0) + time.perf_counter() - start
+            self.peak_memory_mib[name] = peak_memory_mib()
         self.progress(name, 1.0)
+
+
+def peak_memory_mib() -> int:
+    """Return the most memory that this process has had at once."""
+    return getrusage(RUSAGE_SELF).ru_maxrss // 1024
 
 
 def harmless(progress: Progress) -> Progress:

@@ -20,7 +20,7 @@ from quadpatch.preview.pair import Pair, prepare
 from quadpatch.preview.sheet import render_before_after
 from quadpatch.progress import Progress, no_progress
 from quadpatch.repair import RepairedFile
-from quadpatch.stages import failure_of
+from quadpatch.stages import failure_of, peak_memory_mib
 from quadpatch.tasks.result import TaskResult
 
 # Of an archive of close-ups. One takes about a second of a busy core and a hundred kilobytes.
@@ -169,4 +169,5 @@ def _stage(report: dict[str, Any], name: str) -> Iterator[None]:
     """Add the seconds of what happens inside to a report."""
     start = time.perf_counter()
     yield
-    report["stages"].append({"name": name, "seconds": round(time.perf_counter() - start, 4)})
+    seconds = round(time.perf_counter() - start, 4)
+    report["stages"].append({"name": name, "seconds": seconds, "peak_memory_mib": peak_memory_mib()})

@@ -94,6 +94,9 @@ def test_the_report_is_plain_json_and_its_counts_add_up(repaired: tuple[str, Pat
     expected = STAGES_OF_GEOMETRY if model == "smooth" else STAGES_OF_A_MODEL
     assert [stage["name"] for stage in report["stages"]] == expected
     assert all(stage["seconds"] >= 0 for stage in report["stages"])
+    peaks = [stage["peak_memory_mib"] for stage in report["stages"]]
+    assert peaks == sorted(peaks)
+    assert peaks[0] > 10
 
 
 def test_every_hole_is_measured_judged_and_explained(repaired: tuple[str, Path, dict[str, Any]]) -> None:
