@@ -42,7 +42,9 @@ class Pair:
     new: Clay
 
 
-def prepare(before: TriangleMesh, after: TriangleMesh, invented: BoolArray | FloatArray) -> Pair:
+def prepare(
+    before: TriangleMesh, after: TriangleMesh, invented: BoolArray | FloatArray, *, is_joined: bool = False
+) -> Pair:
     """Make a mesh before and after its repair, or another task, ready to be drawn.
 
     Parameters
@@ -51,6 +53,8 @@ def prepare(before: TriangleMesh, after: TriangleMesh, invented: BoolArray | Flo
         In the same place.
     invented : (n_triangles of `after`,) bool or float64
         What is tinted; 0..1 for how strongly.
+    is_joined : bool
+        See `quadpatch.preview.shading.Clay`.
 
     Raises
     ------
@@ -63,9 +67,10 @@ def prepare(before: TriangleMesh, after: TriangleMesh, invented: BoolArray | Flo
     is_flipped = is_inside_out(scene, part_of(after, main_pieces(after)))
     if is_flipped:
         before, after = _flipped(before), _flipped(after)
-    old = Clay(before, RayScene(before), np.tile(CLAY, (len(before.triangles), 1)))
+    old = Clay(before, RayScene(before), np.tile(CLAY, (len(before.triangles), 1)), is_joined=is_joined)
     share = invented.astype(np.float64)[:, None]
-    return Pair(scene, after, is_flipped, old, Clay(after, scene, (1 - share) * CLAY + share * TINT))
+    new = Clay(after, scene, (1 - share) * CLAY + share * TINT, is_joined=is_joined)
+    return Pair(scene, after, is_flipped, old, new)
 
 
 def _flipped(mesh: TriangleMesh) -> TriangleMesh:

@@ -37,15 +37,20 @@ class Clay:
         Of `mesh`, or of the same triangles turned over.
     colours : (n_triangles, 3) float64
         Red, green, blue of the outside of each triangle, 0..1.
+    is_joined : bool
+        Whether triangles that touch share their vertices already.
     """
 
-    def __init__(self, mesh: TriangleMesh, scene: RayScene, colours: FloatArray) -> None:
+    def __init__(self, mesh: TriangleMesh, scene: RayScene, colours: FloatArray, *, is_joined: bool = False) -> None:
         self._scene = scene
         self._mesh = mesh
         self._colours = colours
         self._flat = triangle_normals(mesh.vertices, mesh.triangles)
-        welded = weld(mesh.vertices, mesh.triangles)
-        self._smooth = _smooth_normals(welded.mesh)[welded.from_file]
+        if is_joined:
+            self._smooth = _smooth_normals(mesh)
+        else:
+            welded = weld(mesh.vertices, mesh.triangles)
+            self._smooth = _smooth_normals(welded.mesh)[welded.from_file]
 
     def draw(self, camera: Camera, size: tuple[int, int]) -> FloatArray:
         """Draw a picture.

@@ -11,6 +11,7 @@ from quadpatch.preview.pair import TINT, Pair, prepare
 from quadpatch.preview.parts import filled_holes, main_pieces, part_of
 from quadpatch.preview.png import to_pixels, write_png
 from quadpatch.preview.shading import BACK, CLAY
+from quadpatch.preview.thinning import MOST_TRIANGLES, thinned
 from quadpatch.preview.viewpoints import close_ups, overview
 from quadpatch.types import BoolArray, FloatArray, TriangleMesh
 
@@ -67,7 +68,12 @@ def render_before_after(before: TriangleMesh, after: TriangleMesh, invented: Boo
     EmptyMeshError
         If `after` has no triangle of any area.
     """
-    pair = prepare(before, after, invented)
+    largest = [(hole, after) for hole in filled_holes(after, invented, N_CANDIDATES)]
+    is_large = len(after.triangles) > MOST_TRIANGLES
+    if is_large:
+        before, (after, kept) = thinned(before, largest)[0], thinned(after, largest)
+        invented = invented[kept]
+    pair = prepare(before, after, invented, is_joined=is_large)
     holes = [part_of(pair.after, hole) for hole in filled_holes(pair.after, invented, N_CANDIDATES)]
     camera = overview_camera(pair, invented)
     cameras = close_ups(pair.scene, holes, camera, N_CLOSE_UPS)

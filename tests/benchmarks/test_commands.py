@@ -9,6 +9,7 @@ import pytest
 COMMANDS = (
     "benchmarks.flood",
     "benchmarks.flooding",
+    "benchmarks.jobs",
     "benchmarks.polling",
     "benchmarks.service",
     "benchmarks.stages",

@@ -109,7 +109,7 @@ def insert_behind_equal(data: memoryview, n_rows: int, suffix: bytes) -> memoryv
     table = np.empty((n_rows, old.shape[1] + len(added)), np.uint8)
     table[:, : old.shape[1]] = old
     table[:, old.shape[1] :] = added
-    return memoryview(table.reshape(-1))
+    return memoryview(table.reshape(-1).data)
 
 
 def insert_rows(data: Values, ends: Values, pieces: Values) -> bytes:

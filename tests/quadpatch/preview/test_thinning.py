@@ -1,0 +1,58 @@
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from quadpatch.mesh.measures import diagonal
+from quadpatch.preview import sheet, thinning
+from quadpatch.preview.sheet import render_before_after
+from quadpatch.preview.thinning import thinned
+from quadpatch.types import TriangleMesh
+from tests.quadpatch.shapes import bumpy_plate
+
+WHOLE = bumpy_plate(400, 2.0)
+IS_FILL = np.linalg.norm(WHOLE.vertices[WHOLE.triangles].mean(axis=1)[:, :2] - [0.3, 0.2], axis=1) < 0.05
+FILL = np.flatnonzero(IS_FILL)
+
+
+@pytest.fixture(autouse=True)
+def coarse_grid(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Cells of a small mesh that hold several vertices, as those of a large one do."""
+    monkeypatch.setattr(thinning, "_CELLS", 250)
+
+
+def test_a_large_mesh_keeps_its_shape_and_the_surroundings_of_a_hole() -> None:
+    mesh, kept = thinned(WHOLE, [(FILL, WHOLE)])
+    assert len(mesh.triangles) < 0.5 * len(WHOLE.triangles)
+    assert len(kept) == len(mesh.triangles)
+    assert set(FILL.tolist()) <= set(kept.tolist())
+    assert (mesh.vertices[mesh.triangles[np.isin(kept, FILL)]] == WHOLE.vertices[WHOLE.triangles[FILL]]).all()
+    # Every corner moved by less than the diagonal of a cell.
+    moved = np.linalg.norm(mesh.vertices[mesh.triangles] - WHOLE.vertices[WHOLE.triangles[kept]], axis=2)
+    assert 0 < moved.max() < diagonal(WHOLE) / 100
+    a, b, c = mesh.triangles.T
+    assert ((a != b) & (b != c) & (c != a)).all()
+
+
+def test_without_a_hole_all_of_a_mesh_is_thinned() -> None:
+    mesh, kept = thinned(WHOLE, [])
+    assert 0 < len(kept) == len(mesh.triangles) < 0.5 * len(WHOLE.triangles)
+
+
+def test_the_picture_of_a_large_scan_is_about_that_of_all_its_triangles(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pictures = []
+    for most in (10_000_000, 100_000):
+        monkeypatch.setattr(sheet, "MOST_TRIANGLES", most)
+        path = tmp_path / f"{most}.png"
+        render_before_after(TriangleMesh(WHOLE.vertices, WHOLE.triangles[~IS_FILL]), WHOLE, IS_FILL, path)
+        pictures.append(np.asarray(Image.open(path).convert("RGB"), np.float64))
+    whole, thin = pictures
+    assert whole.shape == thin.shape
+    assert thin.mean() == pytest.approx(whole.mean(), rel=0.05)
+    # What is tinted, in the overview and in the close-up.
+    tinted = [(picture[..., 0] - picture[..., 2] > 60).mean() for picture in pictures]
+    assert tinted[1] == pytest.approx(tinted[0], rel=0.2)
+    assert tinted[0] > 0.005
