@@ -16,12 +16,18 @@ import os
 import sys
 from importlib.util import LazyLoader, find_spec, module_from_spec
 
+from shared_rules.garbage_collection import collect_seldom
+
 _PARENT, _UNUSED = "numpy", ("f2py", "testing")
 
 
 def prepare_libraries() -> None:
-    """Put off what scipy would load and not use, and limit the BLAS; call it before the first import of numpy."""
+    """Put off what scipy would load and not use, limit the BLAS, and collect garbage less often.
+
+    For a process that does one thing and ends; call it before the first import of numpy.
+    """
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    collect_seldom()
     parent = importlib.import_module(_PARENT)
     for child in _UNUSED:
         name = f"{_PARENT}.{child}"
