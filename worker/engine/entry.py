@@ -1,7 +1,4 @@
-"""The outermost function of an engine child: sets the limits, and turns every exception into a report.
-
-Tested in `tests/worker/engine/test_supervision.py`.
-"""
+"""The outermost function of an engine child: sets the limits, and turns every exception into a report."""
 
 import contextlib
 import os
@@ -10,7 +7,6 @@ from collections.abc import Callable
 from pathlib import Path
 
 from quadpatch.errors import QuadpatchError
-from shared_rules.garbage_collection import collect_seldom
 from worker.engine.confinement import confine
 from worker.engine.reports import Reporter
 from worker.engine.request import MESH_FOLDER, REFERENCE_FOLDER, EngineRequest
@@ -27,7 +23,6 @@ def run_confined(folder: Path, descriptor: int, task: Callable[[EngineRequest, R
         Write end of the pipe for reports.
     task : callable
     """
-    collect_seldom()
     reporter = Reporter(descriptor)
     request = EngineRequest.load(folder)
     try:

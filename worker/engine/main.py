@@ -16,6 +16,7 @@ from quadpatch.options import RepairOptions
 from quadpatch.preview.drawing import add_close_up_archive, add_comparison, add_picture
 from quadpatch.repair import repair_and_keep
 from quadpatch.tasks.inspect import inspect_any
+from shared_rules.garbage_collection import collect_seldom
 from worker.engine import preloading  # noqa: F401  loads what would else be loaded in each engine
 from worker.engine.entry import run_confined
 from worker.engine.reports import Reporter
@@ -25,6 +26,7 @@ from worker.engine.tasks import MESH_TASKS
 
 def run_request(folder: Path, descriptor: int) -> None:
     """Do what the request in `folder` asks for, and report the outcome through the pipe `descriptor`."""
+    collect_seldom()
     run_confined(folder, descriptor, lambda request, reporter: _TASKS[request.task](folder, request, reporter))
 
 
