@@ -184,8 +184,9 @@ def _crossings(
     others = triangles[~mine] if obstacles is None else np.concatenate([triangles[~mine], obstacles])
     surroundings = TriangleMesh(filled.mesh.vertices, others)
     near = others[touching_boxes(*_boxes(filled, looked_at), surroundings)]
-    pairs = crossing_pairs(TriangleMesh(surroundings.vertices, np.concatenate([triangles[mine], near])))
     owner = filled.triangle_hole[mine[filled.n_measured_triangles :]]
+    looked_at_first = TriangleMesh(surroundings.vertices, np.concatenate([triangles[mine], near]))
+    pairs = crossing_pairs(looked_at_first, len(owner))
     crossing = np.unique(pairs[pairs < len(owner)])
     crossings = np.bincount(owner[crossing], minlength=n_loops)
     # What is near comes behind the fills that are looked at; it has no loop.

@@ -20,12 +20,14 @@ _PAIRS_AT_A_TIME = 1_000_000
 _LARGE = 4.0
 
 
-def crossing_pairs(mesh: TriangleMesh) -> IntArray:
+def crossing_pairs(mesh: TriangleMesh, n_looked_at: int | None = None) -> IntArray:
     """Find the pairs of triangles that share more than their common corners.
 
     Parameters
     ----------
     mesh : TriangleMesh
+    n_looked_at : int, optional
+        Pairs of two triangles behind so many may be left out.
 
     Returns
     -------
@@ -39,28 +41,42 @@ def crossing_pairs(mesh: TriangleMesh) -> IntArray:
     pairs = solid[_exact_pairs(mesh.vertices, mesh.triangles[solid])]
     clear = np.flatnonzero(height > _LEAST_HEIGHT_ON_SURFACE)
     # Sheets in one plane but for rounding do not cross.
-    overlapping = clear[_overlapping_pairs(mesh.vertices[mesh.triangles[clear]])]
+    n_first = len(clear) if n_looked_at is None else int((clear < n_looked_at).sum())
+    overlapping = clear[_overlapping_pairs(mesh.vertices[mesh.triangles[clear]], n_first)]
     corners = np.sort(mesh.triangles[overlapping], axis=-1)
     overlapping = overlapping[(corners[:, 0] != corners[:, 1]).any(axis=-1)]
     return np.concatenate([pairs[_cross_when_shrunk(mesh, pairs)], overlapping])
 
 
-def _overlapping_pairs(corners: FloatArray) -> IntArray:
-    """Pairs (n, 2) of triangles, by their corners (m, 3, 3), the centroid of the second of which lies on the first."""
-    if not len(corners):
-        return np.zeros((0, 2), np.int64)
+def _overlapping_pairs(corners: FloatArray, n_first: int) -> IntArray:
+    """Pairs (n, 2) of triangles, by their corners (m, 3, 3), the centroid of the second of which lies on the first.
+
+    One of the two is among the first so many.
+    """
     centres = corners.mean(axis=1)
     radii = length(corners - centres[:, None]).max(axis=1)
-    tree, found = cKDTree(centres), []
-    n_near = np.cumsum(tree.query_ball_point(centres, radii, return_length=True))
+    first, others = np.arange(n_first), np.arange(n_first, len(corners))
+    found = _near_centres(corners, centres, radii, first, len(corners))
+    found += _near_centres(corners, centres, radii, others, n_first)
+    return np.concatenate([np.zeros((0, 2), np.int64), *found])
+
+
+def _near_centres(
+    corners: FloatArray, centres: FloatArray, radii: FloatArray, lower: IntArray, n_upper: int
+) -> list[IntArray]:
+    """Find the centroids of the first so many triangles that lie on some others (k,), in pieces of pairs (n, 2)."""
+    if not len(lower) or not n_upper:
+        return []
+    tree, found = cKDTree(centres[:n_upper]), []
+    n_near = np.cumsum(tree.query_ball_point(centres[lower], radii[lower], return_length=True))
     # Few triangles may hold the centroids of all others: as many at a time as memory has room for.
-    for part in np.split(np.arange(len(corners)), np.flatnonzero(np.diff(n_near // _PAIRS_AT_A_TIME)) + 1):
+    for part in np.split(lower, np.flatnonzero(np.diff(n_near // _PAIRS_AT_A_TIME)) + 1):
         near = tree.query_ball_point(centres[part], radii[part])
-        lower = np.repeat(part, [len(row) for row in near])
-        upper = np.concatenate(near).astype(np.int64)
-        on_it = (lower != upper) & _lies_on(centres[upper], corners[lower])
-        found.append(np.stack([lower[on_it], upper[on_it]], axis=1))
-    return np.concatenate(found)
+        below = np.repeat(part, [len(row) for row in near])
+        above = np.concatenate(near).astype(np.int64)
+        on_it = (below != above) & _lies_on(centres[above], corners[below])
+        found.append(np.stack([below[on_it], above[on_it]], axis=1))
+    return found
 
 
 def _lies_on(points: Vertices, corners: FloatArray) -> BoolArray:

@@ -174,3 +174,17 @@ def test_many_small_triangles_on_few_large_ones_are_all_found() -> None:
     mesh = joined(grid, moved(floor, (0, 0, 1e-13)))
     n = len(grid.triangles)
     assert {i for i, _ in pairs_of(mesh)} >= set(range(n))
+
+
+@given(seed=st.integers(0, 2**32 - 1), n_first=st.integers(0, 30))
+@settings(max_examples=20)
+def test_pairs_with_one_of_the_first_are_those_of_all_that_have_one(seed: int, n_first: int) -> None:
+    # Corners on a coarse grid of a plane: most triangles lie on others.
+    rng = np.random.default_rng(seed)
+    corners = np.concatenate([rng.integers(0, 5, (30, 3, 2)), np.zeros((30, 3, 1), np.int64)], axis=2)
+    mesh = TriangleMesh(corners.reshape(-1, 3).astype(np.float64), np.arange(90).reshape(-1, 3))
+    everything, some = (
+        {tuple(sorted(pair)) for pair in crossing_pairs(mesh, n).tolist() if min(pair) < n_first}
+        for n in (None, n_first)
+    )
+    assert some == everything
