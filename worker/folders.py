@@ -28,29 +28,56 @@ def worker_folder(folder: Path) -> Iterator[None]:
     A lock on a file shows whether the worker runs: the kernel drops it with the process. A process id would not, since
     another process may have it by now.
     """
-    folder.mkdir(parents=True, exist_ok=True)
-    descriptor = os.open(folder / _LOCK_NAME, os.O_RDWR | os.O_CREAT, 0o600)
+    descriptor = _locked(folder)
     try:
-        fcntl.flock(descriptor, fcntl.LOCK_EX)
         for other in folder.parent.iterdir():
-            if other != folder and _is_abandoned(other):
-                shutil.rmtree(other, ignore_errors=True)
+            if other != folder:
+                _remove_if_abandoned(other)
         yield
     finally:
         shutil.rmtree(folder, ignore_errors=True)
         os.close(descriptor)
 
 
-def _is_abandoned(folder: Path) -> bool:
+def _locked(folder: Path) -> int:
+    """Make a folder and lock it; return the open file that holds the lock.
+
+    Another worker that starts at this moment may find the file before it is locked, take the folder for an abandoned
+    one and remove it: then it is made again.
+    """
+    path = folder / _LOCK_NAME
+    while True:
+        folder.mkdir(parents=True, exist_ok=True)
+        try:
+            descriptor = os.open(path, os.O_RDWR | os.O_CREAT, 0o600)
+        except FileNotFoundError:
+            continue
+        fcntl.flock(descriptor, fcntl.LOCK_EX)
+        if _is_at(descriptor, path):
+            return descriptor
+        os.close(descriptor)
+
+
+def _is_at(descriptor: int, path: Path) -> bool:
     try:
-        descriptor = os.open(folder / _LOCK_NAME, os.O_RDWR)
+        return os.path.samestat(os.fstat(descriptor), path.stat())
+    except FileNotFoundError:
+        return False
+
+
+def _remove_if_abandoned(folder: Path) -> None:
+    """Remove the folder of a worker that has ended; the lock is held until it is gone."""
+    path = folder / _LOCK_NAME
+    try:
+        descriptor = os.open(path, os.O_RDWR)
     except OSError:
-        return False  # it is being made or removed at this moment
+        return  # it is being made or removed at this moment
     try:
         fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        # Else another one has been made in its place since.
+        if _is_at(descriptor, path):
+            shutil.rmtree(folder, ignore_errors=True)
     except BlockingIOError:
-        return False
-    else:
-        return True
+        return
     finally:
         os.close(descriptor)
