@@ -137,13 +137,18 @@ def choose_energy(errors: FloatArray, diameter: float, energies: Sequence[Energy
 
 
 def choose_blend_factor(calibration: CalibrationSet, filled: FilledMesh, displacement: FloatArray) -> float:
-    """Choose the share of predicted displacements (k, 3) that leaves the smallest mean error; 0 where none helps."""
+    """Choose the share of predicted displacements (k, 3) that leaves the smallest mean error.
+
+    It is 0 where that gains less than two percent, or less than a standard error: a few dozen holes can't tell more.
+    """
     new = filled.mesh.vertices[filled.n_measured_vertices :]
-    errors = [
-        float(error_per_hole(calibration, filled.with_vertices(new + share * displacement)).mean()) for share in SHARES
-    ]
-    best = int(np.argmin(errors))
-    return SHARES[best] if errors[best] < (1 - _LEAST_GAIN) * errors[0] else 0.0
+    errors = np.array(
+        [error_per_hole(calibration, filled.with_vertices(new + share * displacement)) for share in SHARES]
+    )
+    best = int(errors.mean(axis=1).argmin())
+    gains = errors[0] - errors[best]
+    least = max(_LEAST_GAIN * float(errors[0].mean()), float(gains.std()) / np.sqrt(len(gains)))
+    return SHARES[best] if float(gains.mean()) > least else 0.0
 
 
 def error_per_hole(calibration: CalibrationSet, filled: FilledMesh) -> FloatArray:

@@ -203,3 +203,20 @@ def test_a_model_that_does_not_help_is_not_believed(
     noise = np.random.default_rng(0).normal(0, np.abs(correction).mean(), correction.shape)
     says = {"nothing": 0 * correction, "the opposite": -correction, "noise": noise}[kind]
     assert choose_blend_factor(calibration, filled, says) == 0.0
+
+
+def test_a_model_that_helps_one_hole_a_lot_and_harms_the_others_a_little_is_not_believed(
+    on_relief: tuple[CalibrationSet, FilledMesh, FloatArray],
+) -> None:
+    calibration, filled, correction = on_relief
+    errors = error_per_hole(calibration, filled)
+    helped = filled.vertex_hole == int(errors.argmax())
+    n = len(errors)
+    for harm in np.linspace(0.0, 1.0, 41) / n:
+        says = np.where(helped[:, None], correction, -harm * correction)
+        gains = errors - error_per_hole(calibration, filled.with_vertices(new_vertices(filled) + says))
+        if gains.mean() < 0.6 * gains.std() / np.sqrt(n):
+            break
+    # It gains in the mean, by less than chance does.
+    assert gains.mean() > 0
+    assert choose_blend_factor(calibration, filled, says) == 0.0
