@@ -7,7 +7,6 @@ import json
 import math
 from collections.abc import Mapping
 from dataclasses import asdict
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -120,8 +119,8 @@ def build_report(
         "stages": describe_stages(stages),
         "warnings": repair.warnings,
     }
-    holes = [_hole(result) for result in repair.results]
-    return {**json_ready(report), "holes": holes if _is_plain(holes) else json_ready(holes)}
+    holes = (_hole(result) for result in repair.results)
+    return {**json_ready(report), "holes": [hole if _is_plain(hole) else json_ready(hole) for hole in holes]}
 
 
 def describe_task(
@@ -200,7 +199,7 @@ def json_ready(value: Any) -> Any:
     if kind in _PLAIN:
         return value
     if kind is dict or isinstance(value, Mapping):
-        return {_name(name): json_ready(item) for name, item in value.items()}
+        return {printable(str(name)): json_ready(item) for name, item in value.items()}
     if isinstance(value, list | tuple):
         return [json_ready(item) for item in value]
     if isinstance(value, np.ndarray | np.generic):
@@ -208,8 +207,3 @@ def json_ready(value: Any) -> Any:
     if isinstance(value, float):
         return value if math.isfinite(value) else None
     return printable(value) if isinstance(value, str) else value
-
-
-@lru_cache(maxsize=1024)
-def _name(name: Any) -> str:
-    return printable(str(name))

@@ -74,8 +74,6 @@ def fair(
 class FairingEquations:
     """The equations of every energy on one shape; what energies have in common is computed once.
 
-    Attribute `order`: the order in which vertices are eliminated, fit for all energies on these triangles.
-
     Parameters
     ----------
     vertices, triangles, free, uniform
@@ -85,6 +83,11 @@ class FairingEquations:
     unit_area : float, optional
         Area whose square root is the unit of lengths in energies, in mesh units squared; without, the mean area at the
         free vertices.
+
+    Attributes
+    ----------
+    order : EliminationOrder
+        In which vertices are eliminated; fit for all energies on these triangles.
     """
 
     def __init__(

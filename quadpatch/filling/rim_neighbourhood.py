@@ -1,5 +1,6 @@
 """The measured surface next to holes, which is all that filling them reads."""
 
+from collections import Counter
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -10,6 +11,7 @@ from quadpatch.filling.refinement import Refined
 from quadpatch.filling.triangulation import EdgeSet, Forbidden, triangulate_loops
 from quadpatch.mesh.intersections import LEAST_HEIGHT, heights
 from quadpatch.mesh.normals import length, triangle_normals, unit, vertex_normals
+from quadpatch.mesh.rims import laid_out
 from quadpatch.mesh.topology import directed_edges
 from quadpatch.types import FloatArray, IntArray, TriangleMesh, Triangles
 
@@ -20,6 +22,10 @@ _RINGS = 2
 _TURNS = [[0, 1, 2], [1, 2, 0], [2, 0, 1]]
 # A loop keeps at least so many vertices.
 _SHORTEST_LOOP = 3
+_ENDS = 2
+
+# Three vertices that follow each other on a loop.
+Corner = tuple[int, int, int]
 
 
 @dataclass(frozen=True)
@@ -77,30 +83,41 @@ class RimNeighbourhood:
         is_between = (
             np.einsum("ij,ij->i", self.vertices[a] - self.vertices[tip], self.vertices[b] - self.vertices[tip]) < 0
         )
-        flat = np.stack([a, tip, b], axis=1)[is_between]
-        if not len(flat):
+        flat = set(zip(*(row[is_between].tolist() for row in (a, tip, b)), strict=True))
+        if not flat:
             return self
-        loops, taken = list(self.loops), []
-        for i in range(len(loops)):
-            of_loop = flat[np.isin(flat, loops[i]).all(axis=1)].tolist()
-            # Where one tip is taken out, the next one may come to lie between its neighbours.
-            while len(loops[i]) > _SHORTEST_LOOP:
-                corner = next((c for c in of_loop if _is_corner(loops[i], c)), None)
-                if corner is None:
-                    break
-                taken.append(corner)
-                loops[i] = loops[i][loops[i] != corner[1]]
+        is_tip = np.zeros(len(self.vertices), bool)
+        is_tip[tip[is_between]] = True
+        loops, taken = list(self.loops), list[Corner]()
+        for i in np.flatnonzero([is_tip[loop].any() for loop in loops]).tolist():
+            loops[i] = _without_flat_corners(loops[i], flat, taken)
         return replace(self, loops=loops, flat_corners=np.array(taken, np.int64).reshape(-1, 3))
 
     def with_flat_corners(self, patch: Refined) -> Refined:
         """Put the vertices that `straightened` took out back, each on the edge between its neighbours."""
-        triangles, hole = patch.triangles, patch.hole
+        if not len(self.flat_corners):
+            return patch
+        is_near = np.zeros(len(patch.vertices), bool)
+        is_near[self.flat_corners] = True
+        near = np.flatnonzero(is_near[patch.triangles].sum(axis=1) >= _ENDS)
+        triangles, hole = patch.triangles[near].tolist(), patch.hole[near].tolist()
+        at_edge = {(t[k - 1], t[k]): i for i, t in enumerate(triangles) for k in range(3)}
+        # Loops without a fill have no triangle there.
         for a, tip, b in self.flat_corners[::-1].tolist():
-            for at in np.flatnonzero((triangles == a).any(axis=1) & (triangles == b).any(axis=1)):
-                divided = np.stack([np.where(triangles[at] == end, tip, triangles[at]) for end in (b, a)])
-                triangles = np.concatenate([triangles[:at], divided, triangles[at + 1 :]])
-                hole = np.insert(hole, at, hole[at])
-        return replace(patch, triangles=triangles, hole=hole)
+            i = at_edge.pop((b, a), None)
+            if i is None:
+                continue
+            (apex,) = set(triangles[i]) - {a, b}
+            at_edge |= {(b, tip): i, (tip, a): len(triangles), (a, apex): len(triangles)}
+            triangles[i] = [b, tip, apex]
+            triangles.append([tip, a, apex])
+            hole.append(hole[i])
+        rest = np.delete(np.arange(len(patch.triangles)), near)
+        return replace(
+            patch,
+            triangles=np.concatenate([patch.triangles[rest], np.array(triangles, np.int64).reshape(-1, 3)]),
+            hole=np.concatenate([patch.hole[rest], np.array(hole, np.int64)]),
+        )
 
     def triangulate(self, forbidden: Forbidden | None = None) -> tuple[Refined, list[int]]:
         """Triangulate all loops, without new vertices.
@@ -137,12 +154,10 @@ class RimNeighbourhood:
         """Mean length (n_loops,) of the difference between the unit normals of neighbouring rim vertices."""
         if not self.loops:
             return np.zeros(0)
-        counts = np.array([len(loop) for loop in self.loops])
-        starts = np.cumsum(counts) - counts
+        starts, following = laid_out(self.loops)
         normals = vertex_normals(self.vertices, self.adjacent_triangles)[np.concatenate(self.loops)]
-        following = np.arange(len(normals)) + 1
-        following[starts + counts - 1] = starts
-        return np.asarray(np.add.reduceat(length(normals[following] - normals), starts) / counts)
+        turns = np.add.reduceat(length(normals[following] - normals), starts[:-1])
+        return np.asarray(turns / np.diff(starts))
 
     def filled(
         self,
@@ -172,10 +187,26 @@ class RimNeighbourhood:
         )
 
 
-def _is_corner(loop: IntArray, corner: list[int]) -> bool:
-    """Whether the three vertices follow each other on a loop, and the loop passes the middle one once."""
-    (at,) = np.nonzero(loop == corner[1])
-    return len(at) == 1 and [int(loop[at[0] - 1]), int(loop[(at[0] + 1) % len(loop)])] == corner[::2]
+def _without_flat_corners(loop: IntArray, flat: set[Corner], taken: list[Corner]) -> IntArray:
+    """Take corners out of a loop, and note each between the neighbours that it had then, in one walk after another.
+
+    Where one is taken out, the next one may come to lie between its neighbours. What a loop passes twice stays.
+    """
+    vertices, twice = loop.tolist(), {vertex for vertex, n in Counter(loop.tolist()).items() if n > 1}
+    n_before = -1
+    while len(vertices) != n_before:
+        n_before = n_left = len(vertices)
+        kept: list[int] = []
+        for i, vertex in enumerate(vertices):
+            following = vertices[i + 1] if i + 1 < n_before else kept[0]
+            corner = (kept[-1] if kept else vertices[-1], vertex, following)
+            if corner in flat and n_left > _SHORTEST_LOOP and vertex not in twice:
+                taken.append(corner)
+                n_left -= 1
+            else:
+                kept.append(vertex)
+        vertices = kept
+    return np.array(vertices, np.int64)
 
 
 def _rim_normals(vertices: FloatArray, adjacent_triangles: Triangles, loops: list[IntArray]) -> list[FloatArray]:

@@ -55,7 +55,10 @@ def _split(filled: FilledMesh, new: IntArray, measured: IntArray, edges: IntArra
     # Turn the triangles so that the shared edge runs from the first corner to the second.
     apex = ~(triangles[new][:, :, None] == edges[:, None, :]).any(axis=2)
     a, b, c = (triangles[new, (apex.argmax(axis=1) + k) % 3] for k in (1, 2, 0))
-    one, other = np.nonzero((measured[:, None] == measured) & (c[:, None] == c) & (b[:, None] == a))
+    leaving = {key: i for i, key in enumerate(zip(measured.tolist(), c.tolist(), a.tolist(), strict=True))}
+    arriving = [leaving.get(key, -1) for key in zip(measured.tolist(), c.tolist(), b.tolist(), strict=True)]
+    one = np.flatnonzero(np.array(arriving) >= 0)
+    other = np.array(arriving)[one]
     starts, ends = (np.isin(np.arange(len(new)), rows) for rows in (one, other))
     x = len(vertices) + np.cumsum(~ends) - 1
     x[other] = x[one]

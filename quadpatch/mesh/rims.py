@@ -62,11 +62,8 @@ def rims_of(mesh: TriangleMesh, loops: list[IntArray]) -> Rims:
     loops : list of (n_loop,) int64
         At least one, none of them empty, with the surface on their left.
     """
-    counts = np.array([len(loop) for loop in loops])
-    starts = np.concatenate([[0], np.cumsum(counts)])
+    starts, following = laid_out(loops)
     start = np.concatenate(loops)
-    following = np.arange(len(start)) + 1
-    following[starts[1:] - 1] = starts[:-1]
     end = start[following]
     points = mesh.vertices[start]
     edges = mesh.vertices[end] - points
@@ -78,13 +75,21 @@ def rims_of(mesh: TriangleMesh, loops: list[IntArray]) -> Rims:
     across = to_apex - np.einsum("ij,ij->i", to_apex, along)[:, None] * along
     return Rims(
         starts,
-        np.repeat(np.arange(len(loops)), counts),
+        np.repeat(np.arange(len(loops)), np.diff(starts)),
         points,
         edges,
         lengths,
         unit(across),
         np.linalg.norm(across, axis=1),
     )
+
+
+def laid_out(loops: list[IntArray]) -> tuple[IntArray, IntArray]:
+    """Lay loops end to end: where each starts (n_loops + 1,), and which place follows each on its loop (n,)."""
+    starts = np.concatenate([[0], np.cumsum([len(loop) for loop in loops])])
+    following = np.arange(starts[-1]) + 1
+    following[starts[1:] - 1] = starts[:-1]
+    return starts, following
 
 
 def apex_of_edges(triangles: Triangles, start: IntArray, end: IntArray, n_vertices: int) -> IntArray:

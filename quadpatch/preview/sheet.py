@@ -68,9 +68,9 @@ def render_before_after(before: TriangleMesh, after: TriangleMesh, invented: Boo
     EmptyMeshError
         If `after` has no triangle of any area.
     """
-    largest = [(hole, after) for hole in filled_holes(after, invented, N_CANDIDATES)]
     is_large = len(after.triangles) > MOST_TRIANGLES
     if is_large:
+        largest = [part_of(after, hole).corners for hole in filled_holes(after, invented, N_CANDIDATES)]
         before, (after, kept) = thinned(before, largest)[0], thinned(after, largest)
         invented = invented[kept]
     pair = prepare(before, after, invented, is_joined=is_large)

@@ -8,8 +8,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from quadpatch.mesh.measures import diagonal
-from quadpatch.types import BoolArray, IntArray, TriangleMesh
+from quadpatch.mesh.measures import bounding_box, diagonal
+from quadpatch.types import BoolArray, IntArray, TriangleMesh, Vertices
 
 # Meshes of more triangles are to be thinned.
 MOST_TRIANGLES = 1_000_000
@@ -19,15 +19,14 @@ _CELLS = 750
 _AROUND = 1.5
 
 
-def thinned(mesh: TriangleMesh, spared: Sequence[tuple[IntArray, TriangleMesh]]) -> tuple[TriangleMesh, IntArray]:
-    """Draw the vertices of a large mesh together, where a picture does not show the difference.
+def thinned(mesh: TriangleMesh, spared: Sequence[Vertices]) -> tuple[TriangleMesh, IntArray]:
+    """Join vertices of a large mesh where a picture does not show the difference.
 
     Parameters
     ----------
     mesh : TriangleMesh
-    spared : sequence of ((n,) int64, TriangleMesh)
-        Triangles of meshes in the same place, such as the fills of holes: around each of these groups every vertex
-        stays.
+    spared : sequence of (n, 3) float64
+        Points, such as those of the fill of each hole: every vertex around such a group stays as it is.
 
     Returns
     -------
@@ -35,11 +34,11 @@ def thinned(mesh: TriangleMesh, spared: Sequence[tuple[IntArray, TriangleMesh]])
     kept : (k,) int64
         Which triangle of the mesh each one was.
     """
-    size = diagonal(mesh) / _CELLS
-    low = mesh.vertices.min(axis=0)
-    # Cells of the grid are numbered from 0, spared vertices below it.
-    cells = ((mesh.vertices - low) / size).astype(np.int64)
+    # Vertices that no triangle uses may lie anywhere.
+    low, high = bounding_box(mesh)
+    cells = ((np.clip(mesh.vertices, low, high) - low) * (_CELLS / diagonal(mesh))).astype(np.int64)
     counts = cells.max(axis=0) + 1
+    # Cells of the grid are numbered from 0, spared vertices below it.
     cell = (cells[:, 0] * counts[1] + cells[:, 1]) * counts[2] + cells[:, 2]
     stays = np.flatnonzero(_around(mesh, spared))
     cell[stays] = -1 - stays
@@ -49,10 +48,9 @@ def thinned(mesh: TriangleMesh, spared: Sequence[tuple[IntArray, TriangleMesh]])
     return TriangleMesh(mesh.vertices[first], np.stack([a[kept], b[kept], c[kept]], axis=1)), kept
 
 
-def _around(mesh: TriangleMesh, spared: Sequence[tuple[IntArray, TriangleMesh]]) -> BoolArray:
+def _around(mesh: TriangleMesh, spared: Sequence[Vertices]) -> BoolArray:
     near = np.zeros(len(mesh.vertices), bool)
-    for triangles, other in spared:
-        points = other.vertices[np.unique(other.triangles[triangles])]
+    for points in spared:
         low, high = points.min(axis=0), points.max(axis=0)
         reach = _AROUND * float(np.linalg.norm(high - low))
         near |= ((mesh.vertices > low - reach) & (mesh.vertices < high + reach)).all(axis=1)
