@@ -34,12 +34,17 @@ _SIZES = (1.0, 0.7, 0.5)
 # Surface left between a calibration hole and any other rim, in mean edge lengths: what the fairing reads.
 MARGIN_EDGES = 4.0
 
+# Points of a hole that are looked at, at least where there are as many: more of them tell the same within a percent.
+_POINTS_PER_HOLE = 1000
+
 # Errors that differ by less than this share of a hole's diameter are the same.
 ROUNDING = 1e-9
 
 # Shares of the predicted displacement that are tried, and what a share must gain over none to be taken.
 SHARES = (0.0, 0.25, 0.5, 0.75, 1.0)
 _LEAST_GAIN = 0.02
+# The same in standard errors of the gain: one of them lets a model through by chance at one mesh in six.
+_LEAST_GAIN_IN_ERRORS = 2.0
 
 
 @dataclass(frozen=True)
@@ -50,8 +55,8 @@ class CalibrationSet:
     ----------
     truth : TriangleMesh
         The surface that was cut away, with a ring around it.
-    removed : (r, 3) float64
-        Vertices that were cut away.
+    removed : (n_vertices,) bool
+        Vertices of the mesh that were cut away.
     cut_away : (n_triangles,) bool
         Triangles of the mesh that calibration holes took.
     loops : list of (n_loop,) int64
@@ -64,7 +69,7 @@ class CalibrationSet:
     """
 
     truth: TriangleMesh
-    removed: Vertices
+    removed: BoolArray
     cut_away: BoolArray
     loops: list[IntArray]
     closed: ClosedMesh
@@ -75,6 +80,11 @@ class CalibrationSet:
     def is_graded(self) -> bool:
         """Whether the holes are closed with fewer vertices than real ones of their size."""
         return self.closed.plate.grading is not None
+
+    @property
+    def removed_vertices(self) -> Vertices:
+        """Where the vertices lay that were cut away: (r, 3)."""
+        return self.truth.vertices[self.removed]
 
     @cached_property
     def truth_tree(self) -> DistanceTree:
@@ -117,9 +127,7 @@ def cut_calibration_set(
     truth = TriangleMesh(mesh.vertices, mesh.triangles[adjacent])
     diameters = np.array([loop_diameter(mesh.vertices[loop]) for loop in punched.loops])
     closed = close_holes(punched.mesh, punched.loops, graded=True)
-    return CalibrationSet(
-        truth, mesh.vertices[punched.removed], punched.cut_away, punched.loops, closed, used, diameters
-    )
+    return CalibrationSet(truth, punched.removed, punched.cut_away, punched.loops, closed, used, diameters)
 
 
 def choose_energy(errors: FloatArray, diameter: float, energies: Sequence[Energy], default: Energy) -> Energy:
@@ -139,7 +147,7 @@ def choose_energy(errors: FloatArray, diameter: float, energies: Sequence[Energy
 def choose_blend_factor(calibration: CalibrationSet, filled: FilledMesh, displacement: FloatArray) -> float:
     """Choose the share of predicted displacements (k, 3) that leaves the smallest mean error.
 
-    It is 0 where that gains less than two percent, or less than a standard error: a few dozen holes can't tell more.
+    It is 0 where that gains less than two percent, or less than two standard errors: a few dozen holes can't tell more.
     """
     new = filled.mesh.vertices[filled.n_measured_vertices :]
     errors = np.array(
@@ -147,7 +155,7 @@ def choose_blend_factor(calibration: CalibrationSet, filled: FilledMesh, displac
     )
     best = int(errors.mean(axis=1).argmin())
     gains = errors[0] - errors[best]
-    least = max(_LEAST_GAIN * float(errors[0].mean()), float(gains.std()) / np.sqrt(len(gains)))
+    least = max(_LEAST_GAIN * float(errors[0].mean()), _LEAST_GAIN_IN_ERRORS * float(gains.std()) / np.sqrt(len(gains)))
     return SHARES[best] if float(gains.mean()) > least else 0.0
 
 
@@ -155,7 +163,7 @@ def error_per_hole(calibration: CalibrationSet, filled: FilledMesh) -> FloatArra
     """Measure how far each calibration hole's fill is from the true surface, both ways.
 
     Half from the new vertices and the centroids of the new triangles to the truth, half from the vertices that were cut
-    away to the fill.
+    away to the fill. A thousand or two of each are looked at.
 
     Returns
     -------
@@ -167,12 +175,24 @@ def error_per_hole(calibration: CalibrationSet, filled: FilledMesh) -> FloatArra
     new = filled.mesh.triangles[filled.n_measured_triangles :]
     points = np.concatenate([vertices[filled.n_measured_vertices :], vertices[new].mean(axis=1)])
     hole = np.concatenate([filled.vertex_hole, filled.triangle_hole])
-    there = mean_by(hole, calibration.truth_tree.distance(points), n_holes)
+    kept = _enough_of_each(hole, n_holes)
+    there = mean_by(hole[kept], calibration.truth_tree.distance(points[kept]), n_holes)
     # Every removed vertex belongs to the hole whose new surface is nearest.
     centroids = vertices[new].mean(axis=1)
-    nearest = filled.triangle_hole[cKDTree(centroids).query(calibration.removed)[1]]
-    back = mean_by(nearest, distance_to_mesh(calibration.removed, TriangleMesh(vertices, new)), n_holes)
+    removed = calibration.removed_vertices
+    nearest = filled.triangle_hole[cKDTree(centroids).query(removed)[1]]
+    kept = _enough_of_each(nearest, n_holes)
+    back = mean_by(nearest[kept], distance_to_mesh(removed[kept], TriangleMesh(vertices, new)), n_holes)
     return 0.5 * (there + back)
+
+
+def _enough_of_each(hole: IntArray, n_holes: int) -> IntArray:
+    """Choose points (k,) whose holes (n,) are known: of every hole with too many, each second or third and so on."""
+    order = np.argsort(hole, kind="stable")
+    count = np.bincount(hole, minlength=n_holes)
+    rank = np.arange(len(hole)) - np.repeat(np.cumsum(count) - count, count)
+    step = np.maximum(count // _POINTS_PER_HOLE, 1)
+    return order[rank % step[hole[order]] == 0]
 
 
 def distance_per_hole(calibration: CalibrationSet, filled: FilledMesh) -> FloatArray:

@@ -18,6 +18,8 @@ RESOLUTION_RANGE = (16, 32)
 # k of the paper: with 4 k = 8 offset patches besides the centre, a vertex is seen by about nine patches.
 OVERLAP = 2
 
+# A copy of the surface pays off where its edges are so many times as long.
+_LEAST_COARSENING = 1.5
 
 # The base surface carries what is too wide for a patch to show: each of its points is a mean over about this share of
 # the patch length (one standard deviation).
@@ -58,6 +60,12 @@ def choose_scale(
     resolution = model_resolution or options.resolution or min(max(wanted, low), high)
     overlap = OVERLAP if options.overlap is None else options.overlap
     return PatchScale(float(length), int(resolution), overlap)
+
+
+def coarse_edge_length(scale: PatchScale, edge_length: float) -> float | None:
+    """Say how long edges may be so that patches show as much: mesh units; None where the mesh's own are about so."""
+    wanted = scale.length / scale.resolution / EDGES_PER_BIN
+    return wanted if wanted >= _LEAST_COARSENING * edge_length else None
 
 
 # The paper's two kinds of patches: their side as a share of the object's longest side, and their bins.

@@ -6,23 +6,71 @@ J. Rossignac, P. Borrel, "Multi-resolution 3D approximations for rendering compl
 Graphics, 1993.
 """
 
+from dataclasses import dataclass
+
 import numpy as np
 
-from quadpatch.mesh.normals import vertex_normals
+from quadpatch.mesh.normals import triangle_normals
 from quadpatch.mesh.topology import components
-from quadpatch.types import BoolArray, IntArray, TriangleMesh, Triangles, Vertices
+from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Triangles, Vertices
 
 # Twice the area over the squared length of two sides: below this three corners lie on a line, in float32.
 _THINNEST = 1e-5
 # Vertices of one cell whose normals differ by more than 120 degrees lie on two sides of a thin wall.
 _OTHER_SIDE = -0.5
+# Cells of a grid for each vertex, up to which a table of them is made.
+_DENSE = 8
+
+
+@dataclass(frozen=True)
+class Clusters:
+    """The vertices of a mesh, joined by the cells of a grid.
+
+    Attributes
+    ----------
+    label : (n,) int64
+        Cluster of each vertex.
+    vertices : (k, 3) float64
+        Means of the clusters.
+    """
+
+    label: IntArray
+    vertices: Vertices
+
+    def join(self, triangles: Triangles) -> tuple[Triangles, IntArray]:
+        """Give triangles (m, 3) their clusters: what is left of them (l, 3), and which they were (l,).
+
+        Every triangle left has an area, and no other one its corners.
+        """
+        joined = self.label[triangles]
+        a, b, c = joined.T
+        # Most triangles vanish here; what follows is slower.
+        kept = np.flatnonzero((a != b) & (b != c) & (c != a))
+        kept = kept[_has_area(self.vertices, joined[kept])]
+        kept = kept[_is_first_of_its_corners(joined[kept], len(self.vertices))]
+        return joined[kept], kept
+
+
+def cluster(mesh: TriangleMesh, cell: float, kind: IntArray | None = None) -> Clusters:
+    """Join all vertices within one cell of a cubic grid at their mean, except across a wall thinner than a cell.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+        With at least one triangle.
+    cell : float
+        Side of the cells, in mesh units.
+    kind : (n,) int64, optional
+        From 0 on: vertices of different kinds stay apart.
+    """
+    label = _cluster_labels(mesh, cell, kind)
+    count = np.bincount(label)
+    means = [np.bincount(label, weights=mesh.vertices[:, axis]) / count for axis in range(3)]
+    return Clusters(label, np.stack(means, axis=1))
 
 
 def cluster_vertices(mesh: TriangleMesh, cell: float) -> TriangleMesh:
-    """Join all vertices within one cell of a cubic grid at their mean.
-
-    Vertex clustering, except that the two sides of a wall thinner than a cell stay
-    apart. Right for a smooth surface; details smaller than a cell vanish.
+    """Thin a mesh by clusters. Right for a smooth surface; details smaller than a cell vanish.
 
     Parameters
     ----------
@@ -39,16 +87,9 @@ def cluster_vertices(mesh: TriangleMesh, cell: float) -> TriangleMesh:
     """
     if len(mesh.triangles) == 0:
         return TriangleMesh(np.zeros((0, 3)), np.zeros((0, 3), dtype=np.int64))
-    label = _cluster_labels(mesh, cell)
-    count = np.bincount(label)
-    vertices = np.stack([np.bincount(label, weights=mesh.vertices[:, axis]) / count for axis in range(3)], axis=1)
-    triangles = label[mesh.triangles]
-    # Most triangles vanish here; what follows is slower.
-    triangles = triangles[(triangles != np.roll(triangles, 1, axis=1)).all(axis=1)]
-    triangles = triangles[_has_area(vertices, triangles)]
-    triangles = triangles[_is_first_of_its_corners(triangles, len(vertices))]
-    corner_vertex, triangles = split_fans(triangles)
-    return TriangleMesh(vertices[corner_vertex], triangles)
+    clusters = cluster(mesh, cell)
+    corner_vertex, triangles = split_fans(clusters.join(mesh.triangles)[0])
+    return TriangleMesh(clusters.vertices[corner_vertex], triangles)
 
 
 def split_fans(triangles: Triangles) -> tuple[IntArray, Triangles]:
@@ -87,13 +128,40 @@ def split_fans(triangles: Triangles) -> tuple[IntArray, Triangles]:
     return triangles.ravel()[first_corner], fan.reshape(-1, 3)
 
 
-def _cluster_labels(mesh: TriangleMesh, cell: float) -> IntArray:
+def _cluster_labels(mesh: TriangleMesh, cell: float, kind: IntArray | None) -> IntArray:
     cells = np.floor((mesh.vertices - mesh.vertices.min(axis=0)) / cell).astype(np.int64)
-    _, first, label = np.unique(_as_keys(cells, int(cells.max()) + 1), return_index=True, return_inverse=True)
-    normals = vertex_normals(mesh.vertices, mesh.triangles)
+    first, label = _groups(_as_keys(cells, int(cells.max()) + 1))
+    normals = _some_normals(mesh)
     agreement = np.einsum("ij,ij->i", normals, normals[first][label])
     two_sided = 2 * label + (agreement < _OTHER_SIDE)
-    return np.asarray(np.unique(two_sided, return_inverse=True)[1], dtype=np.int64)
+    if kind is not None:
+        two_sided += 2 * len(first) * kind
+    return _groups(two_sided)[1]
+
+
+def _groups(keys: IntArray) -> tuple[IntArray, IntArray]:
+    """First member (k,) of each group of equal keys (n,), by rising key, and the group (n,) of every member."""
+    size = int(keys.max()) + 1
+    if size > _DENSE * len(keys):
+        _, first, group = np.unique(keys, return_index=True, return_inverse=True)
+        return first, np.asarray(group, np.int64)
+    # A table of all keys costs less than sorting.
+    table = np.full(size, -1)
+    table[keys[::-1]] = np.arange(len(keys) - 1, -1, -1)
+    first = table[table >= 0]
+    table[table >= 0] = np.arange(len(first))
+    return first, table[keys]
+
+
+def _some_normals(mesh: TriangleMesh) -> FloatArray:
+    """Give every vertex the unit normal of one of its triangles: (n, 3); zero without one."""
+    triangle = np.full(len(mesh.vertices), -1)
+    for corner in range(3):
+        triangle[mesh.triangles[:, corner]] = np.arange(len(mesh.triangles))
+    used = triangle >= 0
+    normals = np.zeros((len(mesh.vertices), 3))
+    normals[used] = triangle_normals(mesh.vertices, mesh.triangles[triangle[used]])
+    return normals
 
 
 def _has_area(vertices: Vertices, triangles: Triangles) -> BoolArray:

@@ -17,13 +17,12 @@ from quadpatch.filling.checked_fill import LoopsToFill, fill_checked
 from quadpatch.filling.fairing import THIN_PLATE, Energy
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.filling.islands import JoinedRims, join_islands
-from quadpatch.filling.region import Region
 from quadpatch.inpainters.inpainter import Inpainter
 from quadpatch.mesh.edge_groups import EdgeSurvey
 from quadpatch.mesh.holes import Hole, Selection, find_holes, select_holes
 from quadpatch.mesh.measures import EdgeStatistics, diagonal, edge_statistics, longest_side
 from quadpatch.options import RepairOptions
-from quadpatch.patches.scale import choose_scale, preset_scale
+from quadpatch.patches.scale import choose_scale, coarse_edge_length, preset_scale
 from quadpatch.progress import Fraction, no_fraction
 from quadpatch.recipes.assessment import assess
 from quadpatch.recipes.learned_detail import Calibration, complete
@@ -91,10 +90,10 @@ def inpaint(
         rims = join_islands(mesh, holes, selection.chosen)
         task = _Task(mesh, holes, selection, rims, edge_statistics(mesh), inpainter, _with_lengths(options, mesh))
         part = repair_region(mesh, rims.loops, task.reach(), obstacles, np.random.default_rng([options.seed, 1]))
-    repair = _repair(task, part.region, obstacles, stages)
+    repair = _repair(task, part, obstacles, stages)
     if not part.holds(repair.filled):
-        repair = _repair(task, Region.all_of(mesh), obstacles, stages)
         part = RepairRegion.all_of(mesh, len(rims.loops))
+        repair = _repair(task, part, obstacles, stages)
     return replace(repair, filled=part.region.widened(repair.filled))
 
 
@@ -147,11 +146,11 @@ class _Task:
 
     def reach(self) -> Reach:
         """Say how far around the holes this looks."""
-        length = 0.0
-        if self.inpainter is not None and self.by_model.any():
-            resolution = self.inpainter.resolution
-            length = choose_scale(self.diameters, self.edges.mean, self.options.patches, resolution).length
-        return Reach(self.typical_diameter() or 0.0, length, self.edges)
+        diameter = self.typical_diameter() or 0.0
+        if self.inpainter is None or not self.by_model.any():
+            return Reach(diameter, 0.0, self.edges)
+        scale = choose_scale(self.diameters, self.edges.mean, self.options.patches, self.inpainter.resolution)
+        return Reach(diameter, scale.length, self.edges, coarse_edge_length(scale, self.edges.mean))
 
 
 def _with_lengths(options: RepairOptions, mesh: TriangleMesh) -> RepairOptions:
@@ -159,8 +158,9 @@ def _with_lengths(options: RepairOptions, mesh: TriangleMesh) -> RepairOptions:
     return replace(options, patches=preset_scale(options.patches, longest_side(mesh)))
 
 
-def _repair(task: _Task, region: Region, obstacles: Triangles | None, stages: Stages) -> Repair:
+def _repair(task: _Task, part: RepairRegion, obstacles: Triangles | None, stages: Stages) -> Repair:
     """Repair the part of a scan that has its holes."""
+    region = part.region
     mesh, rims, inpainter, obstacles = region.mesh, task.rims, task.inpainter, region.local_triangles(obstacles)
     rng = np.random.default_rng(task.options.seed)
     with stages.stage("fill"):
@@ -172,7 +172,8 @@ def _repair(task: _Task, region: Region, obstacles: Triangles | None, stages: St
     completion, warnings, by_model = None, [], task.by_model
     if inpainter is not None and by_model[checked.filled.vertex_hole].any():
         try:
-            completion = complete(checked.filled, calibration, inpainter, task.options, rng, stages)
+            copy = part.coarse_copy(task.reach())
+            completion = complete(checked.filled, copy, calibration, inpainter, task.options, stages)
             if completion is None:
                 warnings.append("too little undamaged surface to learn from; the holes were filled by geometry alone")
         except NoQuadsError as error:

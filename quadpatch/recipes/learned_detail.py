@@ -14,17 +14,17 @@ from quadpatch.calibration.error_model import ErrorModel
 from quadpatch.calibration.training_pairs import TrainingSurface
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.inpainters.inpainter import FittedInpainter, Inpainter, UndamagedSurface
-from quadpatch.mesh.smoothing import laplacian_smooth
 from quadpatch.options import RepairOptions
 from quadpatch.patches.folding import is_unfolded
-from quadpatch.patches.layout import lay_out, patchify, pick, seeds_near, take
-from quadpatch.patches.scale import PatchScale, base_surface_iterations, choose_scale
+from quadpatch.patches.layout import lay_out, pick, seeds_near, take
+from quadpatch.patches.scale import PatchScale, choose_scale
 from quadpatch.patches.seeds import Seeds
 from quadpatch.recipes.assessment import agreeing_holes, measure_agreement
+from quadpatch.recipes.patch_surfaces import CoarseCopy, PatchSurface, PatchSurfaces
 from quadpatch.recipes.result import Completion, PatchAgreement
 from quadpatch.reconstruction.displacement import displace, join_at_rim, rim_vertices
 from quadpatch.stages import Stages
-from quadpatch.types import BoolArray, FloatArray, Patches, TriangleMesh
+from quadpatch.types import BoolArray, FloatArray, Patches
 
 # Blend factor of a model where the mesh has no room for calibration.
 PRIOR_BLEND_FACTOR = 0.0
@@ -72,10 +72,10 @@ class _Model:
 
 def complete(
     filled: FilledMesh,
+    coarse_copy: CoarseCopy | None,
     calibration: Calibration,
     inpainter: Inpainter,
     options: RepairOptions,
-    rng: np.random.Generator,
     stages: Stages,
 ) -> Completion | None:
     """Displace the fill of every hole by what a model makes of the patches around it.
@@ -83,10 +83,11 @@ def complete(
     Parameters
     ----------
     filled : FilledMesh
+    coarse_copy : CoarseCopy or None
+        Patches are cut from that; None for the filled mesh itself.
     calibration : Calibration
     inpainter : Inpainter
     options : RepairOptions
-    rng : numpy.random.Generator
     stages : Stages
 
     Returns
@@ -101,21 +102,24 @@ def complete(
     """
     scale = choose_scale(calibration.diameters, calibration.edge_length, options.patches, inpainter.resolution)
     with stages.stage("smooth"):
-        base_surface = _base_surface(filled, scale, calibration.edge_length)
+        fill = _uniform(calibration)
+        surfaces = _surfaces(filled, coarse_copy, calibration, fill)
+        base_surface = surfaces.filled.smoothed(scale)
     with stages.stage("quadrangulate"):
         seeds = lay_out(base_surface, scale)
     with stages.stage("patchify"):
         near = seeds_near(seeds, filled.mesh.vertices[filled.n_measured_vertices :], scale.length)
-        wanted = near | _some(len(near), rng)
-        everywhere = patchify(filled, base_surface, take(seeds, wanted), scale)
+        wanted = near | _some(len(near), np.random.default_rng([options.seed, 2]))
+        everywhere = surfaces.filled.patchify(base_surface, take(seeds, wanted), scale)
         sampled = pick(everywhere, near[wanted] & is_unfolded(everywhere.patches))
     with stages.stage("learn"):
-        known_patches = _without_calibration_holes(everywhere.patches, filled, calibration)
-        training_surface = partial(_training_surface, filled, calibration, seeds, scale)
+        known_patches = _without_calibration_holes(everywhere.patches, surfaces.filled)
+        training_surface = partial(_training_surface, surfaces.filled, calibration, seeds, scale)
         fitted = inpainter.fitted_to(UndamagedSurface(known_patches, everywhere.base_heights, training_surface))
         if fitted is None:
             return None
-        blend_factor, error_model = _calibrate_model(calibration, _Model(fitted, seeds, scale))
+        model = _Model(fitted, seeds, scale)
+        blend_factor, error_model = _calibrate_model(calibration.holes, fill, surfaces.calibration, model)
     with stages.stage("inpaint"):
         # A model with a blend factor of 0 need not be asked.
         predicted = fitted.predict(sampled.patches, sampled.base_heights) if blend_factor else None
@@ -129,27 +133,27 @@ def complete(
     return Completion(displacement, agreement, displaced_holes, blend_factor, error_model, scale, len(sampled.patches))
 
 
-def _base_surface(filled: FilledMesh, scale: PatchScale, edge_length: float) -> TriangleMesh:
-    return laplacian_smooth(filled.mesh, base_surface_iterations(scale.length, edge_length))
+def _surfaces(
+    filled: FilledMesh, coarse_copy: CoarseCopy | None, calibration: Calibration, fill: FilledMesh | None
+) -> PatchSurfaces:
+    """Find what patches are cut from; `fill` is that of the calibration holes."""
+    holes = calibration.holes
+    if coarse_copy is not None:
+        return coarse_copy.surfaces(filled, None if holes is None else holes.removed, fill)
+    return PatchSurfaces.of_scan(filled, None if holes is None else holes.cut_away, fill, calibration.edge_length)
 
 
-def _without_calibration_holes(patches: Patches, filled: FilledMesh, calibration: Calibration) -> Patches:
+def _without_calibration_holes(patches: Patches, surface: PatchSurface) -> Patches:
     """Hide what calibration holes took, or a model would be tried on patches that it was learned from."""
-    if calibration.holes is None:
-        return patches
-    cut_away = np.zeros(len(filled.mesh.triangles), bool)
-    cut_away[: len(calibration.holes.cut_away)] = calibration.holes.cut_away
-    hidden = (patches.triangle >= 0) & cut_away[patches.triangle]
+    hidden = (patches.triangle >= 0) & surface.cut_away[patches.triangle]
     return replace(patches, known=patches.known & ~hidden)
 
 
-def _training_surface(filled: FilledMesh, calibration: Calibration, seeds: Seeds, scale: PatchScale) -> TrainingSurface:
-    """Measured surface, without what calibration holes took."""
-    measured = filled.mesh.triangles[: filled.n_measured_triangles]
-    triangles = measured if calibration.holes is None else measured[~calibration.holes.cut_away]
-    mesh = TriangleMesh(filled.mesh.vertices[: filled.n_measured_vertices], triangles)
+def _training_surface(
+    surface: PatchSurface, calibration: Calibration, seeds: Seeds, scale: PatchScale
+) -> TrainingSurface:
     diameters = np.array(calibration.diameters)
-    return TrainingSurface(mesh, seeds, scale, calibration.blend, diameters, calibration.edge_length)
+    return TrainingSurface(surface.undamaged, seeds, scale, calibration.blend, diameters, surface.edge_length)
 
 
 def _some(count: int, rng: np.random.Generator) -> BoolArray:
@@ -159,21 +163,21 @@ def _some(count: int, rng: np.random.Generator) -> BoolArray:
     return chosen
 
 
-def _calibrate_model(calibration: Calibration, model: _Model) -> tuple[float, ErrorModel | None]:
+def _calibrate_model(
+    holes: CalibrationSet | None, filled: FilledMesh | None, surface: PatchSurface | None, model: _Model
+) -> tuple[float, ErrorModel | None]:
     """Complete the calibration holes: the blend factor, and the error to expect."""
-    filled = _uniform(calibration)
-    if calibration.holes is None or filled is None:
+    if holes is None or filled is None or surface is None:
         return PRIOR_BLEND_FACTOR, None
-    base_surface = _base_surface(filled, model.scale, calibration.edge_length)
     new = filled.mesh.vertices[filled.n_measured_vertices :]
     near = take(model.seeds, seeds_near(model.seeds, new, model.scale.length))
-    sampled = patchify(filled, base_surface, near, model.scale)
+    sampled = surface.patchify(surface.smoothed(model.scale), near, model.scale)
     sampled = pick(sampled, is_unfolded(sampled.patches))
     predicted = model.inpainter.predict(sampled.patches, sampled.base_heights)
     joined, agreement = _displacements(filled, sampled.patches, predicted)
     joined = np.where(agreeing_holes(agreement)[filled.vertex_hole][:, None], joined, 0.0)
-    factor = choose_blend_factor(calibration.holes, filled, joined)
-    return factor, expect(calibration.holes, filled.displaced(factor * joined))
+    factor = choose_blend_factor(holes, filled, joined)
+    return factor, expect(holes, filled.displaced(factor * joined))
 
 
 def _uniform(calibration: Calibration) -> FilledMesh | None:

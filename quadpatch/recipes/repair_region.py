@@ -4,7 +4,7 @@ Calibration and learning look at as much surface as they need, wherever it lies:
 of it. Where these places take up most of a scan, the whole of it is looked at.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -13,6 +13,7 @@ from quadpatch.calibration.calibration_set import MARGIN_EDGES, MAX_HOLES
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.filling.region import Region, region_around
 from quadpatch.mesh.measures import EdgeStatistics
+from quadpatch.recipes.patch_surfaces import CoarseCopy
 from quadpatch.types import FloatArray, IntArray, TriangleMesh, Triangles, Vertices
 
 # A fill that bulges stays within so many diameters of its rim; whether it did is looked at.
@@ -37,16 +38,38 @@ class RepairRegion:
     centres : (n_loops, 3) float64
     radii : (n_loops,) float64
         Every triangle of the scan that comes so near to the centre of a loop is in the region; in mesh units.
+    sites : (k, 3) float64
+        Places to calibrate at.
+    room : float
+        The same for the places to calibrate at.
     """
 
     region: Region
     centres: Vertices
     radii: FloatArray
+    sites: Vertices
+    room: float
 
     @classmethod
     def all_of(cls, mesh: TriangleMesh, n_loops: int) -> "RepairRegion":
         """Work on a whole mesh."""
-        return cls(Region.all_of(mesh), np.zeros((n_loops, 3)), np.full(n_loops, np.inf))
+        return cls(Region.all_of(mesh), np.zeros((n_loops, 3)), np.full(n_loops, np.inf), np.zeros((0, 3)), np.inf)
+
+    def coarse_copy(self, reach: "Reach") -> CoarseCopy | None:
+        """Prepare a coarse copy of what patches show; None where they show triangles of the scan themselves."""
+        if reach.coarse_edge is None:
+            return None
+        wider = self.cut_out(reach, _PATCHES * reach.patch_length, None)
+        return CoarseCopy(self.region, wider, reach.coarse_edge)
+
+    def cut_out(self, reach: "Reach", beyond: float, obstacles: Triangles | None) -> Region:
+        """Cut out what lies around its places, and so far beyond (mesh units)."""
+        mesh = self.region.whole
+        if not len(self.sites):
+            return Region.all_of(mesh)
+        radii = np.concatenate([self.radii, np.full(len(self.sites), self.room)])
+        centres = np.concatenate([self.centres, self.sites])
+        return region_around(mesh, reach.edges, centres, radii + beyond, obstacles)
 
     def holds(self, filled: FilledMesh) -> bool:
         """Whether all that fills could run into is in the region: they lie where it has all triangles of the scan."""
@@ -67,11 +90,14 @@ class Reach:
         Side of the patches of a learned model; 0 without one.
     edges : EdgeStatistics
         Of the scan.
+    coarse_edge : float or None
+        Edges of the copy that patches are cut from; None where they are cut from the scan itself.
     """
 
     diameter: float
     patch_length: float
     edges: EdgeStatistics
+    coarse_edge: float | None = None
 
 
 def repair_region(
@@ -99,22 +125,15 @@ def repair_region(
     low = np.array([mesh.vertices[loop].min(axis=0) for loop in loops])
     high = np.array([mesh.vertices[loop].max(axis=0) for loop in loops])
     sizes = np.linalg.norm(high - low, axis=1)
-    around = _RINGS * reach.edges.mean + _PATCHES * reach.patch_length
+    around = _RINGS * reach.edges.mean + (0.0 if reach.coarse_edge else _PATCHES * reach.patch_length)
     room = _ROOM * (reach.diameter / 2 + MARGIN_EDGES * reach.edges.mean) + around
     sites = _sites(mesh, np.concatenate(loops), room, MAX_HOLES, rng)
     if len(sites) < MAX_HOLES:
         return RepairRegion.all_of(mesh, len(loops))
     centres, radii = (low + high) / 2, (0.5 + _BULGE) * sizes + around
-    region = region_around(
-        mesh,
-        reach.edges,
-        np.concatenate([centres, sites]),
-        np.concatenate([radii, np.full(len(sites), room)]),
-        obstacles,
-    )
-    if region.mesh is mesh:
-        return RepairRegion.all_of(mesh, len(loops))
-    return RepairRegion(region, centres, radii)
+    part = RepairRegion(Region.all_of(mesh), centres, radii, sites, room)
+    region = part.cut_out(reach, 0.0, obstacles)
+    return replace(part, region=region) if region.mesh is not mesh else RepairRegion.all_of(mesh, len(loops))
 
 
 def _sites(mesh: TriangleMesh, rim: IntArray, room: float, most: int, rng: np.random.Generator) -> Vertices:

@@ -154,7 +154,9 @@ def test_the_distance_of_a_fill_looks_one_way_only() -> None:
     distance = distance_per_hole(calibration, lifted)
     assert distance[3] == pytest.approx(0.001)
     assert np.delete(distance, 3).max() < 1e-9
-    elsewhere = replace(calibration, removed=calibration.removed + np.array([0.0, 0, 1]))
+    gone = np.array([0.0, 0, 1]) * calibration.removed[:, None]
+    elsewhere = replace(calibration, truth=TriangleMesh(calibration.truth.vertices + gone, calibration.truth.triangles))
+    elsewhere.__dict__["truth_tree"] = calibration.truth_tree
     assert (distance_per_hole(elsewhere, lifted) == distance).all()
     assert error_per_hole(elsewhere, lifted).min() > 0.4
 

@@ -3,7 +3,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from quadpatch.options import PatchOptions
-from quadpatch.patches.scale import EDGES_PER_BIN, HOLES_PER_LENGTH, OVERLAP, RESOLUTION_RANGE, choose_scale
+from quadpatch.patches.scale import (
+    EDGES_PER_BIN,
+    HOLES_PER_LENGTH,
+    OVERLAP,
+    RESOLUTION_RANGE,
+    choose_scale,
+    coarse_edge_length,
+)
 
 AUTO = PatchOptions()
 lengths = st.floats(1e-6, 1e6)
@@ -44,3 +51,13 @@ def test_what_is_set_is_taken_but_a_model_keeps_its_resolution() -> None:
     scale = choose_scale([1.0], 0.1, options)
     assert (scale.length, scale.resolution, scale.overlap) == (3.0, 20, 0)
     assert choose_scale([1.0], 0.1, options, model_resolution=24).resolution == 24
+
+
+def test_edges_may_be_as_long_as_those_that_such_bins_are_chosen_for() -> None:
+    fine = choose_scale([1.0], 0.01, AUTO)
+    length = coarse_edge_length(fine, 0.01)
+    assert length is not None
+    assert length > 0.02
+    assert choose_scale([1.0], length, AUTO) == fine
+    # Bins no wider than an edge or so show triangles of the scan.
+    assert coarse_edge_length(choose_scale([1.0], 0.05, AUTO), 0.05) is None
