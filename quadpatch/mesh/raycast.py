@@ -11,10 +11,18 @@ I. Wald, S. Woop, C. Benthin, G. Johnson, M. Ernst, "Embree: a kernel framework 
 Transactions on Graphics 33, 2014.
 """
 
+from functools import cached_property
+
 import numpy as np
+from numpy.typing import NDArray
 
 from quadpatch.mesh.measures import bounding_box
-from quadpatch.types import FloatArray, IntArray, TriangleMesh
+from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh
+
+# Columns and rows (2, n) in a picture; origins or directions (n, 3); triangles (n,), -1 for none.
+Places = NDArray[np.float32]
+Rays = NDArray[np.float32]
+Hits = NDArray[np.int32]
 
 # In the unit ball a float32 coordinate is off by up to 6e-8; two surfaces closer than this can't be told apart.
 _RESOLUTION = 1e-6
@@ -22,6 +30,10 @@ _RESOLUTION = 1e-6
 _JITTER = 3e-7
 # Rays start at most this far before the point where they come closest to the ball's centre.
 _RUN_UP = 2.0
+# From a triangle that a ray goes through to where it goes on: float32 tells the two apart.
+_STEP = 2e-6
+# Farther than anything in the unit ball, and a float32.
+_BEYOND = 1e30
 
 
 class RayScene:
@@ -56,9 +68,14 @@ class RayScene:
         self._is_empty = len(mesh.triangles) == 0
         if not self._is_empty:
             self._geometry = EmbreeMesh(self._scene, self._vertex_buffer, self._triangle_buffer)
-        self._corner, second, third = (unit[mesh.triangles[:, k]] for k in range(3))
+        self._unit, self._triangles = unit, mesh.triangles
+
+    @cached_property
+    def _planes(self) -> tuple[FloatArray, FloatArray]:
+        """First corner (n_triangles, 3) and normal of each triangle, in the unit ball; only distances need them."""
+        first, second, third = (self._unit[self._triangles[:, k]] for k in range(3))
         # Not of unit length: only its direction enters the distance.
-        self._normal = np.cross(second - self._corner, third - self._corner)
+        return first, np.cross(second - first, third - first)
 
     def cast(self, origins: FloatArray, directions: FloatArray, reach: float = np.inf) -> tuple[IntArray, FloatArray]:
         """Find the first triangle along each ray.
@@ -92,8 +109,9 @@ class RayScene:
         ends = (slide + reach / self._radius + _RESOLUTION) if np.isfinite(reach) else None
         triangle[:] = self._first_hit(start, unit_directions, ends)
         hit = np.flatnonzero(triangle >= 0)
-        normal = self._normal[triangle[hit]]
-        along = np.einsum("ij,ij->i", self._corner[triangle[hit]] - start[hit], normal)
+        corners, normals = self._planes
+        normal = normals[triangle[hit]]
+        along = np.einsum("ij,ij->i", corners[triangle[hit]] - start[hit], normal)
         steepness = np.einsum("ij,ij->i", unit_directions[hit], normal)
         # A ray within the plane of its triangle has no one distance; that counts as a miss.
         is_grazing = steepness == 0.0
@@ -101,6 +119,73 @@ class RayScene:
         hit, along, steepness = hit[~is_grazing], along[~is_grazing], steepness[~is_grazing]
         distance[hit] = (along / steepness + slide[hit]) * self._radius
         return triangle, distance
+
+    def seen_in(self, plane: FloatArray, direction: FloatArray, places: Places, clear: BoolArray | None = None) -> Hits:
+        """Find the first triangle along parallel rays that start on a plane near the mesh.
+
+        For pictures: no distances, and a ray that slips between two triangles is not cast again.
+
+        Parameters
+        ----------
+        plane : (3, 3) float64
+            The point of column 0 and row 0, the step to the next column, the step to the next row, in mesh units.
+        direction : (3,) float64
+            Unit vector.
+        places : (2, n) float32
+            Columns and rows where the rays start.
+        clear : (n_triangles,) bool, optional
+            Triangles that rays go through.
+
+        Returns
+        -------
+        (n,) int32
+            -1 where the ray hits nothing.
+        """
+        if self._is_empty or places.shape[1] == 0:
+            return np.full(places.shape[1], -1, dtype=np.int32)
+        corner, step_right, step_down = (plane - [self._centre, np.zeros(3), np.zeros(3)]) / self._radius
+        columns, rows = places
+        origins = np.empty((len(columns), 3), dtype=np.float32)
+        for axis in range(3):
+            origins[:, axis] = corner[axis] + columns * step_right[axis] + rows * step_down[axis]
+        directions = np.broadcast_to(direction.astype(np.float32), origins.shape).copy()
+        return self._first_opaque(origins, directions, clear)
+
+    def _first_opaque(self, origins: Rays, directions: Rays, clear: BoolArray | None) -> Hits:
+        hits: Hits = self._scene.run(origins, directions)
+        if clear is None:
+            return hits
+        passes = np.flatnonzero((hits >= 0) & clear[hits])
+        # The loop ends: each ray moves on by a step at least, out of the ball at last.
+        while len(passes):
+            distances = self._scene.run(origins[passes], directions[passes], query="DISTANCE")
+            origins[passes] += (distances + _STEP)[:, None] * directions[passes]
+            hits[passes] = self._scene.run(origins[passes], directions[passes])
+            passes = passes[(hits[passes] >= 0) & clear[hits[passes]]]
+        return hits
+
+    def is_hidden(self, origins: FloatArray, directions: FloatArray, reach: float = np.inf) -> BoolArray:
+        """Tell for points near the mesh whether a surface stands in the way to the viewer.
+
+        Parameters
+        ----------
+        origins : (n, 3) float64
+            In mesh units.
+        directions : (n, 3) float64
+            Unit vectors.
+        reach : float
+            Surfaces farther away, in mesh units, hide nothing.
+
+        Returns
+        -------
+        (n,) bool
+        """
+        if self._is_empty or len(origins) == 0:
+            return np.zeros(len(origins), dtype=bool)
+        start = ((origins - self._centre) / self._radius).astype(np.float32)
+        ends = np.full(len(start), min(reach / self._radius, _BEYOND), dtype=np.float32)
+        blocked = self._scene.run(start, directions.astype(np.float32), ends, query="OCCLUDED")
+        return np.asarray(blocked >= 0)
 
     def _first_hit(self, origins: FloatArray, directions: FloatArray, ends: FloatArray | None) -> IntArray:
         triangle = self._run(origins, directions, ends)

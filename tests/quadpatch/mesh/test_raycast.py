@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from quadpatch.mesh.raycast import RayScene
+from quadpatch.mesh.raycast import Places, RayScene
 from quadpatch.types import FloatArray, TriangleMesh
 
 
@@ -137,3 +137,56 @@ def test_scene_outlives_the_mesh_it_was_built_from() -> None:
     assert len(litter) == 5
     assert (expected >= 0).all()
     np.testing.assert_array_equal(again, expected)
+
+
+def places_on(plane: FloatArray, n: int = 50) -> tuple[Places, FloatArray]:
+    """Places in a picture of n times n pixels, and the points on its plane."""
+    places = np.indices((n, n), dtype=np.float32).reshape(2, -1) + np.float32(0.3)
+    return places, np.column_stack([np.ones(n * n), *places]) @ plane
+
+
+def test_a_view_sees_what_single_rays_hit() -> None:
+    mesh = wave_mesh()
+    # A tilted view of a mesh far from the origin, with room around it.
+    far = TriangleMesh(1000 * mesh.vertices + [5e4, -2e4, 1e4], mesh.triangles)
+    scene = RayScene(far)
+    direction = np.array([0.0, 0.6, -0.8])
+    plane = np.array([[5e4 - 1500, -2e4 - 2700, 1e4 + 2000], [60, 0, 0], [0, 48, 36]])
+    places, origins = places_on(plane)
+    seen = scene.seen_in(plane, direction, places)
+    expected, _ = scene.cast(origins, np.tile(direction, (len(origins), 1)))
+    assert 0.2 < (expected >= 0).mean() < 0.9
+    assert (seen == expected).mean() > 0.99
+    nothing = RayScene(TriangleMesh(mesh.vertices, mesh.triangles[:0]))
+    assert (nothing.seen_in(plane, direction, places) == -1).all()
+
+
+def test_a_view_goes_through_clear_triangles_and_sees_what_lies_behind() -> None:
+    mesh = wave_mesh(12)
+    n = len(mesh.triangles)
+    layers = [mesh.vertices + np.array([0, 0, height]) for height in (0.0, 0.5, 1.0)]
+    stack = TriangleMesh(
+        np.concatenate(layers), np.concatenate([mesh.triangles + k * len(mesh.vertices) for k in range(3)])
+    )
+    scene = RayScene(stack)
+    direction = np.array([0.0, 0.0, -1.0])
+    plane = np.array([[-1.1, -1.1, 2.0], [2.2 / 50, 0, 0], [0, 2.2 / 50, 0]])
+    places, _ = places_on(plane)
+    top = scene.seen_in(plane, direction, places)
+    assert (top[top >= 0] >= 2 * n).all()
+    through = scene.seen_in(plane, direction, places, np.arange(3 * n) >= n)
+    assert through.max() < n
+    # A ray that meets an edge may see either of its triangles.
+    assert (through == np.where(top >= 0, top - 2 * n, -1)).mean() > 0.98
+    assert (scene.seen_in(plane, direction, places, np.ones(3 * n, dtype=bool)) == -1).all()
+
+
+def test_a_surface_hides_points_unless_it_is_out_of_reach() -> None:
+    scene = RayScene(wave_mesh())
+    below = np.array([[0.1, 0.2, -2.0], [0.1, 0.2, 2.0], [5.0, 0.0, -2.0]])
+    up = np.tile([0.0, 0.0, 1.0], (3, 1))
+    assert scene.is_hidden(below, up).tolist() == [True, False, False]
+    assert scene.is_hidden(below, up, 2.5).tolist() == [True, False, False]
+    assert not scene.is_hidden(below, up, 1.5).any()
+    empty = RayScene(TriangleMesh(np.zeros((0, 3)), np.zeros((0, 3), dtype=np.int64)))
+    assert not empty.is_hidden(below, up).any()
