@@ -56,7 +56,7 @@ def draw_scan(source: Path, repaired: Path, holes: Sequence[dict[str, Any]], fol
     folder.mkdir(parents=True, exist_ok=True)
     before, after = _read(source), _read(repaired)
     is_new = np.arange(len(after.triangles)) >= len(before.triangles)
-    render_before_after(before, after, is_new, folder / f"{name}.png")
+    render_before_after(after, is_new, folder / f"{name}.png")
     scene = RayScene(after)
     tinted = np.where(is_new[:, None], CLAY + _STRENGTH * (TINT - CLAY), CLAY)
     grey = np.tile(CLAY, (len(before.triangles), 1))

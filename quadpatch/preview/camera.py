@@ -41,19 +41,34 @@ class Camera:
     width: float
     clearance: float
 
-    def ray_origins(self, columns: FloatArray, rows: FloatArray, size: tuple[int, int]) -> Vertices:
-        """Start points (n, 3) of the rays through places in a picture of `size` (columns, rows), in pixels."""
-        pixel = self.width / size[0]
-        across = (columns - size[0] / 2) * pixel
-        upwards = (size[1] / 2 - rows) * pixel
-        start = self.centre + self.clearance * self.towards
-        return start + across[:, None] * self.right + upwards[:, None] * self.up
+    @property
+    def axes(self) -> FloatArray:
+        """`right`, `up` and `towards` as rows (3, 3)."""
+        return np.stack([self.right, self.up, self.towards])
 
-    def places(self, points: Vertices, size: tuple[int, int]) -> tuple[FloatArray, FloatArray]:
-        """Columns (n,) and rows (n,) of points (n, 3) in a picture of `size`, in pixels."""
-        pixel = self.width / size[0]
-        local = points - self.centre
-        return size[0] / 2 + local @ self.right / pixel, size[1] / 2 - local @ self.up / pixel
+
+@dataclass(frozen=True)
+class View:
+    """A camera and its picture of `size` (columns, rows), in pixels."""
+
+    camera: Camera
+    size: tuple[int, int]
+
+    @property
+    def plane(self) -> FloatArray:
+        """Where rays start (3, 3), in mesh units: the point of column 0 and row 0, and the steps to the next ones."""
+        camera = self.camera
+        pixel = camera.width / self.size[0]
+        steps = np.stack([camera.right, -camera.up]) * pixel
+        middle = camera.centre + camera.clearance * camera.towards
+        return np.vstack([middle - np.array(self.size) / 2 @ steps, steps])
+
+    def places(self, points: Vertices) -> tuple[FloatArray, FloatArray]:
+        """Columns (n,) and rows (n,) of points (n, 3), in pixels."""
+        pixel = self.camera.width / self.size[0]
+        right, down = self.camera.right / pixel, -self.camera.up / pixel
+        shift = self.size[0] / 2 - self.camera.centre @ right, self.size[1] / 2 - self.camera.centre @ down
+        return points @ right + shift[0], points @ down + shift[1]
 
 
 def view_of(points: Vertices, towards: FloatArray, aspect: float, like: Camera | None = None) -> Camera:

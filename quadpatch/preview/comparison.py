@@ -7,7 +7,7 @@ from scipy.spatial import cKDTree
 
 from quadpatch.mesh.measures import diagonal
 from quadpatch.mesh.normals import area_vectors
-from quadpatch.preview.pair import TINT, prepare
+from quadpatch.preview.pair import TINT, moved_pair
 from quadpatch.preview.parts import part_of
 from quadpatch.preview.png import write_png
 from quadpatch.preview.shading import CLAY
@@ -48,7 +48,7 @@ def render_comparison(before: TriangleMesh, after: TriangleMesh, change: BoolArr
     """
     is_drawn = _is_finite(after)
     change = change[is_drawn]
-    pair = prepare(_drawn(before), _drawn(after), change)
+    pair = moved_pair(_drawn(before), _drawn(after), change)
     changed = np.asarray(change > 0)
     camera = overview_camera(pair, changed)
     places = [part_of(pair.after, triangles) for triangles in changed_places(pair.after, change, N_CANDIDATES)]

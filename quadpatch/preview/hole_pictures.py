@@ -5,9 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
-from quadpatch.preview.camera import UP, Camera, view_of
+from quadpatch.preview.camera import UP, Camera, View, view_of
 from quadpatch.preview.pair import Pair
 from quadpatch.preview.png import png_bytes, to_pixels
+from quadpatch.preview.sampling import Colours
 from quadpatch.types import FloatArray, Vertices
 
 # In pixels.
@@ -46,9 +47,10 @@ def draw_hole(pair: Pair, hole: NumberedHole) -> bytes:
     camera = _along_the_normal(pair, hole.rim)
     sheet = Image.new("RGB", (2 * _TILE + _GAP, _CAPTION_HEIGHT + _TILE), _PAPER)
     pen = ImageDraw.Draw(sheet)
-    for left, clay, caption in ((0, pair.old, "before"), (_TILE + _GAP, pair.new, "after")):
+    before, after = pair.draw(camera, (_TILE, _TILE))
+    for left, picture, caption in ((0, before, "before"), (_TILE + _GAP, after, "after")):
         pen.text((left + _INSET, 4), f"hole {hole.id}, {caption}", font=ImageFont.load_default(17), fill=_INK)
-        sheet.paste(_tile(clay.draw(camera, (_TILE, _TILE)), camera, hole), (left, _CAPTION_HEIGHT))
+        sheet.paste(_tile(picture, camera, hole), (left, _CAPTION_HEIGHT))
     return png_bytes(sheet)
 
 
@@ -76,11 +78,11 @@ def _along_the_normal(pair: Pair, rim: Vertices) -> Camera:
     return Camera(tight.centre, tight.right, tight.up, towards, tight.width * _SURROUNDINGS, clearance)
 
 
-def _tile(picture: FloatArray, camera: Camera, hole: NumberedHole) -> Image.Image:
+def _tile(picture: Colours, camera: Camera, hole: NumberedHole) -> Image.Image:
     """Put the rim and the number into a picture."""
     tile = Image.fromarray(to_pixels(picture))
     pen = ImageDraw.Draw(tile)
-    columns, rows = camera.places(hole.rim, (_TILE, _TILE))
+    columns, rows = View(camera, (_TILE, _TILE)).places(hole.rim)
     around = np.append(np.arange(len(columns)), 0)
     pen.line(list(zip(columns[around].tolist(), rows[around].tolist(), strict=True)), fill=_RIM, width=_RIM_WIDTH)
     font = ImageFont.load_default(_NUMBER_SIZE)

@@ -38,6 +38,10 @@ class Part:
         """Diagonal of the bounding box, in mesh units."""
         return float(np.linalg.norm(np.ptp(self.corners, axis=0))) if len(self.corners) else 0.0
 
+    def flipped(self) -> "Part":
+        """Turn the triangles over."""
+        return Part(self.corners, self.centres, -self.area_vectors)
+
 
 def part_of(mesh: TriangleMesh, triangles: IntArray) -> Part:
     """Take some triangles (n,) of a mesh; none give a part without corners."""
@@ -81,3 +85,11 @@ def filled_holes(mesh: TriangleMesh, invented: BoolArray, most: int) -> list[Int
     opening = np.linalg.norm(np.stack([np.bincount(label, weights=vectors[:, axis]) for axis in range(3)]), axis=0)
     largest = np.argsort(-opening, kind="stable")[:most]
     return [chosen[label == k] for k in largest if opening[k] > 0]
+
+
+def touching(mesh: TriangleMesh, chosen: BoolArray) -> BoolArray:
+    """Triangles (n_triangles,) that share a vertex with a chosen one, those themselves among them."""
+    is_shared = np.zeros(len(mesh.vertices), dtype=bool)
+    is_shared[mesh.triangles[chosen]] = True
+    a, b, c = is_shared[mesh.triangles.T]
+    return np.asarray(a | b | c)

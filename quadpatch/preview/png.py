@@ -8,10 +8,11 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from quadpatch.formats.output_files import write_whole
+from quadpatch.preview.sampling import Colours
 from quadpatch.types import FloatArray
 
 
-def to_pixels(picture: FloatArray) -> NDArray[np.uint8]:
+def to_pixels(picture: FloatArray | Colours) -> NDArray[np.uint8]:
     """Turn colours (rows, columns, 3) of 0..1 into bytes."""
     return np.asarray(np.round(picture * 255).astype(np.uint8))
 

@@ -1,12 +1,17 @@
 """Draw one view of a mesh: matte grey clay under two lights."""
 
+from copy import copy
+
 import numpy as np
 
 from quadpatch.mesh.normals import triangle_normals, unit
-from quadpatch.mesh.raycast import RayScene
+from quadpatch.mesh.raycast import Hits, Places, RayScene
 from quadpatch.mesh.weld import weld
-from quadpatch.preview.camera import Camera
-from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Vertices
+from quadpatch.preview.camera import Camera, View
+from quadpatch.preview.facets import Facets
+from quadpatch.preview.parts import touching
+from quadpatch.preview.sampling import Colours, sampled
+from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh
 
 BACKGROUND = np.array([0.965, 0.968, 0.972])
 CLAY = np.array([0.80, 0.79, 0.77])
@@ -17,13 +22,7 @@ BACK = np.array([0.30, 0.34, 0.42])
 # the right that keeps the shadows open, and light from everywhere.
 _LIGHTS = (((-0.45, 0.60, 0.66), 0.76), ((0.70, -0.35, 0.62), 0.30))
 _AMBIENT = 0.24
-# Corners whose normal is farther than about 28 degrees from their triangle's belong to a sharp edge.
-_SHARP = 0.88
-# Pixels that differ from a neighbour by more than this (of 1) get more rays.
-_EDGE = 0.04
-# Places of the rays within such a pixel: a rotated square, which has no two on one row or column.
-_SUBPIXELS = ((0.375, 0.125), (0.875, 0.375), (0.125, 0.625), (0.625, 0.875))
-_CHUNK = 60_000
+_TINY = np.finfo(np.float32).tiny
 
 
 class Clay:
@@ -45,112 +44,83 @@ class Clay:
         self._scene = scene
         self._mesh = mesh
         self._colours = colours
+        self._left_out: BoolArray | None = None
         self._flat = triangle_normals(mesh.vertices, mesh.triangles)
         if is_joined:
-            self._smooth = _smooth_normals(mesh)
+            self._smooth = _smooth_normals(mesh, self._flat)
         else:
             welded = weld(mesh.vertices, mesh.triangles)
-            self._smooth = _smooth_normals(welded.mesh)[welded.from_file]
+            flat = triangle_normals(welded.mesh.vertices, welded.mesh.triangles)
+            self._smooth = _smooth_normals(welded.mesh, flat)[welded.from_file]
+
+    def without(self, left_out: BoolArray) -> "Clay":
+        """Leave out some triangles (n_triangles,) of a mesh whose triangles share their vertices."""
+        other = copy(self)
+        other._left_out = left_out
+        # Without them, the normals of their neighbours at the vertices between them are others.
+        stays = touching(self._mesh, left_out) & ~left_out
+        near = TriangleMesh(self._mesh.vertices, self._mesh.triangles[stays])
+        other._smooth = self._smooth.copy()
+        shared = self._mesh.triangles[left_out]
+        other._smooth[shared] = _smooth_normals(near, self._flat[stays])[shared]
+        return other
 
     def draw(self, camera: Camera, size: tuple[int, int]) -> FloatArray:
-        """Draw a picture.
+        """Draw a picture (rows, columns, 3) of `size` (columns, rows), in pixels: red, green, blue, 0..1."""
+        view = View(camera, size)
+        colours = sampled(lambda places: self.shaded(view, places, self.seen_at(view, places))[None], size)
+        return np.asarray(colours[0], dtype=np.float64)
 
-        One ray goes through the middle of each pixel, four more through those that differ from a neighbour.
+    def seen_at(self, view: View, places: Places) -> Hits:
+        """Triangles (n,) that are seen at places (2, n); -1 for none."""
+        return self._scene.seen_in(view.plane, -view.camera.towards, places, self._left_out)
 
-        Parameters
-        ----------
-        camera : Camera
-        size : (int, int)
-            Columns and rows, in pixels.
-
-        Returns
-        -------
-        (rows, columns, 3) float64
-            Red, green, blue, 0..1.
-        """
-        rows, columns = (grid.ravel().astype(np.float64) for grid in np.indices((size[1], size[0])))
-        picture = self._colours_at(camera, columns + 0.5, rows + 0.5, size)
-        edge = np.flatnonzero(_differs_from_neighbours(picture.reshape(size[1], size[0], 3)))
-        samples = [
-            self._colours_at(camera, columns[edge] + right, rows[edge] + down, size) for right, down in _SUBPIXELS
-        ]
-        picture[edge] = np.mean(samples, axis=0)
-        return picture.reshape(size[1], size[0], 3)
-
-    def _colours_at(self, camera: Camera, columns: FloatArray, rows: FloatArray, size: tuple[int, int]) -> FloatArray:
-        colours = np.tile(BACKGROUND, (len(columns), 1))
-        # Loop over chunks, which bound the memory.
-        for start in range(0, len(columns), _CHUNK):
-            chunk = slice(start, start + _CHUNK)
-            origins = camera.ray_origins(columns[chunk], rows[chunk], size)
-            triangle, distance = self._scene.cast(origins, np.broadcast_to(-camera.towards, origins.shape))
-            hit = np.flatnonzero(triangle >= 0)
-            points = origins[hit] - distance[hit, None] * camera.towards
-            colours[start + hit] = self._shaded(camera, triangle[hit], points)
+    def shaded(self, view: View, places: Places, triangle: Hits) -> Colours:
+        """Colours (3, n) of triangles (n,) at places (2, n); the background for the triangle -1."""
+        colours = np.repeat(BACKGROUND.astype(np.float32)[:, None], len(triangle), axis=1)
+        hit = np.flatnonzero(triangle >= 0)
+        seen, facet = _numbered(triangle[hit], len(self._mesh.triangles))
+        facets = Facets(self._mesh, self._flat, self._smooth, seen, view)
+        base = np.where(facets.is_front, self._colours[seen].T, BACK[:, None]).astype(np.float32)
+        light = _light(facets.normals_at(facet, places[:, hit]))
+        for channel in range(3):
+            colours[channel, hit] = np.minimum(base[channel, facet] * light, 1)
         return colours
 
-    def _shaded(self, camera: Camera, triangle: IntArray, points: Vertices) -> FloatArray:
-        is_front = self._flat[triangle] @ camera.towards > 0
-        normals = self._normals_at(triangle, points) * np.where(is_front, 1.0, -1.0)[:, None]
-        local = normals @ np.stack([camera.right, camera.up, camera.towards]).T
-        light = np.full(len(points), _AMBIENT)
-        for direction, strength in _LIGHTS:
-            light += strength * np.maximum(local @ (np.array(direction) / np.linalg.norm(direction)), 0.0)
-        base = np.where(is_front[:, None], self._colours[triangle], BACK)
-        shaded: FloatArray = np.clip(base * light[:, None], 0.0, 1.0)
-        return shaded
 
-    def _normals_at(self, triangle: IntArray, points: Vertices) -> FloatArray:
-        """Interpolate the normals of the corners; take the triangle's own at the corners of sharp edges."""
-        corners = self._mesh.triangles[triangle]
-        flat = self._flat[triangle]
-        weights = _barycentric(points, *(self._mesh.vertices[corners[:, k]] for k in range(3)))
-        total = np.zeros_like(points)
-        for k in range(3):
-            smooth = self._smooth[corners[:, k]]
-            is_sharp = np.einsum("ij,ij->i", smooth, flat) < _SHARP
-            total += weights[:, k, None] * np.where(is_sharp[:, None], flat, smooth)
-        length = np.linalg.norm(total, axis=1, keepdims=True)
-        normals: FloatArray = np.divide(total, length, out=flat.copy(), where=length > 0)
-        return normals
+def _numbered(triangle: Hits, n_triangles: int) -> tuple[IntArray, Hits]:
+    """Which triangles there are among some (n,), and the position of each one there: as `numpy.unique`, unsorted."""
+    is_seen = np.zeros(n_triangles, dtype=bool)
+    is_seen[triangle] = True
+    seen = np.flatnonzero(is_seen)
+    number = np.empty(n_triangles, dtype=np.int32)
+    number[seen] = np.arange(len(seen), dtype=np.int32)
+    return seen, number[triangle]
 
 
-def _smooth_normals(mesh: TriangleMesh) -> FloatArray:
+def _light(normals: Colours) -> Colours:
+    """Light (n,) on surfaces by their normals (3, n) in the camera's axes, of any length."""
+    x, y, z = normals
+    scale = 1 / np.sqrt(np.maximum(x * x + y * y + z * z, _TINY))
+    light: Colours = np.full_like(scale, _AMBIENT)
+    for direction, strength in _LIGHTS:
+        right, up, towards = (strength / np.linalg.norm(direction) * np.array(direction)).astype(np.float32)
+        light += np.maximum(right * x + up * y + towards * z, 0) * scale
+    return light
+
+
+def _smooth_normals(mesh: TriangleMesh, flat: FloatArray) -> FloatArray:
     """Mean normal (n_vertices, 3) of the triangles around each vertex, weighted by their angle there.
 
     The angle, unlike the area, does not depend on how a flat side was cut into triangles, so that an edge between
     two flat sides is recognised as sharp from both.
     """
-    flat = triangle_normals(mesh.vertices, mesh.triangles)
+    corners = mesh.triangles.T
+    sides = [unit(mesh.vertices[corners[(k + 1) % 3]] - mesh.vertices[corners[k]]) for k in range(3)]
     total = np.zeros_like(mesh.vertices)
     for k in range(3):
-        here, after, before = (mesh.vertices[mesh.triangles[:, (k + step) % 3]] for step in range(3))
-        cosine = np.einsum("ij,ij->i", unit(after - here), unit(before - here))
+        cosine = -np.einsum("ij,ij->i", sides[k], sides[k - 1])
         vectors = np.arccos(np.clip(cosine, -1.0, 1.0))[:, None] * flat
         for axis in range(3):
-            total[:, axis] += np.bincount(mesh.triangles[:, k], vectors[:, axis], minlength=len(total))
+            total[:, axis] += np.bincount(corners[k], vectors[:, axis], minlength=len(total))
     return unit(total)
-
-
-def _barycentric(points: Vertices, a: Vertices, b: Vertices, c: Vertices) -> FloatArray:
-    """Weights (n, 3) of the corners for points in the planes of triangles; equal where a triangle has no area."""
-    u, v, w = b - a, c - a, points - a
-    uu, uv, vv, uw, vw = (np.einsum("ij,ij->i", one, other) for one, other in ((u, u), (u, v), (v, v), (u, w), (v, w)))
-    square = uu * vv - uv**2
-    none = np.full(len(points), 1 / 3)
-    of_b = np.divide(vv * uw - uv * vw, square, out=none.copy(), where=square > 0)
-    of_c = np.divide(uu * vw - uv * uw, square, out=none, where=square > 0)
-    return np.stack([1 - of_b - of_c, of_b, of_c], axis=1)
-
-
-def _differs_from_neighbours(picture: FloatArray) -> BoolArray:
-    """Tell pixels (rows, columns) of which some colour is not that of the next one in the row or column."""
-    differs = np.zeros(picture.shape[:2], dtype=bool)
-    for channel in np.moveaxis(picture, 2, 0):
-        across = np.abs(np.diff(channel, axis=1)) > _EDGE
-        along = np.abs(np.diff(channel, axis=0)) > _EDGE
-        differs[:, 1:] |= across
-        differs[:, :-1] |= across
-        differs[1:] |= along
-        differs[:-1] |= along
-    return differs

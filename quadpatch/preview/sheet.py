@@ -7,9 +7,10 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 from quadpatch.preview.camera import Camera
-from quadpatch.preview.pair import TINT, Pair, prepare
-from quadpatch.preview.parts import filled_holes, main_pieces, part_of
+from quadpatch.preview.pair import TINT, Pair, filled_pair
+from quadpatch.preview.parts import filled_holes, part_of
 from quadpatch.preview.png import to_pixels, write_png
+from quadpatch.preview.sampling import Colours
 from quadpatch.preview.shading import BACK, CLAY
 from quadpatch.preview.thinning import MOST_TRIANGLES, thinned
 from quadpatch.preview.viewpoints import close_ups, overview
@@ -47,33 +48,32 @@ class Sheet:
         """Write a line of text at the top of the row."""
         self.pen.text((left, self.top), text, font=ImageFont.load_default(size), fill=colour)
 
-    def paste(self, picture: FloatArray, left: int) -> None:
+    def paste(self, picture: FloatArray | Colours, left: int) -> None:
         """Paste a picture (rows, columns, 3) of 0..1 at the top of the row."""
         self.image.paste(Image.fromarray(to_pixels(picture)), (left, self.top))
 
 
-def render_before_after(before: TriangleMesh, after: TriangleMesh, invented: BoolArray, path: Path) -> None:
+def render_before_after(mesh: TriangleMesh, invented: BoolArray, path: Path) -> None:
     """Draw a mesh before and after its repair, and its largest holes in close-up, as a PNG file.
 
     Parameters
     ----------
-    before, after : TriangleMesh
-        In the same place.
-    invented : (n_triangles of `after`,) bool
-        True for the triangles that were not measured: they are tinted.
+    mesh : TriangleMesh
+        Repaired; triangles that touch share their vertices.
+    invented : (n_triangles,) bool
+        True for the triangles that were not measured: the mesh before is without them, afterwards they are tinted.
     path : Path
 
     Raises
     ------
     EmptyMeshError
-        If `after` has no triangle of any area.
+        If the mesh has no triangle of any area.
     """
-    is_large = len(after.triangles) > MOST_TRIANGLES
-    if is_large:
-        largest = [part_of(after, hole).corners for hole in filled_holes(after, invented, N_CANDIDATES)]
-        before, (after, kept) = thinned(before, largest)[0], thinned(after, largest)
+    if len(mesh.triangles) > MOST_TRIANGLES:
+        largest = [part_of(mesh, hole).corners for hole in filled_holes(mesh, invented, N_CANDIDATES)]
+        mesh, kept = thinned(mesh, largest)
         invented = invented[kept]
-    pair = prepare(before, after, invented, is_joined=is_large)
+    pair = filled_pair(mesh, invented)
     holes = [part_of(pair.after, hole) for hole in filled_holes(pair.after, invented, N_CANDIDATES)]
     camera = overview_camera(pair, invented)
     cameras = close_ups(pair.scene, holes, camera, N_CLOSE_UPS)
@@ -95,9 +95,8 @@ def blank_sheet(*, has_close_ups: bool) -> Sheet:
 
 def overview_camera(pair: Pair, invented: BoolArray) -> Camera:
     """Look at the whole mesh from where most of some of its triangles show."""
-    whole = part_of(pair.after, main_pieces(pair.after))
     filled = part_of(pair.after, np.flatnonzero(invented)) if invented.any() else None
-    return overview(pair.scene, whole, filled, _PANEL[0] / _PANEL[1])
+    return overview(pair.scene, pair.whole, filled, _PANEL[0] / _PANEL[1])
 
 
 def draw_overview(sheet: Sheet, pair: Pair, camera: Camera) -> None:
@@ -106,8 +105,9 @@ def draw_overview(sheet: Sheet, pair: Pair, camera: Camera) -> None:
     sheet.write("before", left, 17, _INK)
     sheet.write("after", right, 17, _INK)
     sheet.top += _CAPTION_HEIGHT
-    sheet.paste(pair.old.draw(camera, _PANEL), left)
-    sheet.paste(pair.new.draw(camera, _PANEL), right)
+    before, after = pair.draw(camera, _PANEL)
+    sheet.paste(before, left)
+    sheet.paste(after, right)
     sheet.top += _PANEL[1] + _GAP
 
 
@@ -119,8 +119,9 @@ def draw_close_ups(sheet: Sheet, pair: Pair, cameras: list[Camera]) -> None:
     sheet.top += _CAPTION_HEIGHT
     for k, camera in enumerate(cameras):
         left = _MARGIN + k * group_width
-        sheet.paste(pair.old.draw(camera, _TILE), left)
-        sheet.paste(pair.new.draw(camera, _TILE), left + _TILE[0] + _PAIR_GAP)
+        before, after = pair.draw(camera, _TILE)
+        sheet.paste(before, left)
+        sheet.paste(after, left + _TILE[0] + _PAIR_GAP)
     sheet.top += _TILE[1] + _GAP
 
 

@@ -25,7 +25,7 @@ _INSIDE_OUT = 1.5
 def overview(scene: RayScene, whole: Part, invented: Part | None, aspect: float) -> Camera:
     """Look at the whole mesh from where most of the invented surface shows, and more of its outside than inside."""
     directions = spread_directions(_N_DIRECTIONS)
-    outside, inside = visible_areas(scene, whole, directions), visible_areas(scene, _flipped(whole), directions)
+    outside, inside = visible_areas(scene, whole, directions), visible_areas(scene, whole.flipped(), directions)
     score = _OUTSIDE * _relative(outside) + _INSIDE * inside / max(outside.max(), inside.max(), _tiny())
     score += _STEEP * (directions @ UP) ** 2
     if invented is not None:
@@ -62,8 +62,8 @@ def _close_up(scene: RayScene, hole: Part, like: Camera) -> tuple[Camera, float]
 
 def is_inside_out(scene: RayScene, whole: Part) -> bool:
     """Whether someone outside mostly sees the inside of the surface."""
-    directions = spread_directions(_N_DIRECTIONS // 4)
-    outside, inside = (visible_areas(scene, part, directions).sum() for part in (whole, _flipped(whole)))
+    directions = spread_directions(_N_DIRECTIONS // 8)
+    outside, inside = (visible_areas(scene, part, directions).sum() for part in (whole, whole.flipped()))
     return bool(inside > _INSIDE_OUT * outside)
 
 
@@ -91,9 +91,8 @@ def visible_areas(scene: RayScene, part: Part, directions: FloatArray, clearance
     outwards = np.divide(part.area_vectors, length, out=np.zeros_like(part.area_vectors), where=length > 0)
     # Off the surface, or every point would hide itself.
     start = part.centres + 10 * scene.resolution * outwards
-    hit, distance = scene.cast(start[triangle], directions[direction])
-    is_clear = (hit < 0) | (distance > clearance)
-    shown = facing[triangle, direction] * is_clear
+    is_hidden = scene.is_hidden(start[triangle], directions[direction], clearance)
+    shown = facing[triangle, direction] * ~is_hidden
     return np.asarray(np.bincount(direction, weights=shown, minlength=len(directions)), dtype=np.float64)
 
 
@@ -104,10 +103,6 @@ def spread_directions(count: int) -> FloatArray:
     azimuth = k * np.pi * (3 - np.sqrt(5))
     radius = np.sqrt(1 - height**2)
     return np.stack([radius * np.sin(azimuth), height, radius * np.cos(azimuth)], axis=1)
-
-
-def _flipped(part: Part) -> Part:
-    return Part(part.corners, part.centres, -part.area_vectors)
 
 
 def _relative(areas: FloatArray) -> FloatArray:

@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from quadpatch.preview.camera import view_of
+from quadpatch.preview.camera import View, view_of
 from quadpatch.types import FloatArray
 
 
@@ -55,9 +55,13 @@ def test_a_view_like_another_is_turned_the_shortest_way(seed: int) -> None:
 def test_rays_of_the_pixel_grid_start_in_front_of_all_points() -> None:
     points = np.random.default_rng(0).normal(size=(20, 3))
     camera = view_of(points, unit(np.array([1.0, 2, 3])), 2.0)
-    origins = camera.ray_origins(np.array([0.0, 50, 100]), np.array([0.0, 25, 50]), (100, 50))
+    view = View(camera, (100, 50))
+    origins = np.array([[1.0, 0, 0], [1, 50, 25], [1, 100, 50]]) @ view.plane
     assert (origins @ camera.towards).min() >= (points @ camera.towards).max()
     np.testing.assert_allclose(origins[1] - camera.clearance * camera.towards, camera.centre, atol=1e-12)
+    columns, rows = view.places(origins)
+    np.testing.assert_allclose(columns, [0, 50, 100], atol=1e-9)
+    np.testing.assert_allclose(rows, [0, 25, 50], atol=1e-9)
     # The first pixel is at the upper left.
     assert (origins[0] - camera.centre) @ camera.right == pytest.approx(-camera.width / 2)
     assert (origins[0] - camera.centre) @ camera.up == pytest.approx(camera.width / 4)

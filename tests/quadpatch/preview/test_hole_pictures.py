@@ -6,7 +6,7 @@ from PIL import Image
 
 from quadpatch.mesh.holes import find_holes
 from quadpatch.preview.hole_pictures import NumberedHole, draw_hole, mean_normal
-from quadpatch.preview.pair import TINT, Pair, prepare
+from quadpatch.preview.pair import TINT, Pair, filled_pair
 from quadpatch.preview.shading import BACK
 from quadpatch.types import FloatArray, TriangleMesh
 from tests.quadpatch.preview.test_sheet import share_of_hue
@@ -28,7 +28,7 @@ def ball_with_a_hole() -> tuple[TriangleMesh, Pair, NumberedHole]:
     is_new = closed.vertices[closed.triangles].mean(axis=1) @ DIRECTION > 0.95
     order = np.argsort(is_new, kind="stable")
     after = TriangleMesh(closed.vertices, closed.triangles[order])
-    return before, prepare(before, after, is_new[order]), NumberedHole(7, before.vertices[hole.loop])
+    return before, filled_pair(after, is_new[order]), NumberedHole(7, before.vertices[hole.loop])
 
 
 def picture(path: Path) -> FloatArray:
@@ -92,10 +92,9 @@ def test_a_hole_without_extent_is_drawn_all_the_same(tmp_path: Path) -> None:
 
 def test_a_surface_turned_inside_out_is_seen_from_outside(tmp_path: Path) -> None:
     before, pair, hole = ball_with_a_hole()
-    turned = TriangleMesh(before.vertices, before.triangles[:, ::-1])
     after = TriangleMesh(pair.after.vertices, pair.after.triangles[:, ::-1])
     invented = np.arange(len(after.triangles)) >= len(before.triangles)
-    inside_out = prepare(turned, after, invented)
+    inside_out = filled_pair(after, invented)
     assert inside_out.is_flipped
     (tmp_path / "turned.png").write_bytes(draw_hole(inside_out, NumberedHole(7, hole.rim[::-1])))
     assert share_of_hue(picture(tmp_path / "turned.png"), TINT) > 0.04

@@ -1,3 +1,5 @@
+"""Tests `quadpatch.preview.facets` and `quadpatch.preview.sampling` as well."""
+
 import numpy as np
 import pytest
 
@@ -29,7 +31,7 @@ def draw(mesh: TriangleMesh, camera: Camera = FRONT, size: tuple[int, int] = (80
 
 
 def is_background(picture: FloatArray) -> FloatArray:
-    return np.asarray(np.abs(picture - BACKGROUND).max(axis=2) < 1e-9)
+    return np.asarray(np.abs(picture - BACKGROUND).max(axis=2) < 1e-6)
 
 
 def test_a_square_covers_its_pixels_and_no_other() -> None:
@@ -79,8 +81,21 @@ def test_pixels_on_the_silhouette_are_mixed() -> None:
 def test_repeated_vertices_are_shaded_as_one() -> None:
     mesh = sphere(20)
     apart = TriangleMesh(mesh.vertices[mesh.triangles].reshape(-1, 3), np.arange(mesh.triangles.size).reshape(-1, 3))
-    np.testing.assert_allclose(draw(apart), draw(mesh), atol=1e-9)
+    np.testing.assert_allclose(draw(apart), draw(mesh), atol=1e-6)
 
 
 def test_a_mesh_without_triangles_is_all_background() -> None:
     assert is_background(draw(TriangleMesh(np.zeros((0, 3)), np.zeros((0, 3), dtype=np.int64)))).all()
+
+
+def test_triangles_smaller_than_pixels_are_shaded_like_larger_ones() -> None:
+    large, small = (draw(sphere(n), size=(60, 60))[20:40, 20:40] for n in (40, 150))
+    np.testing.assert_allclose(small, large, atol=0.02)
+
+
+@pytest.mark.parametrize("width", [0.0, 1e-9, 1e-6, 1e-3])
+def test_a_sliver_in_a_plane_is_not_seen(width: float) -> None:
+    strip = np.array([[-1.0, -1, 0], [1, -1, 0], [1, 0, 0], [-1, width, 0], [-1, 1, 0], [1, 1, 0]])
+    plane = TriangleMesh(strip, np.array([[0, 1, 2], [0, 2, 3], [3, 2, 5], [3, 5, 4]]))
+    inside = draw(plane)[22:58, 22:58]
+    np.testing.assert_allclose(inside, np.broadcast_to(inside[0, 0], inside.shape), atol=1e-4)
