@@ -21,6 +21,7 @@ from quadpatch.preview.sheet import (
     draw_overview,
     overview_camera,
 )
+from quadpatch.preview.thinning import MOST_TRIANGLES, thinned
 from quadpatch.preview.viewpoints import close_ups
 from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh
 
@@ -48,7 +49,12 @@ def render_comparison(before: TriangleMesh, after: TriangleMesh, change: BoolArr
     """
     is_drawn = _is_finite(after)
     change = change[is_drawn]
-    pair = moved_pair(_drawn(before), _drawn(after), change)
+    before, after = _drawn(before), _drawn(after)
+    is_large = len(after.triangles) > MOST_TRIANGLES
+    if is_large:
+        before, (after, kept) = thinned(before, [])[0], thinned(after, [])
+        change = change[kept]
+    pair = moved_pair(before, after, change, is_joined=is_large)
     changed = np.asarray(change > 0)
     camera = overview_camera(pair, changed)
     places = [part_of(pair.after, triangles) for triangles in changed_places(pair.after, change, N_CANDIDATES)]

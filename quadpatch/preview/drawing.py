@@ -12,12 +12,14 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.formats.output_files import write_whole
 from quadpatch.mesh.holes import Hole
 from quadpatch.preview.comparison import render_comparison
 from quadpatch.preview.hole_pictures import NumberedHole, draw_hole
 from quadpatch.preview.pair import Pair, filled_pair
 from quadpatch.preview.sheet import render_before_after
+from quadpatch.preview.thinning import MOST_TRIANGLES, thinned
 from quadpatch.progress import Progress, no_progress
 from quadpatch.repair import RepairedFile
 from quadpatch.stages import failure_of, peak_memory_mib
@@ -145,7 +147,7 @@ def _draw_each(
     warnings = repaired.report["warnings"]
     if not holes:
         return
-    failure = failure_of(lambda: pairs.append(filled_pair(filled.mesh, filled.invented_triangles)))
+    failure = failure_of(lambda: pairs.append(_pair_around(filled, holes)))
     if failure is not None:
         warnings.append(f"there are no close-ups: {failure}")
         return
@@ -154,6 +156,15 @@ def _draw_each(
             return
         progress("closeups", i / len(holes))
         warnings += _close_up(pairs[0], repaired, hole, save)
+
+
+def _pair_around(filled: FilledMesh, holes: list[Hole]) -> Pair:
+    """Make a repair ready for pictures of some of its holes."""
+    mesh, invented = filled.mesh, filled.invented_triangles
+    if len(mesh.triangles) > MOST_TRIANGLES:
+        mesh, kept = thinned(mesh, [mesh.vertices[hole.loop] for hole in holes])
+        invented = invented[kept]
+    return filled_pair(mesh, invented)
 
 
 def _close_up(pair: Pair, repaired: RepairedFile, hole: Hole, save: Callable[[str, bytes], None]) -> list[str]:

@@ -85,7 +85,9 @@ def filled_pair(after: TriangleMesh, invented: BoolArray) -> Pair:
     return Pair(scene, after, whole, is_flipped, new.without(invented), new, differs)
 
 
-def moved_pair(before: TriangleMesh, after: TriangleMesh, change: BoolArray | FloatArray) -> Pair:
+def moved_pair(
+    before: TriangleMesh, after: TriangleMesh, change: BoolArray | FloatArray, *, is_joined: bool = False
+) -> Pair:
     """Make a mesh before and after a task ready to be drawn.
 
     Parameters
@@ -94,6 +96,8 @@ def moved_pair(before: TriangleMesh, after: TriangleMesh, change: BoolArray | Fl
         In the same place.
     change : (n_triangles of `after`,) bool or float64
         What is tinted; 0..1 for how strongly.
+    is_joined : bool
+        See `quadpatch.preview.shading.Clay`.
 
     Raises
     ------
@@ -103,9 +107,9 @@ def moved_pair(before: TriangleMesh, after: TriangleMesh, change: BoolArray | Fl
     scene, whole, is_flipped = _surveyed(after)
     if is_flipped:
         before, after = _flipped(before), _flipped(after)
-    old = Clay(before, RayScene(before), np.tile(CLAY, (len(before.triangles), 1)))
+    old = Clay(before, RayScene(before), np.tile(CLAY, (len(before.triangles), 1)), is_joined=is_joined)
     share = change.astype(np.float64)[:, None]
-    new = Clay(after, scene, (1 - share) * CLAY + share * TINT)
+    new = Clay(after, scene, (1 - share) * CLAY + share * TINT, is_joined=is_joined)
     return Pair(scene, after, whole, is_flipped, old, new, np.ones(len(after.triangles) + 1, dtype=bool))
 
 
