@@ -192,7 +192,7 @@ def _enough_of_each(hole: IntArray, n_holes: int) -> IntArray:
     count = np.bincount(hole, minlength=n_holes)
     rank = np.arange(len(hole)) - np.repeat(np.cumsum(count) - count, count)
     step = np.maximum(count // _POINTS_PER_HOLE, 1)
-    return order[rank % step[hole[order]] == 0]
+    return np.asarray(order[rank % step[hole[order]] == 0])
 
 
 def distance_per_hole(calibration: CalibrationSet, filled: FilledMesh) -> FloatArray:
