@@ -41,7 +41,7 @@ def test_measured_vertices_and_faces_keep_their_bits_and_their_order(
 
 
 @pytest.mark.parametrize(
-    ("method", "name"), [("dictionary", "general-paper@1"), ("cnn", "general-small_4x@1")], ids=["dictionary", "cnn"]
+    ("method", "name"), [("dictionary", "general-paper@1"), ("cnn", "general-small_4x@2")], ids=["dictionary", "cnn"]
 )
 def test_the_recipe_of_the_paper_works_where_no_model_is_named(
     client: Client, relief_file: Callable[[str], Path], tmp_path: Path, method: str, name: str
