@@ -11,7 +11,8 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from quadpatch.mesh.holes import Hole
-from quadpatch.mesh.normals import length, normals_at
+from quadpatch.mesh.loops import by_length, laid_out
+from quadpatch.mesh.normals import cross, length, normals_at
 from quadpatch.mesh.pieces import find_pieces
 from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Vertices
 
@@ -87,8 +88,12 @@ def hosts_of(mesh: TriangleMesh, holes: list[Hole], hosts: list[Hole], most: int
     """
     if len(holes) < 2 or not hosts:
         return {}
-    centres = np.array([mesh.vertices[hole.loop].mean(axis=0) for hole in holes])
+    centres = _centres(mesh.vertices, [hole.loop for hole in holes])
     tree, diameters = cKDTree(centres), np.array([hole.diameter for hole in holes])
+    ids = np.array([hole.id for hole in hosts])
+    # Most holes have no other loop near them.
+    n_near = tree.query_ball_point(centres[ids], diameters[ids] / 2, return_length=True)
+    hosts = [hosts[i] for i in np.flatnonzero(n_near > 1).tolist()]
     is_open = np.array([hole.is_manifold for hole in holes])
     found: dict[int, list[int]] = {}
     sides: _Sides | None = None
@@ -129,11 +134,10 @@ class _Sides:
         counts = np.array([len(hole.loop) for hole in holes])
         at_rims = normals_at(mesh.vertices, mesh.triangles, np.concatenate([hole.loop for hole in holes]))
         means = np.add.reduceat(at_rims, np.cumsum(counts) - counts, axis=0) / counts[:, np.newaxis]
-        spokes = [mesh.vertices[hole.loop] - centre for hole, centre in zip(holes, centres, strict=True)]
         return cls(
             find_pieces(mesh, []).of_vertex[[hole.loop[0] for hole in holes]],
             means,
-            np.array([np.cross(spoke, np.roll(spoke, -1, axis=0)).sum(axis=0) for spoke in spokes]),
+            _vector_areas(mesh.vertices, [hole.loop for hole in holes], centres),
         )
 
     def may_lie_in(self, rim: int, islands: IntArray) -> BoolArray:
@@ -144,6 +148,23 @@ class _Sides:
         # A rim runs clockwise around its hole, the border of an island counter-clockwise around its surface.
         runs_rightly = (self.areas[rim] @ own < 0) & (self.areas[islands] @ own > 0)
         return np.asarray(agree & runs_rightly & (self.piece[islands] != self.piece[rim]))
+
+
+def _centres(vertices: Vertices, loops: list[IntArray]) -> FloatArray:
+    """Mean of the vertices of each loop, (n_loops, 3)."""
+    points, centres = vertices[np.concatenate(loops)], np.zeros((len(loops), 3))
+    for members, places in by_length(laid_out(loops)[0]):
+        centres[members] = points[places].mean(axis=1)
+    return centres
+
+
+def _vector_areas(vertices: Vertices, loops: list[IntArray], centres: FloatArray) -> FloatArray:
+    """Vector area of each loop, twice: (n_loops, 3)."""
+    points, areas = vertices[np.concatenate(loops)], np.zeros((len(loops), 3))
+    for members, places in by_length(laid_out(loops)[0]):
+        spokes = points[places] - centres[members][:, np.newaxis]
+        areas[members] = cross(spokes, np.roll(spokes, -1, axis=1)).sum(axis=1)
+    return areas
 
 
 def _lies_in(vertices: Vertices, normal: FloatArray, rim: IntArray, island: IntArray) -> bool:

@@ -10,9 +10,9 @@ from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.filling.refinement import Refined
 from quadpatch.filling.triangulation import EdgeSet, Forbidden, triangulate_loops
 from quadpatch.mesh.intersections import LEAST_HEIGHT, heights
+from quadpatch.mesh.loops import cut_at, laid_out
 from quadpatch.mesh.normals import length, triangle_normals, unit, vertex_normals
-from quadpatch.mesh.rims import laid_out
-from quadpatch.mesh.topology import directed_edges
+from quadpatch.mesh.topology import compacted, directed_edges, edges_found
 from quadpatch.types import FloatArray, IntArray, TriangleMesh, Triangles
 
 # The minimum variation surface asks for the Laplacian at the rim and at one ring of vertices outside it, and that for
@@ -63,12 +63,11 @@ class RimNeighbourhood:
     @classmethod
     def of(cls, mesh: TriangleMesh, loops: list[IntArray]) -> "RimNeighbourhood":
         """Cut out what the filling reads: nothing in it looks further than two rings from a rim."""
-        rim = np.unique(np.concatenate([np.zeros(0, np.int64), *loops]))
+        rim = np.concatenate([np.zeros(0, np.int64), *loops])
         near = triangles_around(mesh.triangles, rim, len(mesh.vertices), _RINGS)
-        used, local = np.unique(mesh.triangles[near], return_inverse=True)
-        adjacent_triangles = local.reshape(-1, 3)
+        used, adjacent_triangles = compacted(mesh.triangles[near], len(mesh.vertices))
         centre = mesh.vertices[used].mean(axis=0) if len(used) else np.zeros(3)
-        local_loops = [np.searchsorted(used, loop) for loop in loops]
+        local_loops = cut_at(np.searchsorted(used, rim), laid_out(loops)[0])
         edges = EdgeSet(directed_edges(adjacent_triangles))
         return cls(mesh, used, centre, mesh.vertices[used] - centre, adjacent_triangles, local_loops, edges)
 
@@ -89,7 +88,8 @@ class RimNeighbourhood:
         is_tip = np.zeros(len(self.vertices), bool)
         is_tip[tip[is_between]] = True
         loops, taken = list(self.loops), list[Corner]()
-        for i in np.flatnonzero([is_tip[loop].any() for loop in loops]).tolist():
+        owner = np.repeat(np.arange(len(loops)), [len(loop) for loop in loops])
+        for i in np.unique(owner[is_tip[np.concatenate(loops)]]).tolist():
             loops[i] = _without_flat_corners(loops[i], flat, taken)
         return replace(self, loops=loops, flat_corners=np.array(taken, np.int64).reshape(-1, 3))
 
@@ -133,7 +133,8 @@ class RimNeighbourhood:
         unfilled : list of int
             Positions of loops that have no triangulation.
         """
-        rim_normals = _rim_normals(self.vertices, self.adjacent_triangles, self.loops)
+        at_rims = _rim_normals(self.vertices, self.adjacent_triangles, self.loops)
+        rim_normals = cut_at(at_rims, laid_out(self.loops)[0])
         flat = triangulate_loops(self.loops, self.vertices, rim_normals, forbidden or Forbidden(self.edges))
         found = [(i, triangles) for i, triangles in enumerate(flat) if triangles is not None]
         unfilled = [i for i, triangles in enumerate(flat) if triangles is None]
@@ -209,21 +210,19 @@ def _without_flat_corners(loop: IntArray, flat: set[Corner], taken: list[Corner]
     return np.array(vertices, np.int64)
 
 
-def _rim_normals(vertices: FloatArray, adjacent_triangles: Triangles, loops: list[IntArray]) -> list[FloatArray]:
-    """Look up the unit normals of the faces at the rim edges of every loop; a bridge lies between its neighbours'."""
-    normals = triangle_normals(vertices, adjacent_triangles)
-    edges = directed_edges(adjacent_triangles)
-    keys = edges[:, 0] * np.int64(len(vertices)) + edges[:, 1]
-    order = np.argsort(keys)
-    found = []
-    for loop in loops:
-        wanted = loop * np.int64(len(vertices)) + np.roll(loop, -1)
-        at = order[np.searchsorted(keys, wanted, sorter=order).clip(max=len(keys) - 1)]
-        of_loop = normals[at // 3]
-        bridge = keys[at] != wanted
-        if bridge.any():
-            of_loop[bridge] = 0.0
-            between = np.roll(of_loop, 1, axis=0) + np.roll(of_loop, -1, axis=0)
-            of_loop[bridge] = unit(between[bridge])
-        found.append(of_loop)
-    return found
+def _rim_normals(vertices: FloatArray, adjacent_triangles: Triangles, loops: list[IntArray]) -> FloatArray:
+    """Look up the unit normals (n, 3) of the faces at the edges of loops that are laid end to end.
+
+    A bridge lies between its neighbours'.
+    """
+    _, following = laid_out(loops)
+    start = np.concatenate([np.zeros(0, np.int64), *loops])
+    at = edges_found(adjacent_triangles, start, start[following], len(vertices))
+    normals = triangle_normals(vertices, adjacent_triangles)[at // 3]
+    bridges = np.flatnonzero(at < 0)
+    if len(bridges):
+        normals[bridges] = 0.0
+        before = np.empty_like(following)
+        before[following] = np.arange(len(following))
+        normals[bridges] = unit(normals[before[bridges]] + normals[following[bridges]])
+    return normals

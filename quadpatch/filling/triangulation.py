@@ -14,6 +14,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from quadpatch.filling.division import RimLoop, divide
+from quadpatch.mesh.loops import by_length, laid_out
 from quadpatch.mesh.normals import cross, length
 from quadpatch.mesh.topology import directed_edges, edge_keys
 from quadpatch.types import BoolArray, FloatArray, IntArray, Triangles, Vertices
@@ -120,7 +121,7 @@ def _joined(parts: list[Triangles | None]) -> Triangles | None:
     found = [part for part in parts if part is not None]
     if not found or len(found) < len(parts):
         return None
-    triangles = np.concatenate(found)
+    triangles = found[0] if len(found) == 1 else np.concatenate(found)
     if len(found) == 1 and len(set(triangles.ravel().tolist())) == len(triangles) + 2:
         # No vertex comes twice: chords that do not cross are all different.
         return triangles
@@ -130,11 +131,11 @@ def _joined(parts: list[Triangles | None]) -> Triangles | None:
 
 def _clashing(found: list[Triangles | None]) -> list[int]:
     """Positions of triangulations with a chord that an earlier one has."""
-    owned = [(i, directed_edges(triangles)) for i, triangles in enumerate(found) if triangles is not None]
+    owned = [(i, triangles) for i, triangles in enumerate(found) if triangles is not None]
     if not owned:
         return []
-    owner = np.repeat([i for i, _ in owned], [len(edges) for _, edges in owned])
-    edges = np.concatenate([edges for _, edges in owned])
+    owner = np.repeat([i for i, _ in owned], [3 * len(triangles) for _, triangles in owned])
+    edges = directed_edges(np.concatenate([triangles for _, triangles in owned]))
     keys = edge_keys(edges, int(edges.max()) + 1)
     # The sort is stable, so the first of several equal keys is that of the first owner.
     _, first, of_edge = np.unique(keys, return_index=True, return_inverse=True)
@@ -145,16 +146,16 @@ def _by_length(
     loops: list[IntArray], vertices: Vertices, rim_normals: list[FloatArray], forbidden: Forbidden
 ) -> list[Triangles | None]:
     """Triangulate loops in batches of one length."""
+    if not loops:
+        return []
     result: list[Triangles | None] = [None] * len(loops)
-    by_length: dict[int, list[int]] = {}
-    for i, loop in enumerate(loops):
-        by_length.setdefault(len(loop), []).append(i)
-    for members in by_length.values():
-        batch = np.stack([loops[i] for i in members])
-        normals = np.stack([rim_normals[i] for i in members])
-        corners, finite = _minimum_weight(vertices[batch], normals, batch, forbidden)
-        for i, local, found in zip(members, corners, finite, strict=True):
-            result[i] = loops[i][local] if found else None
+    laid, laid_normals = np.concatenate(loops), np.concatenate(rim_normals)
+    for members, places in by_length(laid_out(loops)[0]):
+        batch = laid[places]
+        corners, finite = _minimum_weight(vertices[batch], laid_normals[places], batch, forbidden)
+        triangles = batch[np.arange(len(batch))[:, np.newaxis, np.newaxis], corners]
+        for row in np.flatnonzero(finite).tolist():
+            result[members[row]] = triangles[row]
     return result
 
 
@@ -162,7 +163,9 @@ class EdgeSet:
     """Undirected edges of a mesh among some vertices, for "does this edge exist?" in bulk."""
 
     def __init__(self, edges: IntArray) -> None:
-        self._keys = np.unique(self._key(edges))
+        # Faster by far than `numpy.unique`, which hashes.
+        keys = np.sort(self._key(edges))
+        self._keys = keys[np.diff(keys, prepend=-1) != 0]
 
     def with_edges(self, edges: IntArray) -> "EdgeSet":
         """Add edges (n, 2) to a copy of the set."""

@@ -8,9 +8,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from quadpatch.mesh.cycles import plain_cycles
 from quadpatch.mesh.edge_groups import EdgeSurvey, survey_edges
+from quadpatch.mesh.loops import laid_out
 from quadpatch.mesh.measures import once_per_mesh
-from quadpatch.mesh.topology import directed_edges, edge_keys
+from quadpatch.mesh.topology import directed_edges, edge_keys, with_marked_edge
 from quadpatch.types import BoolArray, IntArray, TriangleMesh, Triangles
 
 
@@ -52,13 +54,19 @@ def boundary_loops(triangles: Triangles, survey: EdgeSurvey | None = None) -> Bo
     """
     survey = survey or survey_edges(triangles, int(triangles.max(initial=-1)) + 1)
     edges, is_bad = _boundary_edges(triangles, survey)
-    walks, open_walks = _walk(edges, _exits(triangles, edges))
-    loops = [(loop, True) for walk in walks for loop in _simple_loops(walk)]
+    plain = plain_cycles(edges)
+    edges = edges[~plain.is_plain]
+    walks, chains = _walk(edges, _exits(triangles, edges))
+    simple = [_from_lowest(loop) for walk in walks for loop in _simple_loops(walk)]
     # A chain that can't be closed in the direction of its faces: the faces around it disagree.
-    loops += [(chain, False) for chain in open_walks]
-    loops = [(_from_lowest(loop), good and not is_bad[loop].any()) for loop, good in loops]
-    loops.sort(key=lambda item: tuple(item[0][:2]))
-    return Boundary([loop for loop, _ in loops], [good for _, good in loops])
+    loops = [*plain.cycles, *simple, *(_from_lowest(chain) for chain in chains)]
+    if not loops:
+        return Boundary([], [])
+    starts, vertices = laid_out(loops)[0][:-1], np.concatenate(loops)
+    is_manifold = ~np.logical_or.reduceat(is_bad[vertices], starts)
+    is_manifold[len(loops) - len(chains) :] = False
+    order = np.lexsort((vertices[starts + 1], vertices[starts])).tolist()
+    return Boundary([loops[i] for i in order], is_manifold[order].tolist())
 
 
 def _from_lowest(loop: IntArray) -> IntArray:
@@ -89,19 +97,13 @@ def _boundary_edges(triangles: Triangles, survey: EdgeSurvey) -> tuple[IntArray,
     """
     n_vertices = len(survey.on_boundary)
     marked = survey.on_boundary | survey.on_crowded
-    near = triangles[_with_an_edge(triangles, marked)]
+    near = triangles[with_marked_edge(triangles, marked)]
     edges = directed_edges(near)
     edges = edges[marked[edges].all(axis=1)]
     _, edge, n_faces = np.unique(edge_keys(edges, max(n_vertices, 1)), return_inverse=True, return_counts=True)
     boundary = edges[n_faces[edge] == 1]
     arrivals, departures = (np.bincount(boundary[:, k], minlength=n_vertices) for k in (1, 0))
     return boundary, np.asarray((arrivals != departures) | survey.on_crowded)
-
-
-def _with_an_edge(triangles: Triangles, marked: BoolArray) -> BoolArray:
-    """Which triangles have at least two marked corners, (n_triangles,) bool."""
-    a, b, c = (marked[triangles[:, corner]] for corner in range(3))
-    return np.asarray((a & b) | (b & c) | (c & a))
 
 
 def _exits(triangles: Triangles, edges: IntArray) -> dict[tuple[int, int], int]:
@@ -131,7 +133,7 @@ def _end_of_fan(third: dict[tuple[int, int], int], start: int, at: int) -> int:
 
 
 def _walk(edges: IntArray, exits: dict[tuple[int, int], int]) -> tuple[list[list[int]], list[IntArray]]:
-    """Follow boundary edges head to tail; a Python loop over boundary vertices only."""
+    """Follow boundary edges head to tail: a Python loop over vertices of boundaries that touch others."""
     # The ends to go on to, highest first; a dict finds and drops any one of them, and the last one, in constant time.
     following: dict[int, dict[int, None]] = {}
     for start, end in edges[np.lexsort((-edges[:, 1], edges[:, 0]))].tolist():

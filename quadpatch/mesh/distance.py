@@ -3,6 +3,7 @@
 import igl
 import numpy as np
 
+from quadpatch.mesh.topology import compacted
 from quadpatch.types import FloatArray, IntArray, TriangleMesh, Vertices
 
 
@@ -39,8 +40,8 @@ class DistanceTree:
     """
 
     def __init__(self, mesh: TriangleMesh) -> None:
-        used, local = np.unique(mesh.triangles, return_inverse=True)
-        self._vertices, self._triangles = mesh.vertices[used], local.reshape(-1, 3)
+        used, self._triangles = compacted(mesh.triangles, len(mesh.vertices))
+        self._vertices = mesh.vertices[used]
         self._tree = igl.AABB()
         if len(self._triangles):
             self._tree.init(self._vertices, self._triangles)
@@ -66,6 +67,6 @@ def project(points: Vertices, mesh: TriangleMesh) -> tuple[FloatArray, IntArray,
 
 def _nearest(points: Vertices, mesh: TriangleMesh) -> tuple[FloatArray, IntArray, FloatArray]:
     """Squared distances (n,), triangles (n,) and places (n, 3)."""
-    used, local = np.unique(mesh.triangles, return_inverse=True)
-    found = igl.point_mesh_squared_distance(np.ascontiguousarray(points), mesh.vertices[used], local.reshape(-1, 3))
+    used, local = compacted(mesh.triangles, len(mesh.vertices))
+    found = igl.point_mesh_squared_distance(np.ascontiguousarray(points), mesh.vertices[used], local)
     return found[0], found[1], found[2]

@@ -8,6 +8,7 @@ from quadpatch.mesh.boundary import boundary_loops
 from quadpatch.mesh.edge_groups import EdgeSurvey
 from quadpatch.mesh.hole_kinds import hole_kinds
 from quadpatch.mesh.loop_shapes import LoopShapes, measure_loops, perimeters
+from quadpatch.mesh.loops import laid_out
 from quadpatch.mesh.normals import unit
 from quadpatch.mesh.pieces import find_pieces
 from quadpatch.mesh.rims import Rims, rims_of
@@ -22,7 +23,7 @@ _UP: Vector = (0.0, 0.0, 1.0)
 _LEAST_NORMAL = 0.5
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Hole:
     """One boundary loop.
 
@@ -93,37 +94,30 @@ def find_holes(mesh: TriangleMesh, survey: EdgeSurvey | None = None) -> list[Hol
     boundary = boundary_loops(mesh.triangles, survey)
     if not boundary.loops:
         return []
-    lengths = perimeters(mesh.vertices, boundary.loops)
+    lengths = perimeters(mesh.vertices[np.concatenate(boundary.loops)], laid_out(boundary.loops)[0])
     order = np.argsort(-lengths, kind="stable").tolist()
     loops = [boundary.loops[i] for i in order]
     is_manifold = np.array([boundary.is_manifold[i] for i in order])
     rims = rims_of(mesh, loops)
     shapes = measure_loops(mesh, rims, loops, lengths[order])
     kinds = hole_kinds(mesh.vertices, rims, shapes, find_pieces(mesh, loops), is_manifold)
-    centres = _vectors(rims.sums(_moments(rims)) / np.maximum(rims.sums(rims.lengths), 1e-300)[:, None])
-    normals = _vectors(_facing(shapes, kinds))
-    low = _vectors(np.minimum.reduceat(rims.points, rims.starts[:-1], axis=0))
-    high = _vectors(np.maximum.reduceat(rims.points, rims.starts[:-1], axis=0))
-    areas = np.linalg.norm(shapes.vector_areas, axis=1)
     # The border of a sheet is wider than any hole in it; the rim of a winding hole may well be longer.
-    widest_first = np.argsort(-shapes.diameters, kind="stable").tolist()
-    return [
-        Hole(
-            number,
-            loops[i],
-            float(shapes.perimeters[i]),
-            float(shapes.diameters[i]),
-            float(areas[i]),
-            float(shapes.planarity[i]),
-            bool(is_manifold[i]),
-            kinds[i],
-            centres[i],
-            normals[i],
-            low[i],
-            high[i],
-        )
-        for number, i in enumerate(widest_first)
-    ]
+    widest_first = np.argsort(-shapes.diameters, kind="stable")
+    areas = np.linalg.norm(shapes.vector_areas, axis=1)
+    vectors = (
+        rims.sums(_moments(rims)) / np.maximum(rims.sums(rims.lengths), 1e-300)[:, None],
+        _facing(shapes, kinds),
+        np.minimum.reduceat(rims.points, rims.starts[:-1], axis=0),
+        np.maximum.reduceat(rims.points, rims.starts[:-1], axis=0),
+    )
+    numbers = (shapes.perimeters, shapes.diameters, areas, shapes.planarity, is_manifold)
+    columns = (
+        [loops[i] for i in widest_first.tolist()],
+        *(column[widest_first].tolist() for column in numbers),
+        [kinds[i] for i in widest_first.tolist()],
+        *(_vectors(rows[widest_first]) for rows in vectors),
+    )
+    return [Hole(number, *row) for number, row in enumerate(zip(*columns, strict=True))]
 
 
 def _moments(rims: Rims) -> FloatArray:
@@ -141,4 +135,4 @@ def _facing(shapes: LoopShapes, kinds: list[HoleKind]) -> FloatArray:
 
 
 def _vectors(rows: FloatArray) -> list[Vector]:
-    return [(x, y, z) for x, y, z in rows.tolist()]
+    return list(zip(*rows.T.tolist(), strict=True))

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from quadpatch.mesh.loop_diameter import loop_diameter
+from quadpatch.mesh.loops import by_length
 from quadpatch.mesh.normals import cross, normals_at
 from quadpatch.mesh.rims import Rims
 from quadpatch.types import FloatArray, IntArray, TriangleMesh, Vertices
@@ -49,35 +50,35 @@ class LoopShapes:
         return np.asarray(4 * np.pi * areas / np.maximum(self.perimeters, 1e-150) ** 2)
 
 
-def perimeters(vertices: Vertices, loops: list[IntArray]) -> FloatArray:
-    """Measure closed loops, (n_loops,); a loop's perimeter does not depend on the others."""
+def perimeters(points: Vertices, starts: IntArray) -> FloatArray:
+    """Measure closed loops, (n_loops,), by their points (n, 3), end to end, and where each starts (n_loops + 1,).
+
+    A loop's perimeter does not depend on the others.
+    """
 
     def of_equal(points: FloatArray) -> FloatArray:
         return np.asarray(np.linalg.norm(np.roll(points, -1, axis=1) - points, axis=2).sum(axis=1))
 
-    return _measured(vertices, loops, of_equal)
+    return _measured(points, starts, of_equal)
 
 
-def diameters(vertices: Vertices, loops: list[IntArray]) -> FloatArray:
-    """Measure the largest distances between two vertices of each loop, (n_loops,)."""
+def diameters(points: Vertices, starts: IntArray) -> FloatArray:
+    """Measure the largest distance between two points of each loop, (n_loops,), given as for `perimeters`."""
 
     def of_equal(points: FloatArray) -> FloatArray:
         if points.shape[1] > _SMALL_LOOP:
             return np.array([loop_diameter(of_loop) for of_loop in points])
         return np.asarray(np.linalg.norm(points[:, :, None] - points[:, None], axis=3).max(axis=(1, 2)))
 
-    return _measured(vertices, loops, of_equal)
+    return _measured(points, starts, of_equal)
 
 
-def _measured(vertices: Vertices, loops: list[IntArray], of_equal: Callable[[FloatArray], FloatArray]) -> FloatArray:
+def _measured(points: Vertices, starts: IntArray, of_equal: Callable[[FloatArray], FloatArray]) -> FloatArray:
     """Measure loops that are equally long (k, n, 3) together: scans have a hundred thousand holes of three edges."""
-    result, by_length = np.zeros(len(loops)), dict[int, list[int]]()
-    for i, loop in enumerate(loops):
-        by_length.setdefault(len(loop), []).append(i)
-    for members in by_length.values():
+    result = np.zeros(len(starts) - 1)
+    for members, places in by_length(starts):
         for at in range(0, len(members), _AT_ONCE):
-            part = members[at : at + _AT_ONCE]
-            result[part] = of_equal(vertices[np.stack([loops[i] for i in part])])
+            result[members[at : at + _AT_ONCE]] = of_equal(points[places[at : at + _AT_ONCE]])
     return result
 
 
@@ -106,7 +107,7 @@ def measure_loops(mesh: TriangleMesh, rims: Rims, loops: list[IntArray], lengths
     planarity = np.where(reach > 0, away / np.maximum(reach, 1e-300), 0.0)
     normals = normals_at(mesh.vertices, mesh.triangles, np.concatenate(loops))
     rim_normals = rims.sums(normals) / counts
-    widths = diameters(mesh.vertices, loops)
+    widths = diameters(rims.points, rims.starts)
     return LoopShapes(centres, plane_normals, planarity, widths, lengths, vector_areas, rim_normals)
 
 

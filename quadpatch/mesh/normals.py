@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from quadpatch.mesh.topology import compacted
 from quadpatch.types import FloatArray, IntArray, Triangles, Vertices
 
 _TINY = 1e-300
@@ -26,8 +27,8 @@ def normals_at(vertices: Vertices, triangles: Triangles, wanted: IntArray) -> Fl
     is_wanted = np.zeros(len(vertices), bool)
     is_wanted[wanted] = True
     touched = is_wanted[triangles[:, 0]] | is_wanted[triangles[:, 1]] | is_wanted[triangles[:, 2]]
-    used, local = np.unique(triangles[touched], return_inverse=True)
-    normals = vertex_normals(vertices[used], local.reshape(-1, 3))
+    used, local = compacted(triangles[touched], len(vertices))
+    normals = vertex_normals(vertices[used], local)
     position = np.searchsorted(used, wanted).clip(max=max(len(used) - 1, 0))
     found = np.zeros((len(wanted), 3))
     is_used = used[position] == wanted if len(used) else np.zeros(len(wanted), bool)

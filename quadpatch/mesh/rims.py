@@ -7,8 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from quadpatch.mesh.loops import laid_out
 from quadpatch.mesh.normals import unit
-from quadpatch.mesh.topology import directed_edges
+from quadpatch.mesh.topology import edges_found
 from quadpatch.types import FloatArray, IntArray, TriangleMesh, Triangles, Vertices
 
 
@@ -84,22 +85,7 @@ def rims_of(mesh: TriangleMesh, loops: list[IntArray]) -> Rims:
     )
 
 
-def laid_out(loops: list[IntArray]) -> tuple[IntArray, IntArray]:
-    """Lay loops end to end: where each starts (n_loops + 1,), and which place follows each on its loop (n,)."""
-    starts = np.concatenate([[0], np.cumsum([len(loop) for loop in loops])])
-    following = np.arange(starts[-1]) + 1
-    following[starts[1:] - 1] = starts[:-1]
-    return starts, following
-
-
 def apex_of_edges(triangles: Triangles, start: IntArray, end: IntArray, n_vertices: int) -> IntArray:
-    """Third corner (n,) of a face that passes each edge from start to end, -1 where none does."""
-    rim_vertex = np.zeros(n_vertices, bool)
-    rim_vertex[start] = True
-    near = triangles[rim_vertex[triangles].sum(axis=1) >= 2]
-    edges = directed_edges(near)
-    keys = edges[:, 0] * np.int64(n_vertices) + edges[:, 1]
-    order = np.argsort(keys, kind="stable")
-    wanted = start * np.int64(n_vertices) + end
-    at = order[np.searchsorted(keys, wanted, sorter=order).clip(max=max(len(keys) - 1, 0))]
-    return np.where(keys[at] == wanted, near[at // 3, (at % 3 + 2) % 3], -1)
+    """Third corner (n,) of a face that passes each edge from start to end of a loop, -1 where none does."""
+    at = edges_found(triangles, start, end, n_vertices)
+    return np.where(at >= 0, triangles[at // 3, (at % 3 + 2) % 3], -1)

@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from quadpatch.types import IntArray, Triangles
+from quadpatch.types import BoolArray, IntArray, Triangles
 
 
 def directed_edges(triangles: Triangles) -> IntArray:
@@ -17,6 +17,43 @@ def edge_keys(edges: IntArray, n_vertices: int) -> IntArray:
     """One int64 for every edge, the same in both directions; ``n_vertices`` squared must fit 63 bits."""
     start, end = edges[:, 0], edges[:, 1]
     return np.minimum(start, end) * np.int64(n_vertices) + np.maximum(start, end)
+
+
+def with_marked_edge(triangles: Triangles, marked: BoolArray) -> BoolArray:
+    """Which triangles (n_triangles,) have at least two marked corners."""
+    a, b, c = (marked[triangles[:, corner]] for corner in range(3))
+    return np.asarray((a & b) | (b & c) | (c & a))
+
+
+def edges_found(triangles: Triangles, start: IntArray, end: IntArray, n_vertices: int) -> IntArray:
+    """Find edges (n,) among the directed edges of triangles: positions (n,) as `directed_edges` has them, -1 for none.
+
+    Only triangles with two corners among the starts are looked at; the ends have to be among them.
+    """
+    is_start = np.zeros(n_vertices, bool)
+    is_start[start] = True
+    near = np.flatnonzero(with_marked_edge(triangles, is_start))
+    edges = directed_edges(triangles[near])
+    keys = edges[:, 0] * np.int64(n_vertices) + edges[:, 1]
+    order = np.argsort(keys, kind="stable")
+    wanted = start * np.int64(n_vertices) + end
+    if not len(order):
+        return np.full(len(wanted), -1)
+    at = order[np.searchsorted(keys[order], wanted).clip(max=len(keys) - 1)]
+    return np.where(keys[at] == wanted, 3 * near[at // 3] + at % 3, -1)
+
+
+def compacted(indices: IntArray, n: int) -> tuple[IntArray, IntArray]:
+    """Give new numbers to what some indices below n name: the indices (k,), each once, ascending, and all new numbers.
+
+    The same as `numpy.unique` with its inverse, without its sort.
+    """
+    is_used = np.zeros(n, bool)
+    is_used[indices] = True
+    used = np.flatnonzero(is_used)
+    number = np.empty(n, np.int64)
+    number[used] = np.arange(len(used))
+    return used, number[indices]
 
 
 def components(links: IntArray, n: int) -> IntArray:

@@ -5,7 +5,7 @@ geometric fill, base surface, quads, patches, learning, completion, reconstructi
 """
 
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from quadpatch.filling.islands import JoinedRims, join_islands
 from quadpatch.inpainters.inpainter import Inpainter
 from quadpatch.mesh.edge_groups import EdgeSurvey
 from quadpatch.mesh.holes import Hole, Selection, find_holes, select_holes
+from quadpatch.mesh.loops import cut_at, laid_out
 from quadpatch.mesh.measures import EdgeStatistics, diagonal, edge_statistics, longest_side
 from quadpatch.options import RepairOptions
 from quadpatch.patches.scale import choose_scale, coarse_edge_length, preset_scale
@@ -123,18 +124,18 @@ class _Task:
     inpainter: Inpainter | None
     options: RepairOptions
 
-    @property
+    @cached_property
     def by_model(self) -> BoolArray:
         """Rims (n_loops,) that a model may complete."""
         return _with_action(self.rims, self.selection, "model")
 
-    @property
+    @cached_property
     def wanted(self) -> LoopsToFill:
         """The rims, and how they are to be filled."""
         border = np.array([hole.is_border for hole in self.rims.chosen], bool)
         return LoopsToFill(self.rims.loops, _with_action(self.rims, self.selection, "flat"), border)
 
-    @property
+    @cached_property
     def diameters(self) -> list[float]:
         """Diameters of the rims, in mesh units."""
         return [hole.diameter for hole in self.rims.chosen]
@@ -164,7 +165,8 @@ def _repair(task: _Task, part: RepairRegion, obstacles: Triangles | None, stages
     mesh, rims, inpainter, obstacles = region.mesh, task.rims, task.inpainter, region.local_triangles(obstacles)
     rng = np.random.default_rng(task.options.seed)
     with stages.stage("fill"):
-        wanted = replace(task.wanted, loops=[region.local(loop) for loop in rims.loops])
+        local = region.local(np.concatenate(rims.loops)) if rims.loops else np.zeros(0, np.int64)
+        wanted = replace(task.wanted, loops=cut_at(local, laid_out(rims.loops)[0]))
         share = _share_of_calibration(task)
         calibration = _calibrate(task, mesh, rng, stages.part(0.0, share))
         fill = partial(calibration.blend.fill, reach=stages.part(share, 1.0))

@@ -12,6 +12,7 @@ from scipy.spatial import cKDTree
 from quadpatch.calibration.calibration_set import MARGIN_EDGES, MAX_HOLES
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.filling.region import Region, region_around
+from quadpatch.mesh.loops import laid_out
 from quadpatch.mesh.measures import EdgeStatistics
 from quadpatch.recipes.patch_surfaces import CoarseCopy
 from quadpatch.types import FloatArray, IntArray, TriangleMesh, Triangles, Vertices
@@ -122,12 +123,12 @@ def repair_region(
     """
     if not loops:
         return RepairRegion.all_of(mesh, 0)
-    low = np.array([mesh.vertices[loop].min(axis=0) for loop in loops])
-    high = np.array([mesh.vertices[loop].max(axis=0) for loop in loops])
+    rim, starts = np.concatenate(loops), laid_out(loops)[0][:-1]
+    low, high = (bound.reduceat(mesh.vertices[rim], starts, axis=0) for bound in (np.minimum, np.maximum))
     sizes = np.linalg.norm(high - low, axis=1)
     around = _RINGS * reach.edges.mean + (0.0 if reach.coarse_edge else _PATCHES * reach.patch_length)
     room = _ROOM * (reach.diameter / 2 + MARGIN_EDGES * reach.edges.mean) + around
-    sites = _sites(mesh, np.concatenate(loops), room, MAX_HOLES, rng)
+    sites = _sites(mesh, rim, room, MAX_HOLES, rng)
     if len(sites) < MAX_HOLES:
         return RepairRegion.all_of(mesh, len(loops))
     centres, radii = (low + high) / 2, (0.5 + _BULGE) * sizes + around

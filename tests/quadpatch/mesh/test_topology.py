@@ -2,7 +2,15 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from quadpatch.mesh.topology import components, directed_edges, edge_keys, face_components
+from quadpatch.mesh.topology import (
+    compacted,
+    components,
+    directed_edges,
+    edge_keys,
+    edges_found,
+    face_components,
+    with_marked_edge,
+)
 from tests.quadpatch.shapes import joined, moved, open_grid, sphere
 
 
@@ -42,3 +50,31 @@ def test_faces_that_share_a_vertex_are_in_one_component() -> None:
     np.testing.assert_array_equal(face_components(mesh.triangles, len(mesh.vertices)), expected)
     quads = np.array([[0, 1, 2, 3], [7, 8, 9, 10], [3, 4, 5, 6]])
     np.testing.assert_array_equal(face_components(quads, 11), [0, 1, 0])
+
+
+def test_two_marked_corners_make_a_marked_edge() -> None:
+    marked = np.array([True, True, False, False, True])
+    found = with_marked_edge(np.array([[0, 1, 2], [3, 4, 0], [2, 1, 3], [0, 1, 4]]), marked)
+    assert found.tolist() == [True, True, False, True]
+
+
+@given(seed=st.integers(0, 99))
+def test_directed_edges_are_found_where_they_stand(seed: int) -> None:
+    mesh = open_grid(5)
+    edges = directed_edges(mesh.triangles)
+    wanted = np.random.default_rng(seed).permutation(len(edges))
+    start, end = edges[wanted].T
+    assert edges_found(mesh.triangles, start, end, 25).tolist() == wanted.tolist()
+
+
+def test_an_edge_is_not_found_the_other_way_round_or_without_triangles() -> None:
+    triangle, start, end = np.array([[0, 1, 2]]), np.array([0, 1, 2]), np.array([1, 0, 0])
+    assert edges_found(triangle, start, end, 3).tolist() == [0, -1, 2]
+    assert edges_found(triangle[:0], start, end, 3).tolist() == [-1, -1, -1]
+
+
+@given(st.lists(st.integers(0, 30), max_size=20))
+def test_new_numbers_are_those_of_a_sort(indices: list[int]) -> None:
+    used, numbers = compacted(np.array(indices, np.int64), 31)
+    expected = np.unique(np.array(indices, np.int64), return_inverse=True)
+    assert (used.tolist(), numbers.tolist()) == (expected[0].tolist(), expected[1].tolist())
