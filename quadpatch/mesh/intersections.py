@@ -5,6 +5,7 @@ from igl.copyleft.cgal import remesh_self_intersections
 from scipy.spatial import cKDTree
 
 from quadpatch.mesh.normals import cross, length
+from quadpatch.mesh.topology import compacted
 from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Triangles, Vertices
 
 # A triangle lower than this share of its longest edge is a line in all but name: it has no side to be crossed on.
@@ -16,6 +17,7 @@ _SHRINKAGE = 1e-5
 _ON_SURFACE = 1e-6
 _LEAST_HEIGHT_ON_SURFACE = 1e-3
 _PAIRS_AT_A_TIME = 1_000_000
+_BOXES_AT_A_TIME = 4096
 # Triangles larger than so many mean radii count as large.
 _LARGE = 4.0
 
@@ -68,7 +70,12 @@ def _near_centres(
     if not len(lower) or not n_upper:
         return []
     tree, found = cKDTree(centres[:n_upper]), []
-    n_near = np.cumsum(tree.query_ball_point(centres[lower], radii[lower], return_length=True))
+    n_near = tree.query_ball_point(centres[lower], radii[lower], return_length=True)
+    # Most have no centroid near them but their own.
+    has_others = n_near > (lower < n_upper)
+    lower, n_near = lower[has_others], np.cumsum(n_near[has_others])
+    if not len(lower):
+        return []
     # Few triangles may hold the centroids of all others: as many at a time as memory has room for.
     for part in np.split(lower, np.flatnonzero(np.diff(n_near // _PAIRS_AT_A_TIME)) + 1):
         near = tree.query_ball_point(centres[part], radii[part])
@@ -92,8 +99,8 @@ def _lies_on(points: Vertices, corners: FloatArray) -> BoolArray:
 
 
 def _exact_pairs(vertices: Vertices, triangles: Triangles) -> IntArray:
-    used, local = np.unique(triangles, return_inverse=True)
-    found = remesh_self_intersections(vertices[used], local.reshape(-1, 3), detect_only=True)
+    used, local = compacted(triangles, len(vertices))
+    found = remesh_self_intersections(vertices[used], local, detect_only=True)
     return np.asarray(found[2], np.int64).reshape(-1, 2)
 
 
@@ -133,18 +140,37 @@ def touching_boxes(low: FloatArray, high: FloatArray, mesh: TriangleMesh) -> Boo
     -------
     (n_triangles,) bool
     """
-    corners = mesh.vertices[mesh.triangles]
+    touched = np.zeros(len(mesh.triangles), bool)
+    near = _in_box(low.min(axis=0, initial=np.inf), high.max(axis=0, initial=-np.inf), mesh)
+    corners = mesh.vertices[mesh.triangles[near]]
     centres = corners.mean(axis=1)
     radii = length(corners - centres[:, None]).max(axis=1)
     # Few triangles are far larger than the others; those are taken unseen, or every query would have to reach as far.
     reach = _LARGE * float(radii.mean()) if len(radii) else 0.0
-    touched: BoolArray = radii > reach
-    ordinary = np.flatnonzero(~touched)
+    touched[near[radii > reach]] = True
+    ordinary = np.flatnonzero(radii <= reach)
     if not len(ordinary):
         return touched
-    spheres = cKDTree(centres[ordinary]).query_ball_point((low + high) / 2, length(high - low) / 2 + reach)
-    for box_low, box_high, found in zip(low, high, spheres, strict=True):
-        near = ordinary[found]
-        is_disjoint = (corners[near].min(axis=1) > box_high) | (corners[near].max(axis=1) < box_low)
-        touched[near[~is_disjoint.any(axis=1)]] = True
+    lowest, highest = corners.min(axis=1), corners.max(axis=1)
+    tree, middles, reaches = cKDTree(centres[ordinary]), (low + high) / 2, length(high - low) / 2 + reach
+    for at in range(0, len(low), _BOXES_AT_A_TIME):
+        part = slice(at, at + _BOXES_AT_A_TIME)
+        found = tree.query_ball_point(middles[part], reaches[part], return_sorted=False)
+        box = at + np.repeat(np.arange(len(found)), [len(row) for row in found])
+        triangle = ordinary[np.concatenate(found).astype(np.int64)]
+        is_disjoint = (lowest[triangle] > high[box]) | (highest[triangle] < low[box])
+        touched[near[triangle[~is_disjoint.any(axis=1)]]] = True
     return touched
+
+
+def _in_box(low: FloatArray, high: FloatArray, mesh: TriangleMesh) -> IntArray:
+    """Find the triangles (k,) whose bounding box touches one box, by its corners (3,)."""
+    inside = np.ones(len(mesh.triangles), bool)
+    for axis in range(3):
+        column = mesh.vertices[:, axis]
+        below, above = column < low[axis], column > high[axis]
+        for is_beyond in (below, above):
+            if is_beyond.any():
+                a, b, c = (is_beyond[mesh.triangles[:, corner]] for corner in range(3))
+                inside &= ~(a & b & c)
+    return np.flatnonzero(inside)
