@@ -31,7 +31,7 @@ from quadpatch.report import (
     describe_mesh,
     describe_redundancy,
     json_ready,
-    with_hole_numbers,
+    number_holes,
 )
 from quadpatch.stages import Stages, harmless
 from shared_rules.hole_selection import Choice, choose_holes, join_islands
@@ -124,7 +124,7 @@ def repair_and_keep(
     ]
     repair = replace(repair, warnings=warnings)
     report = build_report(scan, welded, repair, options, card, stages)
-    report = with_hole_numbers(report, scan.next_hole_id if named.suffix.lower() in NUMBERED else None)
+    number_holes(report, scan.next_hole_id if named.suffix.lower() in NUMBERED else None)
     return RepairedFile(report, repair)
 
 

@@ -5,12 +5,15 @@ A number that is not finite is null.
 
 import json
 import math
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import asdict
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
+from quadpatch.filling.fairing import Energy
 from quadpatch.formats.scan import Scan
 from quadpatch.mesh.holes import Hole
 from quadpatch.mesh.measures import bounding_box, mean_edge_length
@@ -82,20 +85,17 @@ def describe_redundancy(counts: WeldCounts) -> list[str]:
     return warnings
 
 
-def with_hole_numbers(report: dict[str, Any], first: int | None) -> dict[str, Any]:
-    """Name the number that the file has for each filled hole: `first` plus its id, null where it has none."""
-    holes = [
-        {**row, "hole_id": None if first is None or not row["new_triangles"] else first + row["id"]}
-        for row in report["holes"]
-    ]
-    return {**report, "holes": holes}
+def number_holes(report: dict[str, Any], first: int | None) -> None:
+    """Add to each hole of a report the number that it has in the file: `first` plus its id, null where it has none."""
+    for row in report["holes"]:
+        row["hole_id"] = None if first is None or not row["new_triangles"] else first + row["id"]
 
 
 def build_report(
     scan: Scan, welded: Weld, repair: Repair, options: RepairOptions, model: dict[str, Any], stages: Stages
 ) -> dict[str, Any]:
     """Put everything that a user may want to know about a repair into one JSON-ready object."""
-    completion = repair.completion
+    completion, verdicts = repair.completion, Counter(result.verdict for result in repair.results)
     report: dict[str, Any] = {
         "schema": 1,
         "source": describe_mesh(scan, welded.mesh),
@@ -105,7 +105,7 @@ def build_report(
         "options": plain_options(options),
         "counts": {
             "found": len(repair.results),
-            **{verdict: sum(r.verdict == verdict for r in repair.results) for verdict in VERDICTS},
+            **{verdict: verdicts[verdict] for verdict in VERDICTS},
         },
         "patches": None
         if completion is None
@@ -119,8 +119,7 @@ def build_report(
         "stages": describe_stages(stages),
         "warnings": repair.warnings,
     }
-    holes = (_hole(result) for result in repair.results)
-    return {**json_ready(report), "holes": [hole if _is_plain(hole) else json_ready(hole) for hole in holes]}
+    return {**json_ready(report), "holes": [_hole(result) for result in repair.results]}
 
 
 def describe_task(
@@ -153,7 +152,7 @@ def describe_stages(stages: Stages) -> list[dict[str, Any]]:
 
 
 def _hole(result: HoleResult) -> dict[str, Any]:
-    return {
+    row = {
         **describe_hole(result.hole),
         "verdict": result.verdict,
         "code": result.code or None,
@@ -161,20 +160,27 @@ def _hole(result: HoleResult) -> dict[str, Any]:
         "confidence": result.confidence,
         "expected_error": result.expected_error,
         "fill": result.fill or None,
-        "energies": [{**asdict(energy), "share": share} for energy, share in result.energies] or None,
+        "energies": [{**_weights(energy), "share": share} for energy, share in result.energies] or None,
         "new_vertices": result.n_new_vertices,
         "new_triangles": result.n_new_triangles,
         "measures": result.measures,
     }
+    # Many times faster than to turn millions of values one by one.
+    return row if _is_plain(result) else json_ready(row)
 
 
-def _is_plain(value: Any) -> bool:
-    """Whether nested values are JSON-ready as they are: many times faster than to turn millions of them one by one."""
-    try:
-        text = json.dumps(value, allow_nan=False)
-    except (TypeError, ValueError):
-        return False
-    return "\\" not in text
+@lru_cache
+def _weights(energy: Energy) -> dict[str, float]:
+    return asdict(energy)
+
+
+def _is_plain(result: HoleResult) -> bool:
+    """Whether the row of a hole is JSON-ready as it is: its numbers are finite, and its words printable."""
+    hole = result.hole
+    numbers = (hole.perimeter, hole.diameter, hole.area, hole.planarity, *hole.centre, *hole.normal)
+    guesses = (result.confidence or 0.0, result.expected_error or 0.0, *result.measures.values())
+    is_finite = all(map(math.isfinite, (*numbers, *hole.low, *hole.high, *guesses)))
+    return is_finite and printable(result.reason) == result.reason
 
 
 _PLAIN = (int, bool, type(None))

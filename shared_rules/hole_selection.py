@@ -5,7 +5,6 @@ The service plans by it, on the hole list of an analysis; a repair chooses by it
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import chain
 from math import inf, sqrt
 from typing import Literal, Protocol
 
@@ -80,7 +79,7 @@ class HoleSelection(Protocol):
     def rules(self) -> Sequence[HoleRule]: ...
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Choice:
     """What becomes of one hole.
 
@@ -117,11 +116,9 @@ def choose_holes(holes: Sequence[Hole], selection: HoleSelection, diagonal: floa
     for hole in holes:
         number, rule = next(((n, rule) for n, rule, ids in rules if _meets(hole, rule, ids, selection)), (0, None))
         is_listed = chosen_ids is None or hole.id in chosen_ids
-        reasons = chain(
-            _reasons_to_skip(hole, selection, rule, number, is_listed), _limits(hole, selection, rule, diagonal)
-        )
-        code, reason = next(reasons, (None, None))
-        choices.append(Choice(None, code, reason) if code else Choice(_action(hole, selection, rule)))
+        skipped = next(_reasons_to_skip(hole, selection, rule, number, is_listed), None)
+        skipped = skipped or next(_limits(hole, selection, rule, diagonal), None)
+        choices.append(Choice(None, *skipped) if skipped else Choice(_action(hole, selection, rule)))
     return choices
 
 

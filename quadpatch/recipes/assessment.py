@@ -56,6 +56,7 @@ def assess(
 ) -> list[HoleResult]:
     """Say of every hole what became of it, in the order of their ids; `size` is the object's diagonal."""
     expected_errors = error_model.errors(filled, [hole.diameter for hole in selection.chosen]).tolist()
+    gaps, turns = filled.disagreement.tolist(), filled.rim_variation.tolist()
     closed = []
     for i, (hole, n_vertices, n_triangles) in enumerate(zip(selection.chosen, *count_new(filled), strict=True)):
         verdict, code, reason = _verdict(i, n_vertices, completion)
@@ -69,11 +70,7 @@ def assess(
                 expected_errors[i],
                 n_vertices,
                 n_triangles,
-                {
-                    "gap": float(filled.disagreement[i]),
-                    "rim_turn": float(filled.rim_variation[i]),
-                    **agreement_of(i, completion),
-                },
+                {"gap": gaps[i], "rim_turn": turns[i], **agreement_of(i, completion)},
             )
         )
     return with_open_holes(closed, holes, selection, filled)
@@ -98,9 +95,10 @@ def with_open_holes(
     for hole in (selection.chosen[i] for i in filled.unfilled):
         why = "every triangulation of the rim would give an existing edge a third face"
         results[hole.id] = HoleResult(hole, "refused", "no_triangulation", why)
-    for hole in (hole for hole in holes if hole.id in selection.skipped):
-        results[hole.id] = HoleResult(hole, "skipped", *selection.skipped[hole.id])
-    return [results[hole.id] for hole in holes]
+    skipped = selection.skipped
+    return [
+        HoleResult(hole, "skipped", *skipped[hole.id]) if hole.id in skipped else results[hole.id] for hole in holes
+    ]
 
 
 def count_new(filled: FilledMesh) -> tuple[list[int], list[int]]:

@@ -17,7 +17,7 @@ from quadpatch.patches.scale import PatchScale
 from quadpatch.types import BoolArray, FloatArray
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class HoleResult:
     """What became of one hole. Lengths in mesh units.
 

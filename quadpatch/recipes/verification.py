@@ -81,19 +81,23 @@ def verified_results(
     size : float
         Diagonal of the object's bounding box, in mesh units.
     """
-    by_id = {result.hole.id: result for result in results}
+    verified, counts = list(results), _counts(faults)
     for i, hole in enumerate(rims.chosen):
-        result = by_id[hole.id]
+        result = results[hole.id]
         if i in checked.refused:
-            by_id[hole.id] = HoleResult(hole, "refused", *checked.refused[i])
+            verified[hole.id] = HoleResult(hole, "refused", *checked.refused[i])
         elif result.verdict == "refused" and checked.fill[i] == "flat":
-            by_id[hole.id] = HoleResult(hole, "refused", *_NO_PLANE_PATCH)
+            verified[hole.id] = HoleResult(hole, "refused", *_NO_PLANE_PATCH)
         elif result.verdict.startswith("filled"):
-            energies = energies_of(i, checked, blend)
-            by_id[hole.id] = replace(_verified(result, checked, faults, i, size), energies=energies)
+            verified[hole.id] = replace(
+                _with_departure(result, checked, i, size),
+                fill=checked.fill[i],
+                measures={**result.measures, **counts[i]},
+                energies=energies_of(i, checked, blend),
+            )
     for island, host in rims.host_of.items():
-        by_id[island] = _joined(by_id[island], by_id[host])
-    return [by_id[result.hole.id] for result in results]
+        verified[island] = _joined(results[island], verified[host])
+    return verified
 
 
 def energies_of(i: int, checked: CheckedFill, blend: EnergyBlend) -> list[tuple[Energy, float]]:
@@ -119,7 +123,7 @@ def _joined(island: HoleResult, host: HoleResult) -> HoleResult:
 
 def with_named_faults(results: list[HoleResult], chosen: list[Hole], faults: Faults) -> list[HoleResult]:
     """Name the folds and crossings of every filled hole in its measures."""
-    found = {hole.id: _counts(faults, i) for i, hole in enumerate(chosen)}
+    found = dict(zip((hole.id for hole in chosen), _counts(faults), strict=True))
     return [
         replace(result, measures={**result.measures, **found[result.hole.id]})
         if result.verdict.startswith("filled") and result.hole.id in found
@@ -128,15 +132,17 @@ def with_named_faults(results: list[HoleResult], chosen: list[Hole], faults: Fau
     ]
 
 
-def _counts(faults: Faults, i: int) -> dict[str, float]:
-    return {"folds": float(faults.n_folds[i]), "crossings": float(faults.crossings[i])}
+def _counts(faults: Faults) -> list[dict[str, float]]:
+    """Count the faults of every loop; in floats, as all measures are."""
+    numbers = zip(faults.n_folds.tolist(), faults.crossings.tolist(), strict=True)
+    return [{"folds": float(n_folds), "crossings": float(n_crossings)} for n_folds, n_crossings in numbers]
 
 
-def _verified(result: HoleResult, checked: CheckedFill, faults: Faults, i: int, size: float) -> HoleResult:
+def _with_departure(result: HoleResult, checked: CheckedFill, i: int, size: float) -> HoleResult:
+    """Say how large an error to expect where a plane patch or a plainer fill took the place of the first one."""
     if checked.fill[i] == "flat":
         why = "closed by a plane patch, as asked for"
-        result = replace(result, code="flat", reason=why, confidence=None, expected_error=None)
-    result = replace(result, fill=checked.fill[i], measures={**result.measures, **_counts(faults, i)})
+        return replace(result, code="flat", reason=why, confidence=None, expected_error=None)
     departure = float(checked.departure[i])
     if result.expected_error is None or departure <= result.expected_error:
         return result
