@@ -13,7 +13,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from quadpatch.calibration.error_model import ErrorModel, fit_error_model
-from quadpatch.calibration.synthetic_holes import MeshWithHoles, Spacing, cut_holes
+from quadpatch.calibration.synthetic_holes import MeshWithHoles, Spacing, UncutSurface, cut_holes
 from quadpatch.filling.fairing import Energy, triangles_around
 from quadpatch.filling.fill import ClosedMesh, close_holes
 from quadpatch.filling.filled_mesh import FilledMesh
@@ -113,9 +113,9 @@ def cut_calibration_set(
         None where the undamaged surface has no room for enough holes.
     """
     best: tuple[MeshWithHoles, float] | None = None
-    spacing = Spacing(edge_length, MARGIN_EDGES * edge_length, MAX_HOLES)
+    surface, spacing = UncutSurface(mesh), Spacing(edge_length, MARGIN_EDGES * edge_length, MAX_HOLES)
     for size in _SIZES:
-        punched = cut_holes(mesh, size * diameter, spacing, rng)
+        punched = cut_holes(surface, size * diameter, spacing, rng)
         if len(punched.loops) >= MIN_HOLES and (best is None or len(punched.loops) > len(best[0].loops)):
             best = punched, size * diameter
         if len(punched.loops) >= _ENOUGH:

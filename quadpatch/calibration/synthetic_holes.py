@@ -1,6 +1,7 @@
 """Holes cut into undamaged surface, where it is known what belongs into them."""
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -8,8 +9,8 @@ from scipy.spatial import cKDTree
 from quadpatch.mesh.boundary import boundary_loops, on_boundary
 from quadpatch.mesh.edge_groups import survey_edges
 from quadpatch.mesh.measures import used_vertices
-from quadpatch.mesh.normals import vertex_normals
-from quadpatch.types import BoolArray, IntArray, TriangleMesh
+from quadpatch.mesh.normals import normals_at
+from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh
 
 # The rim of a cut lies so much outside the disk of vertices that it takes, in mean edge lengths.
 _RIM_EDGES = 0.7
@@ -55,12 +56,44 @@ class Spacing:
     most: int | None = None
 
 
-def cut_holes(mesh: TriangleMesh, diameter: float, spacing: Spacing, rng: np.random.Generator) -> MeshWithHoles:
-    """Cut disks of surface out of a mesh wherever they keep clear of every boundary and of each other.
+class UncutSurface:
+    """A mesh that holes are cut into, several times over: what every try asks for is computed once.
 
     Parameters
     ----------
     mesh : TriangleMesh
+    """
+
+    def __init__(self, mesh: TriangleMesh) -> None:
+        self.mesh = mesh
+        self._known_distance = 0.0
+        self._to_boundary: FloatArray = np.zeros(0)
+
+    @cached_property
+    def tree(self) -> cKDTree:
+        """Of the vertices."""
+        return cKDTree(self.mesh.vertices)
+
+    def is_clear(self, distance: float) -> BoolArray:
+        """Vertices (n_vertices,) that a triangle uses and that keep a distance from every boundary edge."""
+        mesh = self.mesh
+        far = used_vertices(mesh.triangles, len(mesh.vertices))
+        rim = np.flatnonzero(on_boundary(mesh))
+        if not len(rim):
+            return far
+        if distance > self._known_distance:
+            rim_tree = cKDTree(mesh.vertices[rim])
+            self._to_boundary = np.asarray(rim_tree.query(mesh.vertices, distance_upper_bound=distance)[0])
+            self._known_distance = distance
+        return far & (self._to_boundary > distance)
+
+
+def cut_holes(surface: UncutSurface, diameter: float, spacing: Spacing, rng: np.random.Generator) -> MeshWithHoles:
+    """Cut disks of surface out of a mesh wherever they keep clear of every boundary and of each other.
+
+    Parameters
+    ----------
+    surface : UncutSurface
     diameter : float
         Of the rims, in mesh units.
     spacing : Spacing
@@ -68,40 +101,34 @@ def cut_holes(mesh: TriangleMesh, diameter: float, spacing: Spacing, rng: np.ran
         Picks the places.
     """
     radius = max(diameter / 2 - _RIM_EDGES * spacing.edge_length, 0.5 * spacing.edge_length)
-    removed = _disks(mesh, radius, spacing, rng)
+    removed, mesh = _disks(surface, radius, spacing, rng), surface.mesh
     cut_away = np.asarray(removed[mesh.triangles].any(axis=1))
     remaining = TriangleMesh(mesh.vertices, mesh.triangles[~cut_away])
     return MeshWithHoles(remaining, removed, cut_away, new_loops(mesh, cut_away))
 
 
-def _disks(mesh: TriangleMesh, radius: float, spacing: Spacing, rng: np.random.Generator) -> BoolArray:
+def _disks(surface: UncutSurface, radius: float, spacing: Spacing, rng: np.random.Generator) -> BoolArray:
     """Choose the vertices (n,) to take."""
-    normals = vertex_normals(mesh.vertices, mesh.triangles)
-    tree = cKDTree(mesh.vertices)
-    clear = _far_from_boundary(mesh, radius + spacing.margin)
-    removed = np.zeros(len(mesh.vertices), bool)
-    count = 0
+    vertices = surface.mesh.vertices
+    clear = surface.is_clear(radius + spacing.margin)
+    centres, disks = [], []
     for centre in rng.permutation(np.flatnonzero(clear)).tolist():
         if not clear[centre]:
             continue
-        nearby = np.array(tree.query_ball_point(mesh.vertices[centre], 2 * (radius + spacing.margin)))
-        distance = np.linalg.norm(mesh.vertices[nearby] - mesh.vertices[centre], axis=1)
-        removed[nearby[(distance < radius) & (normals[nearby] @ normals[centre] > 0)]] = True
+        nearby = np.array(surface.tree.query_ball_point(vertices[centre], 2 * (radius + spacing.margin)))
+        distance = np.linalg.norm(vertices[nearby] - vertices[centre], axis=1)
         clear[nearby] = False
-        count += 1
-        if count == spacing.most:
+        centres.append(centre)
+        disks.append(nearby[distance < radius])
+        if len(disks) == spacing.most:
             break
+    removed = np.zeros(len(vertices), bool)
+    if disks:
+        disk, sizes = np.concatenate(disks), [len(disk) for disk in disks]
+        of_centre = normals_at(vertices, surface.mesh.triangles, np.repeat(centres, sizes))
+        of_disk = normals_at(vertices, surface.mesh.triangles, disk)
+        removed[disk[np.einsum("ij,ij->i", of_disk, of_centre) > 0]] = True
     return removed
-
-
-def _far_from_boundary(mesh: TriangleMesh, distance: float) -> BoolArray:
-    """Vertices (n,) that a triangle uses and that keep a distance from every boundary edge."""
-    far = used_vertices(mesh.triangles, len(mesh.vertices))
-    rim = np.flatnonzero(on_boundary(mesh))
-    if len(rim):
-        nearest, _ = cKDTree(mesh.vertices[rim]).query(mesh.vertices, distance_upper_bound=distance)
-        far &= nearest > distance
-    return far
 
 
 def new_loops(mesh: TriangleMesh, cut_away: BoolArray) -> list[IntArray]:
@@ -110,9 +137,10 @@ def new_loops(mesh: TriangleMesh, cut_away: BoolArray) -> list[IntArray]:
     Loops that touch a boundary of the mesh itself are left out. Only triangles next to the cuts are looked at.
     """
     beside = used_vertices(mesh.triangles[cut_away], len(mesh.vertices))
-    near = mesh.triangles[~cut_away & beside[mesh.triangles].any(axis=1)]
-    survey = survey_edges(near, len(mesh.vertices))
-    # Edges between these vertices have all their triangles among the near ones.
-    boundary = boundary_loops(near, replace(survey, on_boundary=beside & ~on_boundary(mesh)))
+    around = np.asarray(beside[mesh.triangles].any(axis=1))
+    # Edges at the vertices beside the cuts have all their triangles among those around.
+    own, cut = (survey_edges(mesh.triangles[part], len(mesh.vertices)) for part in (around, around & ~cut_away))
+    marked = replace(cut, on_boundary=beside & ~own.on_boundary)
+    boundary = boundary_loops(mesh.triangles[around & ~cut_away], marked)
     pairs = zip(boundary.loops, boundary.is_manifold, strict=True)
     return [loop for loop, is_manifold in pairs if is_manifold]

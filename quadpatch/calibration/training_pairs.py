@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from quadpatch.calibration.energy_selection import EnergyBlend
-from quadpatch.calibration.synthetic_holes import Spacing, cut_holes
+from quadpatch.calibration.synthetic_holes import Spacing, UncutSurface, cut_holes
 from quadpatch.mesh.raycast import RayScene
 from quadpatch.mesh.smoothing import laplacian_smooth
 from quadpatch.patches.folding import is_unfolded
@@ -108,7 +108,7 @@ def make_training_pairs(training_surface: TrainingSurface, rng: np.random.Genera
 def _round(training_surface: TrainingSurface, diameter: float, rng: np.random.Generator) -> TrainingPairs:
     scale = training_surface.scale
     spacing = Spacing(training_surface.edge_length, _MARGIN_EDGES * training_surface.edge_length)
-    cut = cut_holes(training_surface.mesh, diameter, spacing, rng)
+    cut = cut_holes(UncutSurface(training_surface.mesh), diameter, spacing, rng)
     filled = training_surface.blend.fill(cut.mesh, cut.loops)
     base_surface = laplacian_smooth(filled.mesh, base_surface_iterations(scale.length, training_surface.edge_length))
     invented = filled.mesh.vertices[filled.n_measured_vertices :]

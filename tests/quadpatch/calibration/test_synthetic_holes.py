@@ -4,7 +4,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial import cKDTree
 
-from quadpatch.calibration.synthetic_holes import MeshWithHoles, Spacing, cut_holes
+from quadpatch.calibration.synthetic_holes import MeshWithHoles, Spacing, UncutSurface, cut_holes
 from quadpatch.mesh.boundary import boundary_edges, boundary_loops
 from quadpatch.mesh.loop_diameter import loop_diameter
 from quadpatch.mesh.measures import mean_edge_length
@@ -18,7 +18,7 @@ LONGEST = float(np.linalg.norm(np.diff(SHEET.vertices[directed_edges(SHEET.trian
 
 
 def punched_at_random(mesh: TriangleMesh, diameter: float, spacing: Spacing, seed: int = 0) -> MeshWithHoles:
-    return cut_holes(mesh, diameter, spacing, np.random.default_rng(seed))
+    return cut_holes(UncutSurface(mesh), diameter, spacing, np.random.default_rng(seed))
 
 
 def rim_vertices(mesh: TriangleMesh) -> IntArray:
