@@ -14,7 +14,7 @@ import numpy as np
 from quadpatch.mesh.normals import cross, unit
 from quadpatch.types import BoolArray, FloatArray, IntArray, Vertices
 
-# Which pairs (k, k) of the loop vertices (k,) are joined by an edge already.
+# Which pairs (k, 2) of loop vertices are joined by an edge already: (k,).
 IsEdge = Callable[[IntArray], BoolArray]
 
 # End points that are compared, at most; the rest of a longer loop is left out, evenly.
@@ -55,7 +55,7 @@ def divide(loop: RimLoop, points: Vertices, max_size: int, is_edge: IsEdge) -> l
     points : (n_vertices, 3) float64
     max_size : int
     is_edge : callable
-        Which pairs (k, k) bool of loop vertices (k,) int64 an edge joins already.
+        Which pairs (k, 2) int64 of loop vertices an edge joins already: (k,) bool.
 
     Returns
     -------
@@ -87,18 +87,17 @@ def _best_chord(loop: RimLoop, points: Vertices, is_edge: IsEdge) -> tuple[int, 
     n = len(loop.vertices)
     ends = np.unique(np.linspace(0, n, min(n, _MAX_ENDS), endpoint=False).astype(np.int64))
     rim = points[loop.vertices]
-    chords = rim[ends][None] - rim[ends][:, None]
-    steps = np.abs(ends[:, None] - ends[None])
-    allowed = np.minimum(steps, n - steps) >= max(2, int(_LEAST_SHARE * n))
-    allowed &= ~is_edge(loop.vertices[ends])
-    starts_inside = _points_inside(loop, rim, ends, chords)
-    inside = starts_inside & starts_inside.T & allowed
-    ratio = np.linalg.norm(chords, axis=-1) / np.maximum(_rim_between(rim, ends), 1e-300)
-    ratio = np.where(inside if inside.any() else allowed, ratio, np.inf)
-    # Every chord stands there twice.
-    ratio[np.tril_indices(len(ends))] = np.inf
-    best = np.argsort(ratio, axis=None, kind="stable")[: min(_MOST_COMPARED, int(np.isfinite(ratio).sum()))]
-    found = np.stack([ends[best // len(ends)], ends[best % len(ends)]], axis=1)
+    pairs = np.stack(np.triu_indices(len(ends), 1), axis=1)
+    steps = ends[pairs[:, 1]] - ends[pairs[:, 0]]
+    pairs = pairs[np.minimum(steps, n - steps) >= max(2, int(_LEAST_SHARE * n))]
+    some = pairs[_start_inside(loop, rim, ends, pairs)]
+    some = some[_start_inside(loop, rim, ends, some[:, ::-1])]
+    some = some[~is_edge(loop.vertices[ends[some]])]
+    if not len(some):
+        some = pairs[~is_edge(loop.vertices[ends[pairs]])]
+    chords = rim[ends[some[:, 1]]] - rim[ends[some[:, 0]]]
+    ratio = np.linalg.norm(chords, axis=-1) / np.maximum(_rim_between(rim, ends[some]), 1e-300)
+    found = ends[some[np.argsort(ratio, kind="stable")[:_MOST_COMPARED]]]
     if not len(found):
         return None
     for start in range(0, len(found), _BATCH):
@@ -130,29 +129,30 @@ def _runs_through_rim(loop: RimLoop, rim: Vertices, chords: IntArray) -> BoolArr
     return np.asarray((passes & ~is_end & ~np.roll(is_end, -1, axis=1)).any(axis=1))
 
 
-def _rim_between(rim: Vertices, ends: IntArray) -> FloatArray:
-    """Length (k, k) of the shorter stretch of rim between two positions, in mesh units."""
+def _rim_between(rim: Vertices, pairs: IntArray) -> FloatArray:
+    """Length (k,) of the shorter stretch of rim between two positions (k, 2), in mesh units."""
     edges = np.linalg.norm(np.roll(rim, -1, axis=0) - rim, axis=1)
     along = np.concatenate([[0.0], np.cumsum(edges)])
-    way = np.abs(along[ends][:, None] - along[ends][None])
+    way = np.abs(along[pairs[:, 0]] - along[pairs[:, 1]])
     return np.asarray(np.minimum(way, along[-1] - way))
 
 
-def _points_inside(loop: RimLoop, rim: Vertices, ends: IntArray, chords: FloatArray) -> BoolArray:
-    """Whether the chord (k, k, 3) from each position to each other one starts on the side of the hole: (k, k)."""
+def _start_inside(loop: RimLoop, rim: Vertices, ends: IntArray, pairs: IntArray) -> BoolArray:
+    """Whether the chord between two of some end points (k,), by pairs (p, 2), starts on the side of the hole: (p,)."""
     normals = _at_vertices(loop.normals)[ends]
     forward = np.roll(rim, -1, axis=0)[ends] - rim[ends]
     x = unit(forward - np.einsum("ij,ij->i", forward, normals)[:, None] * normals)
     # The hole lies on the right: angles count clockwise from the edge that leaves to the edge that arrives.
     y = -cross(normals, x)
 
-    def angle(vectors: FloatArray) -> FloatArray:
-        across, ahead = (np.einsum("ijk,ik->ij", vectors, axis) for axis in (y, x))
+    def angle(vectors: FloatArray, at: IntArray) -> FloatArray:
+        across, ahead = (np.einsum("ij,ij->i", vectors, axis[at]) for axis in (y, x))
         return np.asarray(np.arctan2(across, ahead) % (2 * np.pi))
 
-    back = angle((np.roll(rim, 1, axis=0)[ends] - rim[ends])[:, None])
-    turned = angle(chords)
-    inside: BoolArray = (turned > _LEAST_ANGLE) & (turned < back - _LEAST_ANGLE)
+    back = angle(np.roll(rim, 1, axis=0)[ends] - rim[ends], np.arange(len(ends)))
+    start, end = pairs.T
+    turned = angle(rim[ends[end]] - rim[ends[start]], start)
+    inside: BoolArray = (turned > _LEAST_ANGLE) & (turned < back[start] - _LEAST_ANGLE)
     return inside
 
 

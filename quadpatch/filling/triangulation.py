@@ -14,16 +14,13 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from quadpatch.filling.division import RimLoop, divide
+from quadpatch.filling.weight_table import best_triangulations
 from quadpatch.mesh.loops import by_length, laid_out
-from quadpatch.mesh.normals import cross, length
 from quadpatch.mesh.topology import directed_edges, edge_keys
 from quadpatch.types import BoolArray, FloatArray, IntArray, Triangles, Vertices
 
 # Loops of more vertices are divided.
 MAX_TABLE_SIZE = 128
-
-# Dihedral angles closer than this (as 1 - cos) count as equal; area decides then.
-_ANGLE_STEP = 1e-3
 
 
 @dataclass(frozen=True)
@@ -48,8 +45,6 @@ class Forbidden:
     def contains(self, first: IntArray, second: IntArray, third: IntArray) -> BoolArray:
         """Whether each triangle, by its corners (broadcast against each other), is forbidden."""
         found = np.zeros(np.broadcast_shapes(first.shape, second.shape, third.shape), bool)
-        if not len(self.triangles):
-            return found
         corners = np.stack(np.broadcast_arrays(first, second, third), axis=-1)
         possible = np.isin(corners, self.triangles).all(axis=-1)
         found[possible] = np.isin(_sorted_rows(corners[possible]), _sorted_rows(self.triangles))
@@ -101,7 +96,7 @@ def _triangulate(
     bridges = [_bridges(loop) for loop in loops if len(set(loop.tolist())) < len(loop)]
     forbidden = forbidden.with_edges(np.concatenate(bridges)) if bridges else forbidden
     rims = [RimLoop(loop, normals) for loop, normals in zip(loops, rim_normals, strict=True)]
-    parts = [divide(rim, vertices, MAX_TABLE_SIZE, forbidden.edges.pairs) for rim in rims]
+    parts = [divide(rim, vertices, MAX_TABLE_SIZE, forbidden.edges.contains) for rim in rims]
     flat = [part for of_loop in parts for part in of_loop]
     found = iter(_by_length([p.vertices for p in flat], vertices, [p.normals for p in flat], forbidden))
     pieces = [[next(found) for _ in of_loop] for of_loop in parts]
@@ -182,14 +177,10 @@ class EdgeSet:
         at = np.searchsorted(self._keys, keys).clip(0, max(len(self._keys) - 1, 0))
         return self._keys[at] == keys if len(self._keys) else np.zeros(keys.shape, bool)
 
-    def pairs(self, vertices: IntArray) -> BoolArray:
-        """Pairs (..., n, n) of the vertices (..., n) that an edge joins already."""
-        return self.contains(np.stack(np.broadcast_arrays(vertices[..., :, None], vertices[..., None, :]), axis=-1))
-
     def chords(self, loops: IntArray) -> BoolArray:
         """Pairs (b, n, n) of loop vertices (b, n), not neighbours on the loop, that an edge joins already."""
         n = loops.shape[1]
-        joined = self.pairs(loops)
+        joined = self.contains(np.stack(np.broadcast_arrays(loops[:, :, None], loops[:, None, :]), axis=-1))
         i = np.arange(n)
         joined[:, i, (i + 1) % n] = joined[:, (i + 1) % n, i] = joined[:, i, i] = False
         return joined
@@ -204,55 +195,9 @@ def _minimum_weight(
     points: FloatArray, rim_normals: FloatArray, loops: IntArray, forbidden: Forbidden
 ) -> tuple[IntArray, BoolArray]:
     """Triangulate b loops (b, n) of points (b, n, 3) at once: corners (b, n - 2, 3), whether each exists (b,)."""
-    b, n, _ = points.shape
-    existing_edges = forbidden.edges.chords(loops)
-    angle, area = np.zeros((b, n, n)), np.zeros((b, n, n))
-    apex = np.full((b, n, n), -1)
-    normal = np.zeros((b, n, n, 3))
-    i = np.arange(n - 1)
-    normal[:, i, i + 1] = rim_normals[:, :-1]
-    size = np.linalg.norm(np.ptp(points, axis=1), axis=1)[:, None, None] ** 2 + 1e-300
-    rows = np.arange(b)[:, None]
-    for gap in range(2, n):
-        i = np.arange(n - gap)
-        j = i + gap
-        k = i[:, None] + np.arange(1, gap)[None, :]  # (n - gap, gap - 1)
-        pi, pj, pk = points[:, i, None], points[:, j, None], points[:, k]
-        across = cross(pk - pj, pi - pj)
-        double_area = length(across)
-        unit = across / np.maximum(double_area, 1e-300)[..., None]
-        ik, kj = (slice(None), i[:, None], k), (slice(None), k, j[:, None])
-        bend = np.maximum(_bend(unit, normal[ik]), _bend(unit, normal[kj]))
-        if gap == n - 1:
-            bend = np.maximum(bend, _bend(unit, rim_normals[:, None, None, -1]))
-        bend = np.maximum(bend, np.maximum(angle[ik], angle[kj]))
-        total = double_area / 2 + area[ik] + area[kj]
-        bend[existing_edges[:, i, j]] = np.inf
-        bend[forbidden.contains(loops[:, i, None], loops[:, k], loops[:, j, None])] = np.inf
-        best = np.argmin(np.round(bend / _ANGLE_STEP) + 1e-3 * total / size, axis=-1)  # (b, n - gap)
-        at = (rows, np.arange(n - gap)[None, :], best)
-        angle[:, i, j], area[:, i, j], normal[:, i, j] = bend[at], total[at], unit[at]
-        apex[:, i, j] = i + 1 + best
-    return _read_off(apex), np.isfinite(angle[:, 0, n - 1])
 
+    def is_forbidden(i: IntArray, k: IntArray, j: IntArray) -> BoolArray:
+        return forbidden.contains(loops[:, i], loops[:, k], loops[:, j])
 
-def _bend(a: FloatArray, b: FloatArray) -> FloatArray:
-    bend: FloatArray = 1.0 - np.einsum("...k,...k->...", a, np.broadcast_to(b, a.shape))
-    return bend
-
-
-def _read_off(apex: IntArray) -> IntArray:
-    """Triangles (b, n - 2, 3) out of the table of apexes."""
-    b, n, _ = apex.shape
-    corners = np.zeros((b, n - 2, 3), np.int64)
-    for row in range(b):
-        table, spans, count = apex[row], [(0, n - 1)], 0
-        while spans:
-            i, j = spans.pop()
-            if j - i < 2:
-                continue
-            k = int(table[i, j])
-            corners[row, count] = j, k, i
-            count += 1
-            spans += [(i, k), (k, j)]
-    return corners
+    chords = forbidden.edges.chords(loops)
+    return best_triangulations(points, rim_normals, chords, is_forbidden if len(forbidden.triangles) else None)

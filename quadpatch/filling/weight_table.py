@@ -1,0 +1,106 @@
+"""The table of the minimum-weight triangulation, for many loops of one length at once.
+
+A stretch of a loop, from one vertex to another, is closed by a triangle on the chord between its ends and the two
+stretches on either side of the triangle's apex. From short stretches to long ones, the table notes which apex is best.
+"""
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
+
+from quadpatch.types import BoolArray, FloatArray, IntArray
+
+# Dihedral angles closer than this (as 1 - cos) count as equal; area decides then.
+_ANGLE_STEP = 1e-3
+
+# Whether triangles are forbidden, by the positions of their corners on a loop (broadcast against each other): (b, ...).
+IsForbidden = Callable[[IntArray, IntArray, IntArray], BoolArray]
+
+
+def best_triangulations(
+    points: FloatArray, rim_normals: FloatArray, forbidden_chords: BoolArray, is_forbidden: IsForbidden | None
+) -> tuple[IntArray, BoolArray]:
+    """Triangulate b loops of n vertices.
+
+    Parameters
+    ----------
+    points : (b, n, 3) float64
+    rim_normals : (b, n, 3) float64
+        Unit normal of the face at each rim edge, from vertex i to i + 1.
+    forbidden_chords : (b, n, n) bool
+    is_forbidden : callable or None
+        None where no triangle is.
+
+    Returns
+    -------
+    corners : (b, n - 2, 3) int64
+        Positions on the loop.
+    exists : (b,) bool
+        False where every triangulation would contain what is forbidden.
+    """
+    b, n, _ = points.shape
+    place, rim = np.moveaxis(points, 2, 0), np.moveaxis(rim_normals, 2, 0)
+    # Of each stretch the angle, the area and the normal at its chord, by start and length, and by end and length: so
+    # the two stretches beside an apex, for all apexes of a stretch, are slices.
+    from_start, from_end = np.zeros((5, b, n, n)), np.zeros((5, b, n, n))
+    from_start[2:, :, :-1, 1] = from_end[2:, :, 1:, 1] = rim[:, :, :-1]
+    apex = np.full((b, n, n), -1)
+    size = np.linalg.norm(np.ptp(points, axis=1), axis=1)[:, None, None] ** 2 + 1e-300
+    for gap in range(2, n):
+        start = np.arange(n - gap)
+        left = from_start[:, :, : n - gap, 1:gap]
+        right = from_end[:, :, gap:, gap - 1 : 0 : -1]
+        normal, double_area = _faces(place, gap)
+        turn = np.minimum(_dot(normal, left[2:]), _dot(normal, right[2:]))
+        if gap == n - 1:
+            turn = np.minimum(turn, _dot(normal, rim[:, :, -1:, None]))
+        bend = np.maximum(1.0 - turn, np.maximum(left[0], right[0]))
+        area = double_area / 2 + left[1] + right[1]
+        bend[forbidden_chords[:, start, start + gap]] = np.inf
+        if is_forbidden is not None:
+            bend[is_forbidden(start[:, None], start[:, None] + np.arange(1, gap), start[:, None] + gap)] = np.inf
+        best = np.argmin(np.round(bend / _ANGLE_STEP) + 1e-3 * area / size, axis=-1)[..., None]
+        apex[:, : n - gap, gap] = start + 1 + best[..., 0]
+        for row, values in enumerate((bend, area, *normal)):
+            chosen = np.take_along_axis(values, best, axis=-1)[..., 0]
+            from_start[row, :, : n - gap, gap] = from_end[row, :, gap:, gap] = chosen
+    return _read_off(apex), np.isfinite(from_start[0, :, 0, n - 1])
+
+
+def _faces(place: FloatArray, gap: int) -> tuple[tuple[FloatArray, FloatArray, FloatArray], FloatArray]:
+    """Give unit normals, by component, and double areas of the triangles on all stretches of a length.
+
+    Each (b, n - gap, gap - 1), by start and apex.
+    """
+    n = place.shape[2]
+    first, last = place[:, :, : n - gap, None], place[:, :, gap:, None]
+    apex = sliding_window_view(place[:, :, 1:-1], gap - 1, axis=2)
+    (ux, uy, uz), (vx, vy, vz) = apex - last, first - last
+    normal = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
+    double_area = np.sqrt(_dot(normal, normal))
+    divisor = np.maximum(double_area, 1e-300)
+    x, y, z = (np.divide(component, divisor, out=component) for component in normal)
+    return (x, y, z), double_area
+
+
+def _dot(one: tuple[FloatArray, FloatArray, FloatArray], other: FloatArray | tuple[FloatArray, ...]) -> FloatArray:
+    """Multiply vectors that are given by component; summed in the order of `numpy.einsum`."""
+    return np.asarray(one[0] * other[0] + one[2] * other[2] + one[1] * other[1])
+
+
+def _read_off(apex: IntArray) -> IntArray:
+    """Triangles (b, n - 2, 3) out of the table of apexes, by start and length of a stretch."""
+    b, n, _ = apex.shape
+    corners = np.zeros((b, n - 2, 3), np.int64)
+    for row in range(b):
+        table, spans, count = apex[row], [(0, n - 1)], 0
+        while spans:
+            i, j = spans.pop()
+            if j - i < 2:
+                continue
+            k = int(table[i, j - i])
+            corners[row, count] = j, k, i
+            count += 1
+            spans += [(i, k), (k, j)]
+    return corners
