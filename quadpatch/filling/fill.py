@@ -4,6 +4,7 @@ It is the baseline of learned fills, and has the vertices that they displace.
 """
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -63,6 +64,11 @@ class ClosedMesh:
         """Number of loops."""
         return len(self.disagreement)
 
+    @cached_property
+    def filled(self) -> FilledMesh:
+        """The mesh, filled by the plate; other energies move its new vertices."""
+        return self.near.filled(self.plate, self.unfilled, self.disagreement, self.rim_variation)
+
 
 def close_holes(mesh: TriangleMesh, loops: list[IntArray], *, graded: bool = False) -> ClosedMesh:
     """Triangulate and refine boundary loops, and lay a thin plate over each.
@@ -121,7 +127,8 @@ def fair_holes(closed: ClosedMesh, energy: Energy) -> FilledMesh:
     FilledMesh
         The input's vertices and triangles are its bit-exact prefix.
     """
-    return closed.near.filled(_fair_patch(closed, energy), closed.unfilled, closed.disagreement, closed.rim_variation)
+    vertices = _fair_patch(closed, energy).vertices[closed.plate.n_measured :]
+    return closed.filled.with_vertices(vertices + closed.near.centre)
 
 
 def _fair_patch(closed: ClosedMesh, energy: Energy) -> Refined:
