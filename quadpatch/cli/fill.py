@@ -116,7 +116,7 @@ def fill(  # noqa: PLR0913, PLR0917  one argument per flag
 
         repaired = repair_and_keep(source, output, model, options, progress)
         logging.getLogger("quadpatch").addHandler(logging.NullHandler())  # what people read is in the warnings
-        if report and not is_stream(report):  # drawing may take the process down
+        if report and (preview or closeups) and not is_stream(report):  # drawing may take the process down
             write_report(repaired.report, report)
         _draw(repaired, preview, closeups)
         write_report(repaired.report, report)
