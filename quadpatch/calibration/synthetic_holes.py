@@ -66,7 +66,7 @@ class UncutSurface:
 
     def __init__(self, mesh: TriangleMesh) -> None:
         self.mesh = mesh
-        self._known_distance = 0.0
+        self._known_distance = -1.0
         self._to_boundary: FloatArray = np.zeros(0)
 
     @cached_property

@@ -62,10 +62,13 @@ def boundary_loops(triangles: Triangles, survey: EdgeSurvey | None = None) -> Bo
     loops = [*plain.cycles, *simple, *(_from_lowest(chain) for chain in chains)]
     if not loops:
         return Boundary([], [])
-    starts, vertices = laid_out(loops)[0][:-1], np.concatenate(loops)
+    bounds, vertices = laid_out(loops)[0], np.concatenate(loops)
+    starts = bounds[:-1]
     is_manifold = ~np.logical_or.reduceat(is_bad[vertices], starts)
     is_manifold[len(loops) - len(chains) :] = False
-    order = np.lexsort((vertices[starts + 1], vertices[starts])).tolist()
+    # An edge from a vertex to itself is a loop of one.
+    second = np.where(np.diff(bounds) > 1, vertices[(starts + 1).clip(max=len(vertices) - 1)], -1)
+    order = np.lexsort((second, vertices[starts])).tolist()
     return Boundary([loops[i] for i in order], is_manifold[order].tolist())
 
 

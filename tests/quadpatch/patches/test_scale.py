@@ -60,4 +60,4 @@ def test_edges_may_be_as_long_as_those_that_such_bins_are_chosen_for() -> None:
     assert length > 0.02
     assert choose_scale([1.0], length, AUTO) == fine
     # Bins no wider than an edge or so show triangles of the scan.
-    assert coarse_edge_length(choose_scale([1.0], 0.05, AUTO), 0.05) is None
+    assert coarse_edge_length(choose_scale([1.0], 0.07, AUTO), 0.07) is None
