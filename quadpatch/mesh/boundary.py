@@ -54,6 +54,8 @@ def boundary_loops(triangles: Triangles, survey: EdgeSurvey | None = None) -> Bo
     """
     survey = survey or survey_edges(triangles, int(triangles.max(initial=-1)) + 1)
     edges, is_bad = _boundary_edges(triangles, survey)
+    # An edge from a vertex to itself bounds nothing.
+    edges = edges[edges[:, 0] != edges[:, 1]]
     plain = plain_cycles(edges)
     edges = edges[~plain.is_plain]
     walks, chains = _walk(edges, _exits(triangles, edges))
@@ -62,13 +64,10 @@ def boundary_loops(triangles: Triangles, survey: EdgeSurvey | None = None) -> Bo
     loops = [*plain.cycles, *simple, *(_from_lowest(chain) for chain in chains)]
     if not loops:
         return Boundary([], [])
-    bounds, vertices = laid_out(loops)[0], np.concatenate(loops)
-    starts = bounds[:-1]
+    starts, vertices = laid_out(loops)[0][:-1], np.concatenate(loops)
     is_manifold = ~np.logical_or.reduceat(is_bad[vertices], starts)
     is_manifold[len(loops) - len(chains) :] = False
-    # An edge from a vertex to itself is a loop of one.
-    second = np.where(np.diff(bounds) > 1, vertices[(starts + 1).clip(max=len(vertices) - 1)], -1)
-    order = np.lexsort((second, vertices[starts])).tolist()
+    order = np.lexsort((vertices[starts + 1], vertices[starts])).tolist()
     return Boundary([loops[i] for i in order], is_manifold[order].tolist())
 
 
