@@ -45,6 +45,8 @@ SHARES = (0.0, 0.25, 0.5, 0.75, 1.0)
 _LEAST_GAIN = 0.02
 # The same in standard errors of the gain: one of them lets a model through by chance at one mesh in six.
 _LEAST_GAIN_IN_ERRORS = 2.0
+# What holes may lose together, as a share of what others gain, for a gain to be no chance.
+_HARDLY = 0.05
 
 
 @dataclass(frozen=True)
@@ -148,6 +150,7 @@ def choose_blend_factor(calibration: CalibrationSet, filled: FilledMesh, displac
     """Choose the share of predicted displacements (k, 3) that leaves the smallest mean error.
 
     It is 0 where that gains less than two percent, or less than two standard errors: a few dozen holes can't tell more.
+    Where hardly any hole loses, the rare ones that gain much are enough.
     """
     new = filled.mesh.vertices[filled.n_measured_vertices :]
     errors = np.array(
@@ -155,8 +158,10 @@ def choose_blend_factor(calibration: CalibrationSet, filled: FilledMesh, displac
     )
     best = int(errors.mean(axis=1).argmin())
     gains = errors[0] - errors[best]
-    least = max(_LEAST_GAIN * float(errors[0].mean()), _LEAST_GAIN_IN_ERRORS * float(gains.std()) / np.sqrt(len(gains)))
-    return SHARES[best] if float(gains.mean()) > least else 0.0
+    is_sure = float(gains.mean()) > _LEAST_GAIN_IN_ERRORS * float(gains.std()) / np.sqrt(len(gains))
+    is_harmless = float(-gains[gains < 0].sum()) < _HARDLY * float(gains[gains > 0].sum())
+    is_worth_it = float(gains.mean()) > _LEAST_GAIN * float(errors[0].mean())
+    return SHARES[best] if is_worth_it and (is_sure or is_harmless) else 0.0
 
 
 def error_per_hole(calibration: CalibrationSet, filled: FilledMesh) -> FloatArray:

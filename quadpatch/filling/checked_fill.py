@@ -10,6 +10,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from quadpatch.filling.constrained_fill import fill_constrained
+from quadpatch.filling.creases import crease_displacement
+from quadpatch.filling.displaced_fill import displace_without_faults, relax_faults
 from quadpatch.filling.doubling import doubles_surface
 from quadpatch.filling.fairing import THIN_PLATE
 from quadpatch.filling.faults import Faults, find_faults
@@ -19,6 +21,7 @@ from quadpatch.filling.flat_cap import flat_caps
 from quadpatch.filling.rim_relief import relieve_rims
 from quadpatch.mesh.averages import mean_by
 from quadpatch.mesh.distance import distance_to_mesh
+from quadpatch.mesh.normals import length
 from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Triangles
 
 # How loops of a mesh may be filled: (mesh, loops) -> filled mesh.
@@ -37,6 +40,9 @@ def _fill_by_thin_plate(
 
 _DOUBLED = ("doubles_surface", "a fill would lie on the back of the very surface whose border it closes")
 
+# What a fill is called: of the energies that suit the surface, and of the same with creases.
+_FAIRED = "energies"
+CREASED = "creases"
 # From the smoothest to the plainest.
 PLAINER_FILLS: dict[str, RefillFunction] = {"thin_plate": _fill_by_thin_plate, "constrained": fill_constrained}
 
@@ -51,7 +57,7 @@ class CheckedFill:
     faults : Faults
         What is left: folds that the measured surface asks for, and those of slivers.
     fill : list of str
-        How each loop was filled: `energies`, `flat` (a plane patch), or one of `PLAINER_FILLS`.
+        How each loop was filled: `energies`, `creases`, `flat` (a plane patch), or one of `PLAINER_FILLS`.
     departure : (n_loops,) float64
         Mean distance of the fill from the one that was tried first, in mesh units; 0 where that one holds.
     refused : dict of int to (str, str)
@@ -103,7 +109,7 @@ def fill_checked(
     doubled = np.flatnonzero(doubles_surface(first, np.flatnonzero(wanted.border)))
     filled = first.without(doubled) if len(doubled) else first
     faults = find_faults(filled, obstacles=obstacles)
-    names = np.where(flat, "flat", "energies").tolist()
+    names = np.where(flat, "flat", _FAIRED).tolist()
     for name, plainer in PLAINER_FILLS.items():
         doubtful = np.flatnonzero(faults.is_doubtful & ~flat)
         if not len(doubtful):
@@ -125,6 +131,31 @@ def fill_checked(
     refused |= dict.fromkeys(doubled.tolist(), _DOUBLED)
     replaced = np.array([i for i, name in enumerate(names) if name in PLAINER_FILLS and i not in refused], np.int64)
     return CheckedFill(relieved, faults, names, _departure(relieved, first, replaced), refused)
+
+
+def with_creases(checked: CheckedFill, share: float, obstacles: Triangles | None = None) -> CheckedFill:
+    """Give faired fills creases, save where these would fold or cross other surface.
+
+    Parameters
+    ----------
+    checked : CheckedFill
+    share : float
+        Of the way to the creases, 0 to 1.
+    obstacles : (k, 3) int64, optional
+        Triangles of the file that the mesh leaves out.
+    """
+    wanted = np.array([name == _FAIRED and i not in checked.refused for i, name in enumerate(checked.fill)], bool)
+    if not share or not wanted.any():
+        return checked
+    filled = checked.filled
+    way = np.where(wanted[filled.vertex_hole][:, None], share * crease_displacement(filled), 0.0)
+    relaxed = relax_faults(filled.displaced(way), wanted, obstacles)
+    way = relaxed.mesh.vertices[filled.n_measured_vertices :] - filled.mesh.vertices[filled.n_measured_vertices :]
+    creased = displace_without_faults(filled, way, wanted, checked.faults, obstacles)
+    names = np.where(wanted & ~creased.undone, CREASED, checked.fill).tolist()
+    missing = mean_by(filled.vertex_hole, length(way), len(wanted))
+    departure = np.where(creased.undone, missing, checked.departure)
+    return replace(checked, filled=creased.filled, faults=creased.faults, fill=names, departure=departure)
 
 
 def _first_fill(mesh: TriangleMesh, loops: list[IntArray], fill: FillFunction, flat: BoolArray) -> FilledMesh:

@@ -7,7 +7,7 @@ import numpy as np
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.mesh.intersections import crossing_pairs, heights, touching_boxes
 from quadpatch.mesh.normals import triangle_normals
-from quadpatch.mesh.topology import directed_edges, edge_keys
+from quadpatch.mesh.topology import neighbouring_triangles
 from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Triangles
 
 # Two triangles whose normals differ by more fold over each other.
@@ -132,7 +132,7 @@ def find_folds(filled: FilledMesh, looked_at: BoolArray) -> Folds:
     hole = np.full(len(triangles), -1)
     hole[filled.n_measured_triangles :] = filled.triangle_hole
     near = np.flatnonzero(_near(filled, looked_at))
-    pairs, edges = _neighbours(triangles[near])
+    pairs, edges = neighbouring_triangles(triangles[near])
     pairs = near[pairs]
     normals = np.zeros((len(triangles), 3))
     normals[near] = triangle_normals(vertices, triangles[near])
@@ -160,15 +160,6 @@ def _near(filled: FilledMesh, looked_at: BoolArray) -> BoolArray:
     touched = np.zeros(len(filled.mesh.vertices), bool)
     touched[triangles[own]] = True
     return np.asarray(touched[triangles].any(axis=1))
-
-
-def _neighbours(triangles: Triangles) -> tuple[IntArray, IntArray]:
-    """Pairs (n, 2) of triangles with a common edge, and that edge (n, 2); a crowded edge pairs each with the next."""
-    edges = directed_edges(triangles)
-    keys = edge_keys(edges, int(triangles.max(initial=0)) + 1)
-    order = np.argsort(keys, kind="stable")
-    twin = np.flatnonzero(keys[order][1:] == keys[order][:-1])
-    return np.stack([order[twin] // 3, order[twin + 1] // 3], axis=1), edges[order[twin]]
 
 
 def _crossings(

@@ -19,6 +19,15 @@ def edge_keys(edges: IntArray, n_vertices: int) -> IntArray:
     return np.minimum(start, end) * np.int64(n_vertices) + np.maximum(start, end)
 
 
+def neighbouring_triangles(triangles: Triangles) -> tuple[IntArray, IntArray]:
+    """Pairs (n, 2) of triangles with a common edge, and that edge (n, 2); a crowded edge pairs each with the next."""
+    edges = directed_edges(triangles)
+    keys = edge_keys(edges, int(triangles.max(initial=0)) + 1)
+    order = np.argsort(keys, kind="stable")
+    twin = np.flatnonzero(keys[order][1:] == keys[order][:-1])
+    return np.stack([order[twin] // 3, order[twin + 1] // 3], axis=1), edges[order[twin]]
+
+
 def with_marked_edge(triangles: Triangles, marked: BoolArray) -> BoolArray:
     """Which triangles (n_triangles,) have at least two marked corners."""
     a, b, c = (marked[triangles[:, corner]] for corner in range(3))

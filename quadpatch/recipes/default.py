@@ -10,10 +10,11 @@ from functools import cached_property, partial
 import numpy as np
 
 from quadpatch.calibration.calibration_set import MAX_HOLES, CalibrationSet, cut_calibration_set, expect
+from quadpatch.calibration.crease_selection import calibrate_creases
 from quadpatch.calibration.energy_selection import EnergyBlend, learn_energy_blend
 from quadpatch.calibration.error_model import PRIOR
 from quadpatch.errors import NoQuadsError
-from quadpatch.filling.checked_fill import LoopsToFill, fill_checked
+from quadpatch.filling.checked_fill import LoopsToFill, fill_checked, with_creases
 from quadpatch.filling.fairing import THIN_PLATE, Energy
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.filling.islands import JoinedRims, join_islands
@@ -171,6 +172,7 @@ def _repair(task: _Task, part: RepairRegion, obstacles: Triangles | None, stages
         calibration = _calibrate(task, mesh, rng, stages.part(0.0, share))
         fill = partial(calibration.blend.fill, reach=stages.part(share, 1.0))
         checked = fill_checked(mesh, wanted, fill, obstacles)
+        checked = with_creases(checked, calibration.crease_share, obstacles)
     completion, warnings, by_model = None, [], task.by_model
     if inpainter is not None and by_model[checked.filled.vertex_hole].any():
         try:
@@ -214,8 +216,11 @@ def _calibrate(task: _Task, mesh: TriangleMesh, rng: np.random.Generator, reach:
     diameter, edge = task.typical_diameter(), task.edges.mean
     holes = None if diameter is None else cut_calibration_set(mesh, diameter, edge, rng)
     blend, filled = suitable_blend(holes, reach)
-    error_model = PRIOR if holes is None or filled is None else expect(holes, filled)
-    return Calibration(task.diameters, edge, blend, error_model, holes, filled)
+    if holes is None or filled is None:
+        return Calibration(task.diameters, edge, blend, PRIOR, holes, filled)
+    creases = calibrate_creases(holes, blend, filled)
+    filled = creases.filled or filled
+    return Calibration(task.diameters, edge, blend, expect(holes, filled), holes, filled, creases.share)
 
 
 def suitable_blend(

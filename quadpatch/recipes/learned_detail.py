@@ -9,6 +9,7 @@ from functools import partial
 import numpy as np
 
 from quadpatch.calibration.calibration_set import CalibrationSet, choose_blend_factor, expect
+from quadpatch.calibration.crease_selection import fill_uniformly
 from quadpatch.calibration.energy_selection import EnergyBlend
 from quadpatch.calibration.error_model import ErrorModel
 from quadpatch.calibration.training_pairs import TrainingSurface
@@ -50,7 +51,9 @@ class Calibration:
     holes : CalibrationSet or None
         None where the surface has no room for calibration holes.
     filled : FilledMesh or None
-        The calibration holes, filled like the real ones.
+        The calibration holes, filled like the real ones; graded where faired fills are.
+    crease_share : float
+        See `quadpatch.calibration.crease_selection.CreaseCalibration`.
     """
 
     diameters: list[float]
@@ -59,6 +62,14 @@ class Calibration:
     error_model: ErrorModel
     holes: CalibrationSet | None = None
     filled: FilledMesh | None = None
+    crease_share: float = 0.0
+
+    def uniform_fill(self) -> FilledMesh | None:
+        """Give the calibration holes, filled as densely as real ones; None without any."""
+        # Creases were tried on such a fill.
+        if self.holes is None or self.filled is None or self.crease_share:
+            return self.filled
+        return fill_uniformly(self.holes, self.blend, self.filled)
 
 
 @dataclass(frozen=True)
@@ -102,7 +113,7 @@ def complete(
     """
     scale = choose_scale(calibration.diameters, calibration.edge_length, options.patches, inpainter.resolution)
     with stages.stage("smooth"):
-        fill = _uniform(calibration)
+        fill = calibration.uniform_fill()
         surfaces = _surfaces(filled, coarse_copy, calibration, fill)
         base_surface = surfaces.filled.smoothed(scale)
     with stages.stage("quadrangulate"):
@@ -178,14 +189,6 @@ def _calibrate_model(
     joined = np.where(agreeing_holes(agreement)[filled.vertex_hole][:, None], joined, 0.0)
     factor = choose_blend_factor(holes, filled, joined)
     return factor, expect(holes, filled.displaced(factor * joined))
-
-
-def _uniform(calibration: Calibration) -> FilledMesh | None:
-    """Fill the calibration holes as densely as real ones: what a model says of graded fills is another thing."""
-    holes, filled = calibration.holes, calibration.filled
-    if holes is None or filled is None or filled.energy_weights is None or not holes.is_graded:
-        return filled
-    return calibration.blend.fill_weighted(holes.closed.mesh, holes.loops, filled.energy_weights)
 
 
 def _displacements(filled: FilledMesh, patches: Patches, predicted: FloatArray) -> tuple[FloatArray, PatchAgreement]:

@@ -34,11 +34,11 @@ class HoleResult:
     measures : dict
         What the verdict rests on; `folds` and `crossings` count the faults that the check left.
     fill : str
-        Which geometric fill carries it: `energies` (what suits the surface), `flat` (a plane patch), or a plainer one,
-        `thin_plate` or `constrained`, where others fold or run through other surface. Empty
-        where nothing was filled.
+        Which geometric fill carries it: `energies` (what suits the surface), `creases` (the same with the creases of
+        the surface around it), `flat` (a plane patch), or a plainer one, `thin_plate` or `constrained`, where others
+        fold or run through other surface. Empty where nothing was filled.
     energies : sequence of (Energy, float)
-        Where the fill is `energies`: which ones, each with its share.
+        Where the fill is `energies` or `creases`: which ones, each with its share.
     """
 
     hole: Hole

@@ -2,12 +2,11 @@
 
 from dataclasses import replace
 
-import numpy as np
-
 from quadpatch.calibration.energy_selection import EnergyBlend
-from quadpatch.filling.checked_fill import CheckedFill
+from quadpatch.filling.checked_fill import CREASED, CheckedFill
+from quadpatch.filling.displaced_fill import displace_without_faults
 from quadpatch.filling.fairing import Energy
-from quadpatch.filling.faults import Faults, find_faults
+from quadpatch.filling.faults import Faults
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.filling.islands import JoinedRims
 from quadpatch.mesh.holes import Hole
@@ -44,18 +43,12 @@ def without_faults(
     """
     if completion is None or not completion.displaced_holes.any():
         return completion, checked.filled, checked.faults
-    filled = completion.apply(checked.filled)
-    faults = find_faults(filled, obstacles=obstacles)
-    undone = np.zeros(len(completion.displaced_holes), bool)
-    worse = completion.displaced_holes & (faults.severity > checked.faults.severity)
-    # Taking one hole back may make it cross the displaced fill of another.
-    while worse.any():
-        undone |= worse
-        completion = replace(completion.limited_to(~undone, checked.filled), undone=undone)
-        filled = completion.apply(checked.filled)
-        faults = find_faults(filled, obstacles=obstacles)
-        worse = completion.displaced_holes & (faults.severity > checked.faults.severity)
-    return completion, filled, faults
+    displaced = displace_without_faults(
+        checked.filled, completion.displacement, completion.displaced_holes, checked.faults, obstacles
+    )
+    if displaced.undone.any():
+        completion = replace(completion.limited_to(~displaced.undone, checked.filled), undone=displaced.undone)
+    return completion, displaced.filled, displaced.faults
 
 
 def verified_results(
@@ -103,7 +96,7 @@ def verified_results(
 def energies_of(i: int, checked: CheckedFill, blend: EnergyBlend) -> list[tuple[Energy, float]]:
     """Name the energies that one loop is filled by, each with its share; none where a plainer fill took their place."""
     weights = checked.filled.energy_weights
-    if weights is None or checked.fill[i] != "energies":
+    if weights is None or checked.fill[i] not in {"energies", CREASED}:
         return []
     return [
         (energy, share)
