@@ -20,6 +20,10 @@ _THINNEST = 1e-5
 _OTHER_SIDE = -0.5
 # Cells of a grid for each vertex, up to which a table of them is made.
 _DENSE = 8
+# Cells along a side up to which one integer tells them apart: 2e6 cubed is just under 2**63.
+_MOST_CELLS = 2_000_000
+# Vertices, and triangles, that are looked at together.
+_CHUNK = 1 << 17
 
 
 @dataclass(frozen=True)
@@ -37,18 +41,24 @@ class Clusters:
     label: IntArray
     vertices: Vertices
 
+    def spanning(self, triangles: Triangles) -> IntArray:
+        """Find the triangles (l,), of some (m, 3), whose corners are in three clusters: most vanish."""
+        found = [np.zeros(0, np.int64)]
+        for at in range(0, len(triangles), _CHUNK):
+            a, b, c = self.label[triangles[at : at + _CHUNK]].T
+            found.append(at + np.flatnonzero((a != b) & (b != c) & (c != a)))
+        return np.concatenate(found)
+
     def join(self, triangles: Triangles) -> tuple[Triangles, IntArray]:
         """Give triangles (m, 3) their clusters: what is left of them (l, 3), and which they were (l,).
 
         Every triangle left has an area, and no other one its corners.
         """
-        joined = self.label[triangles]
-        a, b, c = joined.T
-        # Most triangles vanish here; what follows is slower.
-        kept = np.flatnonzero((a != b) & (b != c) & (c != a))
-        kept = kept[_has_area(self.vertices, joined[kept])]
-        kept = kept[_is_first_of_its_corners(joined[kept], len(self.vertices))]
-        return joined[kept], kept
+        kept = self.spanning(triangles)
+        joined = self.label[triangles[kept]]
+        sound = np.flatnonzero(_has_area(self.vertices, joined))
+        sound = sound[_is_first_of_its_corners(joined[sound], len(self.vertices))]
+        return joined[sound], kept[sound]
 
 
 def cluster(mesh: TriangleMesh, cell: float, kind: IntArray | None = None) -> Clusters:
@@ -129,14 +139,30 @@ def split_fans(triangles: Triangles) -> tuple[IntArray, Triangles]:
 
 
 def _cluster_labels(mesh: TriangleMesh, cell: float, kind: IntArray | None) -> IntArray:
-    cells = np.floor((mesh.vertices - mesh.vertices.min(axis=0)) / cell).astype(np.int64)
-    first, label = _groups(_as_keys(cells, int(cells.max()) + 1))
-    normals = _some_normals(mesh)
-    agreement = np.einsum("ij,ij->i", normals, normals[first][label])
-    two_sided = 2 * label + (agreement < _OTHER_SIDE)
+    first, label = _groups(_cell_keys(mesh.vertices, cell))
+    triangle = _some_triangle(mesh)
+    front = _normals_of(mesh, triangle[first])
+    for at in range(0, len(label), _CHUNK):
+        part = slice(at, at + _CHUNK)
+        agreement = np.einsum("ij,ij->i", _normals_of(mesh, triangle[part]), front[label[part]])
+        label[part] = 2 * label[part] + (agreement < _OTHER_SIDE)
     if kind is not None:
-        two_sided += 2 * len(first) * kind
-    return _groups(two_sided)[1]
+        label += 2 * len(first) * kind
+    return _groups(label)[1]
+
+
+def _cell_keys(vertices: Vertices, cell: float) -> IntArray:
+    """One integer (n,) for the cell of every vertex."""
+    low = vertices.min(axis=0)
+    # Cells of the highest corner, by the same arithmetic as those of the vertices.
+    base = int(np.floor((vertices.max(axis=0) - low) / cell).max()) + 1
+    if base >= _MOST_CELLS:
+        return _as_keys(np.floor((vertices - low) / cell).astype(np.int64), base)
+    keys = np.empty(len(vertices), np.int64)
+    for at in range(0, len(vertices), _CHUNK):
+        cells = np.floor((vertices[at : at + _CHUNK] - low) / cell).astype(np.int64)
+        keys[at : at + _CHUNK] = _as_keys(cells, base)
+    return keys
 
 
 def _groups(keys: IntArray) -> tuple[IntArray, IntArray]:
@@ -153,14 +179,18 @@ def _groups(keys: IntArray) -> tuple[IntArray, IntArray]:
     return first, table[keys]
 
 
-def _some_normals(mesh: TriangleMesh) -> FloatArray:
-    """Give every vertex the unit normal of one of its triangles: (n, 3); zero without one."""
+def _some_triangle(mesh: TriangleMesh) -> IntArray:
+    """Give every vertex one of its triangles: (n,); -1 without one."""
     triangle = np.full(len(mesh.vertices), -1)
     for corner in range(3):
         triangle[mesh.triangles[:, corner]] = np.arange(len(mesh.triangles))
-    used = triangle >= 0
-    normals = np.zeros((len(mesh.vertices), 3))
-    normals[used] = triangle_normals(mesh.vertices, mesh.triangles[triangle[used]])
+    return triangle
+
+
+def _normals_of(mesh: TriangleMesh, triangle: IntArray) -> FloatArray:
+    """Give the unit normals (k, 3) of some triangles (k,); zero for -1."""
+    normals = triangle_normals(mesh.vertices, mesh.triangles[triangle])
+    normals[triangle < 0] = 0.0
     return normals
 
 
@@ -188,6 +218,6 @@ def _is_first_of_its_corners(triangles: Triangles, n_vertices: int) -> BoolArray
 
 def _as_keys(rows: IntArray, base: int) -> IntArray:
     """One integer for each row of three, so that sorting is fast; the rank of the row where that would overflow."""
-    if base >= 2_000_000:  # 2e6 cubed is just under 2**63
+    if base >= _MOST_CELLS:
         return np.asarray(np.unique(rows, axis=0, return_inverse=True)[1], dtype=np.int64).ravel()
     return (rows[:, 0] * base + rows[:, 1]) * base + rows[:, 2]

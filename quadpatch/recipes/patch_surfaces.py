@@ -122,7 +122,6 @@ class CoarseCopy:
         is_removed = np.zeros(len(measured.vertices), bool)
         if removed is not None:
             is_removed[self._in_region(np.flatnonzero(removed))] = True
-        cut = np.asarray(is_removed[measured.triangles].any(axis=1))
         fills = [fill for fill in (filled, calibration) if fill is not None]
         vertices, new_triangles = self._joined(fills)
         # What was measured, taken away or invented is never joined with what is not.
@@ -130,11 +129,13 @@ class CoarseCopy:
         kind = np.concatenate([is_removed.astype(np.int64), np.repeat(np.arange(2, 2 + len(fills)), counts)])
         everything = TriangleMesh(vertices, np.concatenate([measured.triangles, *new_triangles]))
         clusters = cluster(everything, self.cell, kind)
-        surface = _coarse(clusters, measured.triangles, cut, new_triangles[0])
+        remaining = measured.triangles[clusters.spanning(measured.triangles)]
+        cut = np.asarray(is_removed[remaining].any(axis=1))
+        surface = _coarse(clusters, remaining, cut, new_triangles[0])
         if calibration is None:
             return PatchSurfaces(surface, None)
-        remaining = measured.triangles[~cut]
-        return PatchSurfaces(surface, _coarse(clusters, remaining, np.zeros(len(remaining), bool), new_triangles[1]))
+        nothing = np.zeros(int((~cut).sum()), bool)
+        return PatchSurfaces(surface, _coarse(clusters, remaining[~cut], nothing, new_triangles[1]))
 
     def _in_region(self, indices: IntArray) -> IntArray:
         return self.region.local(self.filled_region.vertices[indices])
