@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from quadpatch.inpainters.model_file import Model
     from quadpatch.sparse.dictionary import Dictionary
 
+AUTO = "auto"
 SMOOTH = "smooth"
 SELF = "self"
 SELF_NETWORK = "self-network"
@@ -40,8 +41,9 @@ def choose_model(
     Parameters
     ----------
     model : str or Path
-        `smooth` (no learning), `self` (learn a dictionary from the mesh itself), `self-network` (fit the shipped
-        network to the mesh itself), the name of a shipped model (`name` or `name@version`), or a model file.
+        `auto` (what calibration finds best), `smooth` (no learning), `self` (learn a dictionary from the mesh itself),
+        `self-network` (fit the shipped network to the mesh itself), the name of a shipped model (`name` or
+        `name@version`), or a model file.
     options : RepairOptions
     progress : callable
     network_card : dict or None
@@ -69,6 +71,8 @@ def choose_model(
         raise OptionError(f"network.steps and network.seconds go with the model {SELF_NETWORK} only")
     if model == SMOOTH:
         return None, {"name": SMOOTH}
+    if model == AUTO:
+        return _competing(options, progress), {"name": AUTO}
     if model == SELF:
         return _dictionary_of_the_mesh(options, progress), {"name": SELF}
     loaded, facts = find_model(model)
@@ -105,6 +109,17 @@ def sha256_of(path: Path) -> str:
     """Hash a file's bytes, in hex."""
     with path.open("rb") as file:
         return hashlib.file_digest(file, "sha256").hexdigest()
+
+
+def _competing(options: RepairOptions, progress: Progress) -> Inpainter:
+    """Let a dictionary of the mesh itself and the shipped network compete."""
+    if options.recipe == "paper":
+        raise OptionError("the recipe paper is a way to use one learned model: name it, or take self")
+    from quadpatch.inpainters.competing import CompetingInpainters  # noqa: PLC0415  see the module docstring
+
+    network, _ = choose_model(BASE_NETWORK, options, progress, None)
+    dictionary = _dictionary_of_the_mesh(options, progress)
+    return CompetingInpainters({SELF: dictionary, BASE_NETWORK: network} if network else {SELF: dictionary})
 
 
 def _dictionary_of_the_mesh(options: RepairOptions, progress: Progress) -> Inpainter:

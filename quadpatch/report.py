@@ -101,7 +101,7 @@ def build_report(
         "source": describe_mesh(scan, welded.mesh),
         "welded": asdict(welded.counts),
         "length_unit": scan.unit or UNKNOWN_UNIT,
-        "model": model,
+        "model": {**model, "shares": completion.shares} if completion and completion.shares else model,
         "options": plain_options(options),
         "counts": {
             "found": len(repair.results),

@@ -43,8 +43,9 @@ ROUNDING = 1e-9
 # Shares of the predicted displacement that are tried, and what a share must gain over none to be taken.
 SHARES = (0.0, 0.25, 0.5, 0.75, 1.0)
 _LEAST_GAIN = 0.02
-# The same in standard errors of the gain: one of them lets a model through by chance at one mesh in six.
-_LEAST_GAIN_IN_ERRORS = 2.0
+# The same in standard errors of the gain: chance alone comes so far at one mesh in twenty, and to one of them at one in
+# six.
+_LEAST_GAIN_IN_ERRORS = 1.64
 # What holes may lose together, as a share of what others gain, for a gain to be no chance.
 _HARDLY = 0.05
 
@@ -149,7 +150,7 @@ def choose_energy(errors: FloatArray, diameter: float, energies: Sequence[Energy
 def choose_blend_factor(calibration: CalibrationSet, filled: FilledMesh, displacement: FloatArray) -> float:
     """Choose the share of predicted displacements (k, 3) that leaves the smallest mean error.
 
-    It is 0 where that gains less than two percent, or less than two standard errors: a few dozen holes can't tell more.
+    It is 0 where that gains less than two percent, or less than 1.64 standard errors: a few dozen holes can't tell more.
     Where hardly any hole loses, the rare ones that gain much are enough.
     """
     new = filled.mesh.vertices[filled.n_measured_vertices :]

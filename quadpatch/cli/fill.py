@@ -44,7 +44,8 @@ def fill(  # noqa: PLR0913, PLR0917  one argument per flag
     model: Annotated[
         str,
         typer.Option(
-            help="self (learn a dictionary from this mesh), self-network (fit a network to it: minutes), "
+            help="self (learn a dictionary from this mesh), auto (self, the shipped network or their mean, whichever "
+            "calibration finds best), self-network (fit a network to this mesh: minutes), "
             "smooth (geometry only), a shipped model, or a model file."
         ),
     ] = "self",

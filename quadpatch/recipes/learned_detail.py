@@ -8,16 +8,17 @@ from functools import partial
 
 import numpy as np
 
-from quadpatch.calibration.calibration_set import CalibrationSet, choose_blend_factor, expect
+from quadpatch.calibration.calibration_set import CalibrationSet, choose_blend_factor, error_per_hole, expect
 from quadpatch.calibration.crease_selection import fill_uniformly
 from quadpatch.calibration.energy_selection import EnergyBlend
 from quadpatch.calibration.error_model import ErrorModel
 from quadpatch.calibration.training_pairs import TrainingSurface
 from quadpatch.filling.filled_mesh import FilledMesh
-from quadpatch.inpainters.inpainter import FittedInpainter, Inpainter, UndamagedSurface
+from quadpatch.inpainters.competing import FittedCompetitors
+from quadpatch.inpainters.inpainter import Inpainter, UndamagedSurface
 from quadpatch.options import RepairOptions
 from quadpatch.patches.folding import is_unfolded
-from quadpatch.patches.layout import lay_out, pick, seeds_near, take
+from quadpatch.patches.layout import Sampled, lay_out, pick, seeds_near, take
 from quadpatch.patches.scale import PatchScale, choose_scale
 from quadpatch.patches.seeds import Seeds
 from quadpatch.recipes.assessment import agreeing_holes, measure_agreement
@@ -73,12 +74,23 @@ class Calibration:
 
 
 @dataclass(frozen=True)
-class _Model:
-    """A model, and the layout of the patches that it is applied to."""
+class _Choice:
+    """A model, and what calibration says of it.
 
-    inpainter: FittedInpainter
-    seeds: Seeds
-    scale: PatchScale
+    Attributes
+    ----------
+    model : FittedCompetitors
+    blend_factor : float
+    error_model : ErrorModel or None
+        None without calibration.
+    error : float
+        Mean over the calibration holes, in mesh units.
+    """
+
+    model: FittedCompetitors
+    blend_factor: float = PRIOR_BLEND_FACTOR
+    error_model: ErrorModel | None = None
+    error: float = np.inf
 
 
 def complete(
@@ -129,19 +141,32 @@ def complete(
         fitted = inpainter.fitted_to(UndamagedSurface(known_patches, everywhere.base_heights, training_surface))
         if fitted is None:
             return None
-        model = _Model(fitted, seeds, scale)
-        blend_factor, error_model = _calibrate_model(calibration.holes, fill, surfaces.calibration, model)
+        competitors = fitted if isinstance(fitted, FittedCompetitors) else FittedCompetitors({"": fitted}, {"": 1.0})
+        choice = _Choice(competitors)
+        if calibration.holes is not None and fill is not None and surfaces.calibration is not None:
+            near_calibration = _sample_calibration(fill, surfaces.calibration, seeds, scale)
+            choice = _calibrate_models(calibration.holes, fill, near_calibration, competitors)
     with stages.stage("inpaint"):
         # A model with a blend factor of 0 need not be asked.
-        predicted = fitted.predict(sampled.patches, sampled.base_heights) if blend_factor else None
+        predicted = choice.model.predict(sampled.patches, sampled.base_heights) if choice.blend_factor else None
     with stages.stage("reconstruct"):
-        agreement, displaced_holes = None, np.zeros(len(filled.disagreement), bool)
-        displacement = np.zeros((len(filled.vertex_hole), 3))
-        if predicted is not None:
-            joined, agreement = _displacements(filled, sampled.patches, predicted)
-            displaced_holes = agreeing_holes(agreement)
-            displacement = blend_factor * np.where(displaced_holes[filled.vertex_hole][:, None], joined, 0.0)
-    return Completion(displacement, agreement, displaced_holes, blend_factor, error_model, scale, len(sampled.patches))
+        completion = _completion(filled, sampled, predicted, choice, scale)
+    return completion if isinstance(fitted, FittedCompetitors) else replace(completion, shares={})
+
+
+def _completion(
+    filled: FilledMesh, sampled: Sampled, predicted: FloatArray | None, choice: _Choice, scale: PatchScale
+) -> Completion:
+    """Turn what a model predicts of the patches around the holes into a displacement of their fills."""
+    n_patches, unmoved = len(sampled.patches), np.zeros((len(filled.vertex_hole), 3))
+    if predicted is None:
+        nowhere = np.zeros(len(filled.disagreement), bool)
+        return Completion(unmoved, None, nowhere, choice.blend_factor, choice.error_model, scale, n_patches)
+    joined, agreement = _displacements(filled, sampled.patches, predicted)
+    displaced_holes = agreeing_holes(agreement)
+    displacement = choice.blend_factor * np.where(displaced_holes[filled.vertex_hole][:, None], joined, 0.0)
+    model = choice.blend_factor, choice.error_model, scale, n_patches, dict(choice.model.shares)
+    return Completion(displacement, agreement, displaced_holes, *model)
 
 
 def _surfaces(
@@ -174,21 +199,28 @@ def _some(count: int, rng: np.random.Generator) -> BoolArray:
     return chosen
 
 
-def _calibrate_model(
-    holes: CalibrationSet | None, filled: FilledMesh | None, surface: PatchSurface | None, model: _Model
-) -> tuple[float, ErrorModel | None]:
-    """Complete the calibration holes: the blend factor, and the error to expect."""
-    if holes is None or filled is None or surface is None:
-        return PRIOR_BLEND_FACTOR, None
+def _sample_calibration(filled: FilledMesh, surface: PatchSurface, seeds: Seeds, scale: PatchScale) -> Sampled:
+    """Cut the patches that show the calibration holes."""
     new = filled.mesh.vertices[filled.n_measured_vertices :]
-    near = take(model.seeds, seeds_near(model.seeds, new, model.scale.length))
-    sampled = surface.patchify(surface.smoothed(model.scale), near, model.scale)
-    sampled = pick(sampled, is_unfolded(sampled.patches))
-    predicted = model.inpainter.predict(sampled.patches, sampled.base_heights)
-    joined, agreement = _displacements(filled, sampled.patches, predicted)
-    joined = np.where(agreeing_holes(agreement)[filled.vertex_hole][:, None], joined, 0.0)
-    factor = choose_blend_factor(holes, filled, joined)
-    return factor, expect(holes, filled.displaced(factor * joined))
+    near = take(seeds, seeds_near(seeds, new, scale.length))
+    sampled = surface.patchify(surface.smoothed(scale), near, scale)
+    return pick(sampled, is_unfolded(sampled.patches))
+
+
+def _calibrate_models(
+    holes: CalibrationSet, filled: FilledMesh, sampled: Sampled, competitors: FittedCompetitors
+) -> _Choice:
+    """Complete the calibration holes by each model and by their mean: take what leaves the smallest error."""
+    predicted = competitors.predict_each(sampled.patches, sampled.base_heights)
+    choices = []
+    for model in competitors.mixtures():
+        joined, agreement = _displacements(filled, sampled.patches, model.mixed(predicted))
+        joined = np.where(agreeing_holes(agreement)[filled.vertex_hole][:, None], joined, 0.0)
+        factor = choose_blend_factor(holes, filled, joined)
+        completed = filled.displaced(factor * joined)
+        error = float(error_per_hole(holes, completed).mean())
+        choices.append(_Choice(model, factor, expect(holes, completed), error))
+    return min(choices, key=lambda choice: choice.error)
 
 
 def _displacements(filled: FilledMesh, patches: Patches, predicted: FloatArray) -> tuple[FloatArray, PatchAgreement]:

@@ -90,6 +90,8 @@ class Completion:
         How large an error to expect, by calibration holes; None without calibration.
     scale : PatchScale
     n_patches : int
+    shares : dict of str to float
+        Of the models that competed, by name; empty where there was one, or none was applied.
     undone : (n_holes,) bool or None
         Holes whose displacement was taken back, since it made their fill fold or run through other surface.
     left_out : (n_holes,) bool or None
@@ -103,6 +105,7 @@ class Completion:
     error_model: ErrorModel | None
     scale: PatchScale
     n_patches: int
+    shares: dict[str, float] = field(default_factory=dict)
     undone: BoolArray | None = None
     left_out: BoolArray | None = None
 
