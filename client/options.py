@@ -9,7 +9,7 @@ import typer
 from shared_rules.option_words import OutputFormat, Preset, Recipe
 
 DEFAULT_URL = "http://127.0.0.1:8000"
-MethodName = Literal["dictionary", "cnn", "smooth"]
+MethodName = Literal["auto", "dictionary", "cnn", "smooth"]
 # `JobState` of the wire schema, without loading it.
 JobStateName = Literal["queued", "running", "canceling", "canceled", "succeeded", "succeeded_with_warnings", "failed"]
 

@@ -46,6 +46,10 @@ def _method(choice: MethodChoice) -> dict[str, Any]:
         if choice.model is not None or choice.recipe is not None or patches:
             raise UsageError("the method 'smooth' takes no model, no recipe and no patch options")
         return {"method": "smooth"}
+    if choice.method == "auto":
+        if choice.model is not None or choice.recipe is not None:
+            raise UsageError("the method 'auto' finds the model by itself: it takes no model and no recipe")
+        return _given({"method": "auto", "patches": patches})
     rest = _given({"model": choice.model, "recipe": choice.recipe, "fitting": fitting})
     return {"method": choice.method, "patches": patches, **rest}
 

@@ -1,7 +1,17 @@
 """What a job would do: for a fill its selection, applied to the hole list that a worker found."""
 
 from jobkit.errors import UnknownHoleError
-from jobkit.schema import HoleSelection, JobSpec, Limits, MeshFacts, Plan, PlannedHole, ResolvedModel, SmoothMethod
+from jobkit.schema import (
+    AutoMethod,
+    HoleSelection,
+    JobSpec,
+    Limits,
+    MeshFacts,
+    Plan,
+    PlannedHole,
+    ResolvedModel,
+    SmoothMethod,
+)
 from jobkit.settings import Settings
 from service.plan_summary import summary_of
 from shared_rules.hole_selection import choose_holes, join_islands, unknown_hole
@@ -17,7 +27,7 @@ def make_plan(spec: JobSpec, facts: MeshFacts, model: ResolvedModel, settings: S
     """
     check_hole_ids(spec.holes, facts)
     choices = choose_holes(facts.holes, spec.holes, facts.diagonal or 0.0)
-    if isinstance(spec.method, SmoothMethod) or spec.method.recipe != "paper":
+    if isinstance(spec.method, SmoothMethod | AutoMethod) or spec.method.recipe != "paper":
         choices = join_islands(
             [hole.lies_in for hole in facts.holes], choices
         )  # the recipe of the paper has no islands

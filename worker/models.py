@@ -14,7 +14,7 @@ from jobkit.storage.digests import sha256_of
 from worker.failures import EngineFailedError, Failure
 
 # What `quadpatch.repair.repair_file` calls the ways to fill a hole without a model file.
-_WITHOUT_FILE = {"none": "smooth", "self": "self", "self_network": "self-network"}
+_WITHOUT_FILE = {"none": "smooth", "self": "self", "self_network": "self-network", "auto": "auto"}
 
 
 def model_argument(model: ResolvedModel, registry: Registry, store: ObjectStore, cache: Path) -> str:

@@ -6,6 +6,7 @@ from typing import Any, get_args
 from jobkit.meshes import MeshSource
 from jobkit.schema import (
     SELF,
+    AutoMethod,
     CnnMethod,
     Denoising,
     Format,
@@ -94,7 +95,7 @@ def method_options(spec: JobSpec, time_s: float) -> dict[str, Any]:
         That the whole job may take.
     """
     patches = {} if isinstance(spec.method, SmoothMethod) else spec.method.patches.model_dump()
-    recipe = "default" if isinstance(spec.method, SmoothMethod) else spec.method.recipe
+    recipe = "default" if isinstance(spec.method, SmoothMethod | AutoMethod) else spec.method.recipe
     options = {"holes": spec.holes.model_dump(), "patches": patches, "seed": spec.seed, "recipe": recipe}
     options["weld_tolerance"] = spec.weld_tolerance
     if isinstance(spec.method, CnnMethod) and spec.method.model == SELF:

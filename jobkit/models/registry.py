@@ -34,7 +34,7 @@ _MOST_CONFLICTS = 20
 # Of one model: when it is asked for, and in the list of all; a card has up to 64 KiB.
 MOST_VERSIONS = 100
 MOST_LISTED_VERSIONS = 20
-RESERVED_NAMES = frozenset({SELF, "smooth", "none", "latest"})
+RESERVED_NAMES = frozenset({SELF, "auto", "smooth", "none", "latest"})
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ from jobkit.schema import (
     DEFAULT_PAPER_MODEL,
     DEFAULT_PAPER_NETWORK,
     SELF,
+    AutoMethod,
     CnnMethod,
     DictionaryMethod,
     EncodedFacts,
@@ -42,6 +43,8 @@ def resolve_method(registry: Registry, method: Method) -> ResolvedModel:
     """
     if isinstance(method, SmoothMethod):
         return ResolvedModel(requested=method.method, kind="none")
+    if isinstance(method, AutoMethod):
+        return ResolvedModel(requested=method.method, kind="auto")
     if method.model == SELF:
         return ResolvedModel(requested=SELF, kind="self_network" if isinstance(method, CnnMethod) else "self")
     if isinstance(method, CnnMethod):

@@ -8,7 +8,7 @@ Tested in `tests/jobkit/schema/test_tasks.py`.
 
 from collections.abc import Mapping
 
-from jobkit.schema.methods import SELF, CnnMethod, DictionaryMethod, PatchOptions, SmoothMethod
+from jobkit.schema.methods import SELF, AutoMethod, CnnMethod, DictionaryMethod, PatchOptions, SmoothMethod
 from jobkit.schema.spec import HoleSelection, RepairSpec
 from shared_rules.hole_selection import MODEL_FILLS_ONLY, names_fills
 from shared_rules.tasks import Task
@@ -36,6 +36,8 @@ def _conflict_of_fill(spec: RepairSpec) -> str | None:
         return "ids of holes.rules name holes found with the weld_tolerance auto: drop one of the two"
     if isinstance(spec.method, SmoothMethod):
         return _options_of_another_task(spec)
+    if isinstance(spec.method, AutoMethod):
+        return _conflict_of_patches(spec.method.patches) or _options_of_another_task(spec)
     if spec.method.recipe == "paper" and names_fills(spec.holes):
         return MODEL_FILLS_ONLY
     if spec.method.recipe == "paper" and isinstance(spec.method, CnnMethod) and spec.method.model == SELF:
@@ -92,7 +94,7 @@ def _conflict_of_method(spec: RepairSpec) -> str | None:
     has_reference = spec.denoise is not None and spec.denoise.reference is not None
     if has_reference and not (isinstance(method, DictionaryMethod) and method.model == SELF):
         return "denoise.reference takes the place of a model: leave method out, or say self"
-    return None if isinstance(method, SmoothMethod) else _conflict_of_learned(spec, method)
+    return None if isinstance(method, SmoothMethod | AutoMethod) else _conflict_of_learned(spec, method)
 
 
 def _conflict_of_learned(spec: RepairSpec, method: DictionaryMethod | CnnMethod) -> str | None:

@@ -105,4 +105,14 @@ class SmoothMethod(Request):
     method: Literal["smooth"] = Field(description="Thin-plate fill without a model.", examples=["smooth"])
 
 
-Method = Annotated[DictionaryMethod | CnnMethod | SmoothMethod, Field(discriminator="method")]
+class AutoMethod(Request):
+    """A dictionary learned from the mesh itself and the network that ships compete on holes cut for calibration.
+
+    The better one, their mean or geometry alone fills the holes; the report says which.
+    """
+
+    method: Literal["auto"] = Field(description="What calibration on the mesh finds best.", examples=["auto"])
+    patches: PatchOptions = Field(default_factory=PatchOptions, description="How patches are laid out.")
+
+
+Method = Annotated[DictionaryMethod | CnnMethod | SmoothMethod | AutoMethod, Field(discriminator="method")]

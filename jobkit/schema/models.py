@@ -145,9 +145,9 @@ class ResolvedModel(Response):
     """The model that a job is pinned to."""
 
     requested: str = Field(description="As the spec named it.", examples=["default"])
-    kind: Literal["dictionary", "autoencoder", "self", "self_network", "none"] = Field(
+    kind: Literal["dictionary", "autoencoder", "self", "self_network", "auto", "none"] = Field(
         description="`self`: a dictionary learned from the mesh itself; `self_network`: a network fitted to it; "
-        "`none`: a smooth fill uses no model.",
+        "`auto`: what calibration on the mesh finds best; `none`: a smooth fill uses no model.",
         examples=["dictionary"],
     )
     name: str | None = Field(default=None, description="Name of the version.", examples=["general-dictionary"])

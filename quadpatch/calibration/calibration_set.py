@@ -150,8 +150,8 @@ def choose_energy(errors: FloatArray, diameter: float, energies: Sequence[Energy
 def choose_blend_factor(calibration: CalibrationSet, filled: FilledMesh, displacement: FloatArray) -> float:
     """Choose the share of predicted displacements (k, 3) that leaves the smallest mean error.
 
-    It is 0 where that gains less than two percent, or less than 1.64 standard errors: a few dozen holes can't tell more.
-    Where hardly any hole loses, the rare ones that gain much are enough.
+    It is 0 where that gains less than two percent, or less than 1.64 standard errors: a few dozen holes can't tell
+    more. Where hardly any hole loses, the rare ones that gain much are enough.
     """
     new = filled.mesh.vertices[filled.n_measured_vertices :]
     errors = np.array(

@@ -3,7 +3,7 @@ import pytest
 from client.errors import UsageError
 from client.options import HoleChoice, MethodChoice, MethodName, tolerance
 from client.spec import make_spec
-from jobkit.schema import CnnMethod, DictionaryMethod, Fitting, HoleRule, PatchOptions
+from jobkit.schema import AutoMethod, CnnMethod, DictionaryMethod, Fitting, HoleRule, PatchOptions
 
 MESH_ID = "0" * 64
 
@@ -22,6 +22,14 @@ def test_recipes_go_with_learned_models() -> None:
         make_spec(MESH_ID, HoleChoice(), MethodChoice("smooth", recipe="paper"))
     with pytest.raises(UsageError, match="the recipe paper fits no network to a mesh"):
         make_spec(MESH_ID, HoleChoice(), MethodChoice("cnn", "self", recipe="paper"))
+
+
+def test_auto_finds_the_model_by_itself() -> None:
+    chosen = make_spec(MESH_ID, HoleChoice(), MethodChoice("auto", overlap=1))
+    assert chosen.method == AutoMethod(method="auto", patches=PatchOptions(overlap=1))
+    for given in ({"model": "self"}, {"recipe": "paper"}):
+        with pytest.raises(UsageError, match="it takes no model and no recipe"):
+            make_spec(MESH_ID, HoleChoice(), MethodChoice("auto", **given))  # type: ignore[arg-type]
 
 
 def test_a_preset_takes_the_place_of_a_length_and_a_resolution() -> None:

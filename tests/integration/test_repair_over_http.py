@@ -59,6 +59,23 @@ def test_the_recipe_of_the_paper_works_where_no_model_is_named(
     assert {hole["confidence"] for hole in report["holes"]} == {None}
 
 
+def test_auto_lets_models_compete_and_the_report_names_those_that_took_part(
+    client: Client, relief_file: Callable[[str], Path], tmp_path: Path
+) -> None:
+    mesh = client.upload(relief_file("float.ply"))
+    job = client.create_job(spec(mesh.id, method={"method": "auto", "patches": {"overlap": 1}}))
+    assert (job.model.requested, job.model.kind, job.model.name) == ("auto", "auto", None)
+    job = client.wait(job.id, timeout_s=GUARD_S)
+    assert job.state == JobState.SUCCEEDED, job.error
+    client.download(job, "report", tmp_path / "report.json")
+    report = json.loads((tmp_path / "report.json").read_text())
+    assert report["counts"]["filled"] + report["counts"]["filled_smooth"] == 4
+    model = report["model"]
+    assert model["name"] == "auto"
+    believed = report["patches"]["believed_share"] > 0
+    assert (sum(model.get("shares", {}).values()) == pytest.approx(1.0)) is believed
+
+
 def test_a_job_leaves_a_report_and_a_picture_that_fit_its_facts(
     client: Client, relief_file: Callable[[str], Path], tmp_path: Path
 ) -> None:

@@ -7,7 +7,7 @@ from jobkit.database.session import Database
 from jobkit.errors import ModelKindError, ModelNotFoundError, NoNetworkError
 from jobkit.models.registry import Registry
 from jobkit.models.resolution import resolve_method
-from jobkit.schema import CnnMethod, DictionaryMethod, Fitting, SmoothMethod
+from jobkit.schema import AutoMethod, CnnMethod, DictionaryMethod, Fitting, SmoothMethod
 from jobkit.storage.base import ObjectStore
 from tests.jobkit.models.test_registry import NETWORK
 
@@ -32,6 +32,7 @@ def test_a_reference_is_pinned_to_the_version_it_means_now(registry: Registry) -
 def test_self_and_smooth_need_no_registered_model(registry: Registry) -> None:
     assert resolve_method(registry, DictionaryMethod(method="dictionary", model="self")).kind == "self"
     assert resolve_method(registry, SmoothMethod(method="smooth")).kind == "none"
+    assert resolve_method(registry, AutoMethod(method="auto")).kind == "auto"
 
 
 def test_a_network_is_fitted_to_the_mesh_without_being_registered(registry: Registry) -> None:

@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 from pydantic import ValidationError
 
-from jobkit.schema import CnnMethod, DictionaryMethod, JobSpec, SmoothMethod, conflict_of
+from jobkit.schema import AutoMethod, CnnMethod, DictionaryMethod, JobSpec, SmoothMethod, conflict_of
 
 MESH = {"mesh_id": "a" * 64}
 
@@ -26,7 +26,8 @@ def test_writing_and_reading_gives_the_same_spec() -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "kind"), [("dictionary", DictionaryMethod), ("cnn", CnnMethod), ("smooth", SmoothMethod)]
+    ("name", "kind"),
+    [("dictionary", DictionaryMethod), ("cnn", CnnMethod), ("smooth", SmoothMethod), ("auto", AutoMethod)],
 )
 def test_the_method_is_told_by_its_name(name: str, kind: type[Any]) -> None:
     assert isinstance(JobSpec.model_validate(MESH | {"method": {"method": name}}).method, kind)

@@ -78,6 +78,7 @@ def test_what_is_not_in_the_contract_is_refused(change: dict[str, Any]) -> None:
         ("restore", {"restore": None}, "the task restore needs restore.missing"),
         ("encode", {"encode": None}, "the task encode needs encode.max_error"),
         ("denoise", {"method": {"method": "cnn"}}, "goes by dictionary or smooth, not by the method cnn"),
+        ("denoise", {"method": {"method": "auto"}}, "goes by dictionary or smooth, not by the method auto"),
         ("encode", {"method": {"method": "cnn"}}, "goes by dictionary, not by the method cnn"),
         ("decode", {"method": {"method": "smooth"}}, "goes by dictionary, not by the method smooth"),
         ("restore", {"method": {"method": "cnn", "model": "self"}}, "can't be fitted"),
