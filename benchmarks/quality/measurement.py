@@ -17,7 +17,7 @@ from benchmarks.quality.bench import Bench, Case, file_sha256
 from benchmarks.quality.results import REPAIRS, Results
 from quadpatch.inpainters.model_file import shipped_model
 from quadpatch.mesh.distance import distance_to_mesh
-from quadpatch.model_choice import BASE_NETWORK, SELF, SELF_NETWORK, SMOOTH
+from quadpatch.model_choice import AUTO, BASE_NETWORK, SELF, SELF_NETWORK, SMOOTH
 from quadpatch.options import RepairOptions
 from quadpatch.repair import repair_file
 from quadpatch.types import IntArray, Vertices
@@ -51,8 +51,8 @@ class Method:
         key = {"method": self.name, "options": json.dumps(self.options, sort_keys=True)}
         if self.model in (SMOOTH, SELF):
             return key
-        # A network that is fitted to the mesh starts from one that ships.
-        name = BASE_NETWORK if self.model == SELF_NETWORK else self.model
+        # A network that is fitted to the mesh starts from one that ships, which competes in `auto` as well.
+        name = BASE_NETWORK if self.model in {SELF_NETWORK, AUTO} else self.model
         path = Path(name) if Path(name).is_file() else shipped_model(name)
         return {**key, "model_sha256": file_sha256(path)}
 
