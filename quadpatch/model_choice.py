@@ -117,9 +117,8 @@ def _competing(options: RepairOptions, progress: Progress) -> Inpainter:
         raise OptionError("the recipe paper is a way to use one learned model: name it, or take self")
     from quadpatch.inpainters.competing import CompetingInpainters  # noqa: PLC0415  see the module docstring
 
-    network, _ = choose_model(BASE_NETWORK, options, progress, None)
-    dictionary = _dictionary_of_the_mesh(options, progress)
-    return CompetingInpainters({SELF: dictionary, BASE_NETWORK: network} if network else {SELF: dictionary})
+    network = _network(find_model(BASE_NETWORK)[0].path, options, None)
+    return CompetingInpainters({SELF: _dictionary_of_the_mesh(options, progress), BASE_NETWORK: network})
 
 
 def _dictionary_of_the_mesh(options: RepairOptions, progress: Progress) -> Inpainter:

@@ -47,7 +47,7 @@ _LEAST_GAIN = 0.02
 # six.
 _LEAST_GAIN_IN_ERRORS = 1.64
 # What holes may lose together, as a share of what others gain, for a gain to be no chance.
-_HARDLY = 0.05
+_MOST_LOST = 0.05
 
 
 @dataclass(frozen=True)
@@ -160,7 +160,7 @@ def choose_blend_factor(calibration: CalibrationSet, filled: FilledMesh, displac
     best = int(errors.mean(axis=1).argmin())
     gains = errors[0] - errors[best]
     is_sure = float(gains.mean()) > _LEAST_GAIN_IN_ERRORS * float(gains.std()) / np.sqrt(len(gains))
-    is_harmless = float(-gains[gains < 0].sum()) < _HARDLY * float(gains[gains > 0].sum())
+    is_harmless = float(-gains[gains < 0].sum()) < _MOST_LOST * float(gains[gains > 0].sum())
     is_worth_it = float(gains.mean()) > _LEAST_GAIN * float(errors[0].mean())
     return SHARES[best] if is_worth_it and (is_sure or is_harmless) else 0.0
 

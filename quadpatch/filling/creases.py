@@ -17,6 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse
 
+from quadpatch.filling.fairing import triangles_around
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.mesh.normals import area_vectors, length, triangle_normals, unit
 from quadpatch.mesh.topology import neighbouring_triangles
@@ -114,12 +115,9 @@ class _Surroundings:
     @classmethod
     def of(cls, filled: FilledMesh) -> "_Surroundings":
         """Take the fills and a few rings around them."""
-        mesh, near = filled.mesh, filled.invented_triangles
-        for _ in range(_RINGS):
-            touched = np.zeros(len(mesh.vertices), bool)
-            touched[mesh.triangles[near]] = True
-            near = np.asarray(touched[mesh.triangles].any(axis=1))
-        chosen = np.flatnonzero(near)
+        mesh = filled.mesh
+        invented = mesh.triangles[filled.n_measured_triangles :].ravel()
+        chosen = triangles_around(mesh.triangles, invented, len(mesh.vertices), _RINGS)
         origin, local = np.unique(mesh.triangles[chosen], return_inverse=True)
         triangles = local.reshape(-1, 3)
         new_vertices = np.flatnonzero(origin >= filled.n_measured_vertices)

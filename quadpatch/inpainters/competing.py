@@ -27,9 +27,10 @@ class FittedCompetitors:
 
     def mixtures(self) -> list["FittedCompetitors"]:
         """List what may be taken: each model by itself and, of several, their mean."""
-        alone: list[Mapping[str, float]] = [{name: 1.0} for name in self.members]
-        mean = {name: 1.0 / len(self.members) for name in self.members}
-        return [FittedCompetitors(self.members, shares) for shares in [*alone, mean][: 2 * len(self.members) - 1]]
+        shares = [{name: 1.0} for name in self.members]
+        if len(self.members) > 1:
+            shares.append({name: 1.0 / len(self.members) for name in self.members})
+        return [FittedCompetitors(self.members, share) for share in shares]
 
     def mixed(self, predicted: Mapping[str, FloatArray]) -> FloatArray:
         """Mix what the models predict, (n_patches, N, N) each, by their shares."""

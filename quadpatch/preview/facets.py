@@ -8,7 +8,7 @@ Tested in `tests/quadpatch/preview/test_shading.py`.
 
 import numpy as np
 
-from quadpatch.mesh.raycast import Hits, Places
+from quadpatch.mesh.raycast import Places
 from quadpatch.preview.camera import View
 from quadpatch.preview.sampling import Colours
 from quadpatch.types import FloatArray, IntArray, TriangleMesh
@@ -46,12 +46,12 @@ class Facets:
         side = np.where(self.is_front, 1.0, -1.0)
         self._planes = (side * np.stack([in_middle, per_column, per_row], axis=1)).astype(np.float32)
 
-    def normals_at(self, facet: Hits, places: Places) -> Colours:
+    def normals_at(self, facet: IntArray, places: Places) -> Colours:
         """Interpolate normals, which need not be of unit length.
 
         Parameters
         ----------
-        facet : (n,) int32
+        facet : (n,) int64
             Positions in `chosen`.
         places : (2, n) float32
             Columns and rows.

@@ -6,12 +6,13 @@ import numpy as np
 
 from quadpatch.mesh.normals import triangle_normals, unit
 from quadpatch.mesh.raycast import Hits, Places, RayScene
+from quadpatch.mesh.topology import compacted
 from quadpatch.mesh.weld import weld
 from quadpatch.preview.camera import Camera, View
 from quadpatch.preview.facets import Facets
 from quadpatch.preview.parts import touching
 from quadpatch.preview.sampling import Colours, sampled
-from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh
+from quadpatch.types import BoolArray, FloatArray, TriangleMesh
 
 BACKGROUND = np.array([0.965, 0.968, 0.972])
 CLAY = np.array([0.80, 0.79, 0.77])
@@ -79,23 +80,13 @@ class Clay:
         """Colours (3, n) of triangles (n,) at places (2, n); the background for the triangle -1."""
         colours = np.repeat(BACKGROUND.astype(np.float32)[:, None], len(triangle), axis=1)
         hit = np.flatnonzero(triangle >= 0)
-        seen, facet = _numbered(triangle[hit], len(self._mesh.triangles))
+        seen, facet = compacted(triangle[hit].astype(np.int64), len(self._mesh.triangles))
         facets = Facets(self._mesh, self._flat, self._smooth, seen, view)
         base = np.where(facets.is_front, self._colours[seen].T, BACK[:, None]).astype(np.float32)
         light = _light(facets.normals_at(facet, places[:, hit]))
         for channel in range(3):
             colours[channel, hit] = np.minimum(base[channel, facet] * light, 1)
         return colours
-
-
-def _numbered(triangle: Hits, n_triangles: int) -> tuple[IntArray, Hits]:
-    """Which triangles there are among some (n,), and the position of each one there: as `numpy.unique`, unsorted."""
-    is_seen = np.zeros(n_triangles, dtype=bool)
-    is_seen[triangle] = True
-    seen = np.flatnonzero(is_seen)
-    number = np.empty(n_triangles, dtype=np.int32)
-    number[seen] = np.arange(len(seen), dtype=np.int32)
-    return seen, number[triangle]
 
 
 def _light(normals: Colours) -> Colours:

@@ -11,6 +11,7 @@ Tested in `tests/worker/engine/test_preloading.py`.
 import embreex.mesh_construction
 import embreex.rtcore_scene
 import manifold3d
+import PIL.Image
 
 import quadpatch.formats.gltf.encoder
 import quadpatch.formats.gltf.reader
@@ -20,3 +21,6 @@ import quadpatch.inpainters.dictionary
 import quadpatch.inpainters.onnx_network
 import quadpatch.inpainters.paper_dictionary
 import quadpatch.recipes.paper
+
+# What Pillow loads before it writes its first file.
+PIL.Image.preinit()
