@@ -49,7 +49,7 @@ DEFAULT_ENERGY = FAIRING_ENERGIES[2]
 PRIOR_ENERGY = THIN_PLATE
 
 # Calibration holes are at most so many mean edges wide: wider ones cost more and tell the same.
-WIDEST_CALIBRATION = 64.0
+WIDEST_CALIBRATION = 24.0
 
 
 def inpaint(
