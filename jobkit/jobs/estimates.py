@@ -1,48 +1,33 @@
 """Estimates of how long jobs still take, from past jobs of their size, and their positions in the queue.
 
-A past job is similar if its task is the same, its model of the same kind and its mesh of about the same size: the
-median of their seconds for each byte, times the bytes, is the estimate. A kind or size with too few past jobs has no
+The median of the seconds for each byte that similar past jobs took (`jobkit.jobs.past_jobs`), times the bytes, is the
 estimate. A job without one counts as if it never freed its worker, so that estimates of the jobs behind it are rather
 too long.
 """
 
 import heapq
 import math
-import statistics
 import threading
 import time
-from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from datetime import datetime
 from typing import Any
 
-from sqlalchemy import Row, Select, select
+from sqlalchemy import Row
 from sqlalchemy.orm import Session
 
 from jobkit.database.clock import shared_now
 from jobkit.database.session import Database
-from jobkit.database.tables import JobRow, MeshRow
+from jobkit.database.tables import JobRow
+from jobkit.jobs.past_jobs import Rates, kinds_and_sizes, read_past
 from jobkit.schema import Job, JobState
 
-_SUCCEEDED = [state.value for state in JobState if state.has_result]
 _AT_WORK = (JobState.RUNNING.value, JobState.CANCELING.value)
-# Fewer past jobs are no basis; older ones may have run on another machine or version.
-MIN_PAST = 3
-_MAX_PAST = 500
 # A long queue takes long to read: refreshes take a fiftieth of the time at most.
 _REFRESH_S, _RATES_REFRESH_S, _PAUSE_PER_REFRESH = 1.0, 30.0, 50
 _STALE_S = 2.0
 _NEVER = math.inf
-
-
-@dataclass(frozen=True)
-class PastJob:
-    """How long a job took that succeeded; `kind` is its task with the kind of its model."""
-
-    kind: str
-    size_bytes: int
-    seconds: float
 
 
 @dataclass(frozen=True)
@@ -62,29 +47,6 @@ class QueueEstimate:
     read_at: float
     positions: Mapping[str, int]
     remaining_s: Mapping[str, float]
-
-
-class Rates:
-    """Seconds for each byte of past jobs, by kind and size class."""
-
-    def __init__(self, past: Iterable[PastJob]) -> None:
-        self._by_class: dict[tuple[str, int], list[float]] = defaultdict(list)
-        for job in past:
-            if job.size_bytes:
-                self._by_class[job.kind, job.size_bytes.bit_length()].append(job.seconds / job.size_bytes)
-        self._rates: dict[tuple[str, int], float | None] = {}
-
-    def seconds(self, kind: str, size_bytes: int) -> float | None:
-        """Return the expected seconds of a job from start to end; None where too few are similar."""
-        size_class = size_bytes.bit_length()
-        if (kind, size_class) not in self._rates:
-            # Sizes of a class differ by two at most, with its neighbours by four.
-            similar_rates = [
-                r for c in (size_class - 1, size_class, size_class + 1) for r in self._by_class.get((kind, c), ())
-            ]
-            self._rates[kind, size_class] = statistics.median(similar_rates) if len(similar_rates) >= MIN_PAST else None
-        rate = self._rates[kind, size_class]
-        return None if rate is None else rate * size_bytes
 
 
 def remaining_running_s(
@@ -206,28 +168,17 @@ class Estimates:
     def _read_queue(self, started: float) -> QueueEstimate:
         with self._database.read() as session:
             if started >= self._rates_refresh_at:
-                self._rates_of_past_jobs = Rates(read_past(session))
+                self._rates_of_past_jobs = Rates(job.seconds_by_size for job in read_past(session))
                 self._rates_refresh_at = started + _RATES_REFRESH_S
             positions, remaining_s = read_queue_estimate(session, self._rates_of_past_jobs)
         return QueueEstimate(started, positions, remaining_s)
-
-
-def read_past(session: Session) -> list[PastJob]:
-    """Return the jobs that succeeded last."""
-    rows = session.execute(
-        _kinds_and_sizes(JobRow.started_at, JobRow.finished_at)
-        .where(JobRow.state.in_(_SUCCEEDED), JobRow.finished_at.is_not(None), JobRow.started_at.is_not(None))
-        .order_by(JobRow.finished_at.desc())
-        .limit(_MAX_PAST)
-    )
-    return [PastJob(row.kind, row.size_bytes, (row.finished_at - row.started_at).total_seconds()) for row in rows]
 
 
 def read_queue_estimate(session: Session, rates: Rates) -> tuple[dict[str, int], dict[str, float]]:
     """Read all jobs that have not ended; return places and seconds left, as `QueueEstimate` has them."""
     now = shared_now(session)
     at_work = session.execute(
-        _kinds_and_sizes(JobRow.percent, JobRow.started_at, JobRow.updated_at, JobRow.worker, JobRow.lease_until).where(
+        kinds_and_sizes(JobRow.percent, JobRow.started_at, JobRow.updated_at, JobRow.worker, JobRow.lease_until).where(
             JobRow.state.in_(_AT_WORK)
         )
     ).all()
@@ -237,27 +188,22 @@ def read_queue_estimate(session: Session, rates: Rates) -> tuple[dict[str, int],
     # The worker of a lease that ran out does not count.
     worker_free_s = [remaining_s.get(row.id, _NEVER) for row in at_work if row.lease_until and row.lease_until > now]
     queued_jobs = session.execute(
-        _kinds_and_sizes(JobRow.not_before)
+        kinds_and_sizes(JobRow.not_before)
         .where(JobRow.state == JobState.QUEUED.value)
         .order_by(JobRow.queued_at, JobRow.id)
     ).all()
     ends = remaining_queued_s(
         worker_free_s,
-        [(rates.seconds(row.kind, row.size_bytes), _seconds_until(row.not_before, now)) for row in queued_jobs],
+        [(rates.amount(row.kind, row.size_bytes), _seconds_until(row.not_before, now)) for row in queued_jobs],
     )
     remaining_s |= {row.id: end for row, end in zip(queued_jobs, ends, strict=True) if end is not None}
     return {row.id: place for place, row in enumerate(queued_jobs, 1)}, remaining_s
 
 
-def _kinds_and_sizes(*columns: Any) -> Select[*tuple[Any, ...]]:
-    kind = JobRow.task.concat(" ").concat(JobRow.model["kind"].as_string()).label("kind")
-    return select(JobRow.id, kind, MeshRow.size_bytes, *columns).join(MeshRow, MeshRow.id == JobRow.mesh_id)
-
-
 def _remaining_s_of(row: Row[*tuple[Any, ...]], rates: Rates, now: datetime) -> float | None:
     running_s = max((now - row.started_at).total_seconds(), 0.0)
     since_update_s = max((now - row.updated_at).total_seconds(), 0.0)
-    return remaining_running_s(rates.seconds(row.kind, row.size_bytes), row.percent / 100.0, running_s, since_update_s)
+    return remaining_running_s(rates.amount(row.kind, row.size_bytes), row.percent / 100.0, running_s, since_update_s)
 
 
 def _seconds_until(moment: datetime | None, now: datetime) -> float:

@@ -11,8 +11,9 @@ from jobkit.database.clock import utc_now
 from jobkit.database.session import Database
 from jobkit.database.tables import JobRow, MeshRow
 from jobkit.jobs.attempts import Attempts
-from jobkit.jobs.estimates import MIN_PAST, Estimates, PastJob, Rates, remaining_queued_s, remaining_running_s
+from jobkit.jobs.estimates import Estimates, remaining_queued_s, remaining_running_s
 from jobkit.jobs.jobs import Jobs, NewJob
+from jobkit.jobs.past_jobs import MIN_PAST, Rates, Sample
 from jobkit.schema import Job, JobError, JobResult, JobState
 
 MIB = 1 << 20
@@ -34,20 +35,20 @@ class Clock:
 
 @given(rate=st.floats(0.01, 100.0), sizes=st.lists(st.integers(MIB, 2 * MIB - 1), min_size=MIN_PAST), size=st.just(MIB))
 def test_jobs_of_one_pace_foretell_their_like_exactly(rate: float, sizes: list[int], size: int) -> None:
-    rates = Rates(PastJob("self", past, rate * past) for past in sizes)
-    assert rates.seconds("self", size) == pytest.approx(rate * size)
+    rates = Rates(Sample("self", past, rate * past) for past in sizes)
+    assert rates.amount("self", size) == pytest.approx(rate * size)
 
 
 def test_one_odd_job_among_many_changes_little() -> None:
-    past = [PastJob("self", MIB, 10.0)] * 8 + [PastJob("self", MIB, 5000.0)]
-    assert Rates(past).seconds("self", MIB) == pytest.approx(10.0)
+    past = [Sample("self", MIB, 10.0)] * 8 + [Sample("self", MIB, 5000.0)]
+    assert Rates(past).amount("self", MIB) == pytest.approx(10.0)
 
 
 @pytest.mark.parametrize(
     ("kind", "size", "n_past"), [("none", MIB, 9), ("self", 8 * MIB, 9), ("self", MIB // 8, 9), ("self", MIB, 2)]
 )
 def test_other_kinds_other_sizes_and_too_few_jobs_foretell_nothing(kind: str, size: int, n_past: int) -> None:
-    assert Rates([PastJob("self", MIB, 10.0)] * n_past).seconds(kind, size) is None
+    assert Rates([Sample("self", MIB, 10.0)] * n_past).amount(kind, size) is None
 
 
 @given(whole=seconds, done_share=st.floats(0.0, 0.999), worked=seconds)
