@@ -88,7 +88,7 @@ def run_check(
 def _work_with_heartbeat(context: Context, check: Check, work: Callable[[Observer], T]) -> T:
     settings = context.settings
 
-    def renew(_memory_mb: int) -> bool:
+    def renew(_memory_mb: int, _peak_mb: int) -> bool:
         check.renew(settings.lease_s)
         return False  # no client can cancel a check
 

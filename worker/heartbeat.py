@@ -31,8 +31,8 @@ class HeartbeatCalls:
     Attributes
     ----------
     renew : callable
-        Renews the lease, given the peak memory, in MiB, and returns whether a client asked for the end; raises
-        StaleAttemptError.
+        Renews the lease, given the present and the peak memory, in MiB, and returns whether a client asked for the end;
+        raises StaleAttemptError.
     is_cancel_requested : callable
         Reads the same between two renewals; raises StaleAttemptError.
     report : callable
@@ -43,7 +43,7 @@ class HeartbeatCalls:
         Seconds for which an unavailable database is waited for: meanwhile no other worker can start the job either.
     """
 
-    renew: Callable[[int], bool]
+    renew: Callable[[int, int], bool]
     is_cancel_requested: Callable[[], bool]
     report: Callable[[str, float], None]
     heartbeat_s: float
@@ -57,7 +57,8 @@ class Heartbeat:
         self._heartbeat_calls = heartbeat_calls
         self._progress = progress or Progress()
         self._written_progress = ("", 0.0)
-        self._peak_mb = 0
+        self._memory_mb = 0
+        self.peak_mb = 0
         self._stop_event = threading.Event()
         self._renewed_at = time.monotonic()
         self._thread = threading.Thread(target=copy_context().run, args=(self._beat,), name="heartbeat", daemon=True)
@@ -69,7 +70,12 @@ class Heartbeat:
 
     def note_memory(self, memory_mb: float) -> None:
         """Take note of the engine's memory, in MiB; a new peak goes out with the next heartbeat."""
-        self._peak_mb = max(self._peak_mb, int(memory_mb))
+        self._memory_mb = int(memory_mb)
+        self.note_peak(memory_mb)
+
+    def note_peak(self, memory_mb: float) -> None:
+        """Take note of the most memory that the engine had at once, in MiB."""
+        self.peak_mb = max(self.peak_mb, int(memory_mb))
 
     def __enter__(self) -> Self:
         """Start beating."""
@@ -95,7 +101,7 @@ class Heartbeat:
 
     def _beat_once(self) -> None:
         if time.monotonic() - self._renewed_at >= self._heartbeat_calls.heartbeat_s:
-            is_cancel_requested = self._heartbeat_calls.renew(self._peak_mb)
+            is_cancel_requested = self._heartbeat_calls.renew(self._memory_mb, self.peak_mb)
             self._renewed_at = time.monotonic()
         else:
             is_cancel_requested = self._heartbeat_calls.is_cancel_requested()

@@ -35,6 +35,7 @@ from worker.models import deprecation, model_argument, network_card
 from worker.outcomes import folder_with_mesh, outcome_of
 from worker.progress import Progress
 from worker.results import (
+    Cost,
     drop_result,
     missing_pictures,
     note_deprecation,
@@ -129,7 +130,12 @@ def _work(context: Context, started_attempt: StartedAttempt, heartbeat: Heartbea
     )
     with folder_with_mesh(context, source, reference) as folder:
         with context.telemetry.stages() as spans:
-            observer = Observer(_report_to_both(heartbeat, spans), _StopRule(context, heartbeat), heartbeat.note_memory)
+            observer = Observer(
+                _report_to_both(heartbeat, spans),
+                _StopRule(context, heartbeat),
+                heartbeat.note_memory,
+                heartbeat.note_peak,
+            )
             failure = run_engine(context.fork_server, request, folder, observer)
         if failure is not None:
             note_lost_pictures(folder, request, failure)
@@ -137,7 +143,8 @@ def _work(context: Context, started_attempt: StartedAttempt, heartbeat: Heartbea
             log_engine_tail(folder / LOG_NAME)
         if deprecated is not None:
             note_deprecation(folder, f"{job.model.name}@{job.model.version}", deprecated.reason)
-        result = store_result(folder, request, started_attempt.attempt, context.store, time.monotonic() - started_at)
+        cost = Cost(time.monotonic() - started_at, heartbeat.peak_mb)
+        result = store_result(folder, request, started_attempt.attempt, context.store, cost)
         return _Repaired(result, stage_seconds(folder, job.spec))
 
 
@@ -172,7 +179,7 @@ class _StopRule:
 def _heartbeat_calls(context: Context, started_attempt: StartedAttempt) -> HeartbeatCalls:
     attempts, attempt, settings = context.attempts, started_attempt.attempt, context.settings
     return HeartbeatCalls(
-        renew=lambda memory_mb: attempts.heartbeat(attempt, settings.lease_s, memory_mb),
+        renew=lambda _, peak_mb: attempts.heartbeat(attempt, settings.lease_s, peak_mb),
         is_cancel_requested=lambda: attempts.is_canceling(attempt),
         report=lambda stage, percent: attempts.report_progress(attempt, stage, percent),
         heartbeat_s=settings.heartbeat_s,

@@ -40,9 +40,15 @@ _PREVIEW = Picture("preview", PREVIEW_NAME, "preview", "there is no picture")
 _CLOSE_UPS = Picture("closeups", CLOSE_UPS_NAME, "closeups", "there are no close-ups")
 
 
-def store_result(
-    folder: Path, request: EngineRequest, attempt: Attempt, store: ObjectStore, seconds: float
-) -> JobResult:
+@dataclass(frozen=True)
+class Cost:
+    """What the work took: wall-clock seconds, and the most memory of its engine, in MiB."""
+
+    seconds: float
+    peak_memory_mb: int
+
+
+def store_result(folder: Path, request: EngineRequest, attempt: Attempt, store: ObjectStore, cost: Cost) -> JobResult:
     """Copy an engine's files to where this attempt may write, and describe them; no row names them yet.
 
     Parameters
@@ -52,8 +58,8 @@ def store_result(
     request : EngineRequest
     attempt : Attempt
     store : ObjectStore
-    seconds : float
-        Wall-clock time of the work.
+    cost : Cost
+        Of the work.
     """
     mesh = _store_file(folder / request.output, "result", attempt, store)
     pictures = [file for picture in (_PREVIEW, _CLOSE_UPS) for file in _store_picture(picture, folder, attempt, store)]
@@ -62,7 +68,8 @@ def store_result(
     return JobResult.model_validate(
         {
             "format": Path(request.output).suffix.removeprefix("."),
-            "seconds": round(seconds, 3),
+            "seconds": round(cost.seconds, 3),
+            "peak_memory_mb": cost.peak_memory_mb,
             "files": files,
             **(facts_of_fill(report) if request.task == "repair" else facts_of_task(report)),
         }

@@ -77,6 +77,12 @@ class JobResult(Response):
         examples=[0.0098],
     )
     seconds: float = Field(default=0.0, ge=0, description="Wall-clock seconds of the job.", examples=[14.2])
+    peak_memory_mb: int | None = Field(
+        default=None,
+        ge=0,
+        description="Most memory that its engine had at once, in MiB; null of jobs by earlier versions.",
+        examples=[312],
+    )
     warnings: list[str] = Field(default_factory=list, description="Sentences for people.")
     files: list[ResultFile] = Field(default_factory=list, description="What can be fetched.")
 

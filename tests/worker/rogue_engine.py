@@ -59,6 +59,10 @@ class Behaviours:
             time.sleep(0.01)
 
     @staticmethod
+    def take_memory_for_a_moment(folder: Path) -> None:
+        bytearray(200 << 20)
+
+    @staticmethod
     def ask_for_too_much_at_once(folder: Path) -> None:
         bytearray(1 << 40)
 

@@ -15,13 +15,13 @@ class FakeAttempt:
         self.renewal = renewal
         self.cancel = is_cancel_requested
         self.renewals = 0
-        self.memory_mb = 0
+        self.memory_mb = (0, 0)
         self.reports: list[tuple[str, float]] = []
         self.has_beaten = threading.Event()
 
-    def renew(self, memory_mb: int) -> bool:
+    def renew(self, memory_mb: int, peak_mb: int) -> bool:
         self.renewals += 1
-        self.memory_mb = memory_mb
+        self.memory_mb = (memory_mb, peak_mb)
         if self.renewals >= 2:
             self.has_beaten.set()
         if self.renewal is not None:
@@ -43,13 +43,15 @@ def test_the_lease_is_renewed_and_progress_written_once() -> None:
     assert attempt.reports == [("fill", 49.0)]
 
 
-def test_the_most_memory_that_was_seen_goes_out_with_the_heartbeat() -> None:
+def test_the_present_and_the_most_memory_go_out_with_the_heartbeat() -> None:
     attempt = FakeAttempt()
     with Heartbeat(attempt.heartbeat_calls()) as heartbeat:
         for memory_mb in (100.0, 250.5, 80.0):
             heartbeat.note_memory(memory_mb)
         assert attempt.has_beaten.wait(GUARD_S)
-    assert attempt.memory_mb == 250
+        heartbeat.note_peak(300.0)
+    assert attempt.memory_mb == (80, 250)
+    assert heartbeat.peak_mb == 300
 
 
 @pytest.mark.parametrize("heartbeat_s", [0.0, 3600.0])

@@ -14,10 +14,11 @@ from worker.engine.limits import EngineLimits
 from worker.engine.request import EngineRequest
 from worker.failures import Failure
 from worker.result_facts import facts_of_task
-from worker.results import drop_result, missing_pictures, note_lost_pictures, store_result
+from worker.results import Cost, drop_result, missing_pictures, note_lost_pictures, store_result
 
 ATTEMPT = Attempt("job_01jd7z3v5qk8m2x4c6b8n0a9de", 2)
 REQUEST = EngineRequest("repair", "mesh/source.stl", EngineLimits(60.0, 1024), output="repaired.stl")
+COST = Cost(1.5, 312)
 
 
 PICTURES = (("preview", "preview.png", "there is no picture"), ("closeups", "closeups.zip", "there are no close-ups"))
@@ -55,7 +56,7 @@ def finished_folder(folder: Path, **report: Any) -> Path:
 def test_files_lie_where_only_this_attempt_writes(tmp_path: Path, store: ObjectStore) -> None:
     (tmp_path / "preview.png").write_bytes(b"png")
     (tmp_path / "closeups.zip").write_bytes(b"zip")
-    result = store_result(finished_folder(tmp_path), REQUEST, ATTEMPT, store, 1.5)
+    result = store_result(finished_folder(tmp_path), REQUEST, ATTEMPT, store, COST)
     assert [(file.role, file.name, file.media_type) for file in result.files] == [
         ("result", "repaired.stl", "model/stl"),
         ("report", "report.json", "application/json"),
@@ -64,7 +65,8 @@ def test_files_lie_where_only_this_attempt_writes(tmp_path: Path, store: ObjectS
     ]
     for file in result.files:
         assert store.size(result_key(ATTEMPT.job_id, 2, file.name)) == file.size_bytes
-    assert (result.format, result.new_vertices, result.new_triangles, result.seconds) == ("stl", 3, 8, 1.5)
+    assert (result.format, result.new_vertices, result.new_triangles) == ("stl", 3, 8)
+    assert (result.seconds, result.peak_memory_mb) == (1.5, 312)
     assert result.warnings == []
 
 
@@ -74,7 +76,7 @@ def test_the_result_of_a_task_tells_what_it_counted_and_nothing_of_holes(tmp_pat
     (tmp_path / "report.json").write_text(json.dumps(report))
     (tmp_path / "encoded.qpz").write_bytes(b"qpz")
     request = replace(REQUEST, task="encode", output="encoded.qpz")
-    result = store_result(tmp_path, request, ATTEMPT, store, 1.5)
+    result = store_result(tmp_path, request, ATTEMPT, store, COST)
     assert [(file.role, file.name) for file in result.files] == [("result", "encoded.qpz"), ("report", "report.json")]
     assert (result.format, result.max_error, result.moved_vertices, result.warnings) == ("qpz", 0.25, None, ["folded"])
     assert result.holes.found == 0
@@ -93,7 +95,7 @@ def test_the_numbers_of_a_report_are_those_of_the_result() -> None:
 
 
 def test_a_result_without_a_picture_has_two_files(tmp_path: Path, store: ObjectStore) -> None:
-    result = store_result(finished_folder(tmp_path), REQUEST, ATTEMPT, store, 1.5)
+    result = store_result(finished_folder(tmp_path), REQUEST, ATTEMPT, store, COST)
     assert [file.role for file in result.files] == ["result", "report"]
 
 
@@ -109,7 +111,7 @@ def test_a_result_without_a_picture_has_two_files(tmp_path: Path, store: ObjectS
 def test_refused_holes_are_a_warning(
     tmp_path: Path, store: ObjectStore, report: dict[str, Any], warnings: list[str]
 ) -> None:
-    assert store_result(finished_folder(tmp_path, **report), REQUEST, ATTEMPT, store, 1.0).warnings == warnings
+    assert store_result(finished_folder(tmp_path, **report), REQUEST, ATTEMPT, store, COST).warnings == warnings
 
 
 @pytest.mark.parametrize("error", [StoreUnavailableError("away"), OSError(5, "I/O error")])
@@ -118,7 +120,7 @@ def test_a_picture_that_can_not_be_stored_is_a_warning(
     tmp_path: Path, store: ObjectStore, error: Exception, _: str, name: str, words: str
 ) -> None:
     (tmp_path / name).write_bytes(b"picture")
-    result = store_result(finished_folder(tmp_path), REQUEST, ATTEMPT, RefusesPictures(store, error), 1.5)
+    result = store_result(finished_folder(tmp_path), REQUEST, ATTEMPT, RefusesPictures(store, error), COST)
     assert [file.role for file in result.files] == ["result", "report"]
     assert result.warnings == [f"{words}: the store failed"]
     report = json.loads(b"".join(store.read(result_key(ATTEMPT.job_id, 2, "report.json"))))
@@ -136,7 +138,7 @@ def test_of_two_pictures_the_one_that_was_drawn_is_kept_and_the_other_is_named_i
     folder = finished_folder(tmp_path, warnings=["the scan is coarse"])
     assert [picture.role for picture in missing_pictures(folder, request)] == [role]
     note_lost_pictures(folder, request, Failure("out_of_memory", "the work needs more memory than 512 MiB"))
-    result = store_result(folder, request, ATTEMPT, store, 1.5)
+    result = store_result(folder, request, ATTEMPT, store, COST)
     assert len(result.files) == 3
     assert result.file(role) is None
     assert result.warnings == ["the scan is coarse", f"{words}: the work needs more memory than 512 MiB"]
@@ -151,7 +153,7 @@ def test_a_picture_of_which_the_engine_said_why_it_is_missing_gets_one_warning(t
 
 def test_a_dropped_result_leaves_that_of_another_attempt_alone(tmp_path: Path, store: ObjectStore) -> None:
     for number in (2, 3):
-        store_result(finished_folder(tmp_path), REQUEST, Attempt(ATTEMPT.job_id, number), store, 1.0)
+        store_result(finished_folder(tmp_path), REQUEST, Attempt(ATTEMPT.job_id, number), store, COST)
     drop_result(ATTEMPT, store)
     with pytest.raises(ObjectNotFoundError):
         store.size(result_key(ATTEMPT.job_id, 2, "repaired.stl"))

@@ -49,6 +49,14 @@ class EngineChild:
     reports: int
 
 
+@dataclass(frozen=True)
+class ChildEnd:
+    """How an engine ended, negative for a signal, and its largest resident set, in MiB."""
+
+    status: int
+    peak_mb: float
+
+
 class ForkServer:
     """A lazily started fork server process; started again when it has ended.
 
@@ -101,8 +109,8 @@ class ForkServer:
         finally:
             os.close(write_end)
 
-    def wait_child(self, child: EngineChild, timeout_s: float) -> int | None:
-        """Return how the child ended, negative for a signal; None if it is still there, or the fork server is not.
+    def wait_child(self, child: EngineChild, timeout_s: float) -> ChildEnd | None:
+        """Return how the child ended; None if it is still there, or the fork server is not.
 
         Parameters
         ----------
@@ -114,7 +122,7 @@ class ForkServer:
             answer = self._read_answer(timeout_s)
         except (ForkServerLostError, TimeoutError):
             return None
-        return int(answer["status"]) if answer.get("pid") == child.pid else None
+        return ChildEnd(answer["status"], answer["peak_kb"] / 1024) if answer.get("pid") == child.pid else None
 
     def close(self) -> None:
         """End the fork server, and with it any child that still runs."""

@@ -6,7 +6,7 @@ cross a fork.
 
 Requests come over a socket, one at a time: a JSON line with the folder of the request, and the write end of the
 pipe for the child's reports. The answers are `{"ready"}` once the method is loaded, `{"pid"}` when a child runs, and
-`{"pid", "status"}` when it has ended.
+`{"pid", "status", "peak_kb"}` when it has ended: `peak_kb` is its largest resident set in KiB, counted by the kernel.
 
 Tested in `tests/worker/engine/test_supervision.py`.
 """
@@ -65,17 +65,22 @@ def _serve_one(connection: socket.socket, engine: Engine, set_death_signal: Call
         _become_engine(lambda: engine(folder, reports), folder, set_death_signal)
     os.close(reports)
     _answer(connection, {"pid": pid})
-    _answer(connection, {"pid": pid, "status": _wait(pid)})
+    status, peak_kb = _wait(pid)
+    _answer(connection, {"pid": pid, "status": status, "peak_kb": peak_kb})
     return True
 
 
-def _wait(pid: int) -> int:
-    """Wait for a child and end all processes that it started; no other process can get its id before it is reaped."""
+def _wait(pid: int) -> tuple[int, int]:
+    """Wait for a child and end all processes that it started; no other process can get its id before it is reaped.
+
+    Returns how it ended, and its largest resident set in KiB.
+    """
     os.waitid(os.P_PID, pid, os.WEXITED | os.WNOWAIT)
     # It may have ended before it had a group of its own.
     with contextlib.suppress(ProcessLookupError, PermissionError):
         os.killpg(pid, signal.SIGKILL)
-    return os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1])
+    _, status, usage = os.wait4(pid, 0)
+    return os.waitstatus_to_exitcode(status), usage.ru_maxrss
 
 
 def _answer(connection: socket.socket, answer: dict[str, int]) -> None:

@@ -15,7 +15,7 @@ from typing import Any
 import psutil
 
 from shared_rules.text import printable
-from worker.engine.client import EngineChild, ForkServer, ForkServerLostError
+from worker.engine.client import ChildEnd, EngineChild, ForkServer, ForkServerLostError
 from worker.engine.limits import EngineLimits
 from worker.engine.request import LOG_NAME, EngineRequest
 from worker.failures import EngineFailedError, EngineStoppedError, Failure, StopReason, crashed, over_memory, over_time
@@ -46,11 +46,14 @@ class Observer:
         Asked ten times a second whether to end the engine, and why.
     on_memory : callable
         Called ten times a second with the engine's resident memory, in MiB.
+    on_peak : callable
+        Called once, when the engine has ended, with the most resident memory that it had at once, in MiB.
     """
 
     on_progress: Callable[[str, float], None]
     stop_reason: Callable[[], StopReason | None]
     on_memory: Callable[[float], None] = lambda _: None
+    on_peak: Callable[[float], None] = lambda _: None
 
 
 def run_engine(
@@ -93,10 +96,11 @@ def run_engine(
     try:
         watch.listen()
     finally:
-        status = watch.end()
+        end = watch.end()
+        observer.on_peak(watch.peak_mb if end is None else end.peak_mb)
     failure = watch.failure
     if failure is None and not watch.is_done:
-        failure = _diagnose(status, watch, request.limits, folder / LOG_NAME)
+        failure = _diagnose(None if end is None else end.status, watch, request.limits, folder / LOG_NAME)
     if failure is None:
         return None
     log_engine_tail(folder / LOG_NAME)
@@ -140,17 +144,17 @@ class _Watch:
                 if reason is not None:
                     raise EngineStoppedError(reason)
 
-    def end(self) -> int | None:
-        """Make sure that the child and all that it started have ended; return its exit status, None if unknown."""
+    def end(self) -> ChildEnd | None:
+        """Make sure that the child and all that it started have ended; return how it did, None if unknown."""
         os.close(self._child.reports)
         if not self.is_done:
             self._kill()
-        status = self._fork_server.wait_child(self._child, _EXIT_TIMEOUT_S)
-        if status is None:
+        end = self._fork_server.wait_child(self._child, _EXIT_TIMEOUT_S)
+        if end is None:
             # Without an answer the fork server has ended or hangs; its children end with it.
             self._kill()
             self._fork_server.close()
-        return status
+        return end
 
     def _kill(self) -> None:
         # At first the child does not lead a process group yet; later the whole group has to end.

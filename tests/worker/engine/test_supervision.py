@@ -1,3 +1,4 @@
+import contextlib
 import json
 import os
 import signal
@@ -84,6 +85,19 @@ def test_an_engine_over_its_time_is_ended(rogue_fork_server: ForkServer, tmp_pat
     failure = caught.value.failure
     assert (failure.code, failure.stage, failure.retryable) == ("time_limit_exceeded", "fill", False)
     assert engines() == []
+
+
+@pytest.mark.parametrize("behaviour", ["take_memory_for_a_moment", "hog_memory"])
+def test_the_most_memory_is_known_however_short_it_was_and_however_the_engine_ends(
+    rogue_fork_server: ForkServer, tmp_path: Path, behaviour: str
+) -> None:
+    peaks: list[float] = []
+    limits = EngineLimits(time_s=GUARD_S, memory_mb=500, n_threads=1)
+    observer = Observer(lambda stage, fraction: None, never, on_peak=peaks.append)
+    with contextlib.suppress(EngineFailedError):
+        run_engine(rogue_fork_server, request(behaviour, limits), tmp_path, observer)
+    (peak_mb,) = peaks
+    assert 200 < peak_mb < 1024
 
 
 @pytest.mark.parametrize("behaviour", ["hog_memory", "ask_for_too_much_at_once"])
