@@ -109,6 +109,8 @@ def _stage(job: "Job") -> str:
 
     if job.state == JobState.RUNNING:
         return job.stage or "starting"
+    if job.waits_for is not None:
+        return f"waits for {job.waits_for}"
     return job.state.value.replace("_", " ")
 
 

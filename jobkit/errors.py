@@ -40,6 +40,7 @@
     ├── QueueUnavailableError       queue_unavailable     Redis or Valkey does not answer
     ├── DatabaseUnavailableError    database_unavailable  the database does not answer, or is locked for too long
     ├── StoreUnavailableError       store_unavailable     the object store can't be written
+    ├── MemoryFullError             memory_full           the job does not fit into the memory of the machine now
     └── StaleAttemptError           stale_attempt         the job has moved on; this attempt may write no more
 
 Beside the tree stand errors that are faults of this code. No handler answers them, so their tracebacks reach the log.
@@ -301,6 +302,12 @@ class StoreUnavailableError(JobkitError):
     """The object store can't be written."""
 
     code = "store_unavailable"
+
+
+class MemoryFullError(JobkitError):
+    """The job does not fit into the memory of the machine now, and waits."""
+
+    code = "memory_full"
 
 
 class StaleAttemptError(JobkitError):

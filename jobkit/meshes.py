@@ -39,9 +39,10 @@ class MeshSource:
 
 @dataclass(frozen=True)
 class Analysis:
-    """One try at analysing a mesh; `is_last` where a failure of it rejects the mesh."""
+    """One try at analysing a mesh of `size_bytes`; `is_last` where a failure of it rejects the mesh."""
 
     source: MeshSource
+    size_bytes: int
     attempt: int
     is_last: bool = False
 
@@ -109,7 +110,8 @@ class Meshes:
             )
             if result.rowcount != 1:  # type: ignore[attr-defined]
                 raise StaleAttemptError(f"mesh {mesh_id} was taken by another worker")
-            return Analysis(_to_source(row), row.attempt + 1, row.attempt + 1 - row.forgiven >= MAX_ANALYSES)
+            number = row.attempt + 1
+            return Analysis(_to_source(row), row.size_bytes, number, number - row.forgiven >= MAX_ANALYSES)
 
     def unfinished(self, mesh_ids: Collection[str]) -> set[str]:
         """Return those of the meshes whose analysis is still to come."""

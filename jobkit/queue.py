@@ -2,7 +2,7 @@
 
 There is one queue for all kinds of tasks: RQ loses a job when a worker that listens to two queues is killed right
 after the pop. All are ordered by age, since the length of an analysis is not known from the file; only jobs whose
-attempt was lost go to the front, since they have waited already.
+attempt was lost, or that wait for memory, go to the front, since they have waited already.
 """
 
 import hashlib
@@ -52,9 +52,9 @@ class TaskQueue:
         self._queue = Queue(name, connection=self.connection, serializer=JSONSerializer)
         self._timeout_s = int(time_limit_s) + _MARGIN_S
 
-    def enqueue_job(self, job_id: str, attempt: int) -> None:
+    def enqueue_job(self, job_id: str, attempt: int, *, has_waited: bool = False) -> None:
         """Ask for an attempt at a job; `attempt` is the number that it will have. Raise QueueUnavailableError."""
-        self._enqueue(RUN_JOB, job_id, job_entry(job_id, attempt), at_front=attempt > 1)
+        self._enqueue(RUN_JOB, job_id, job_entry(job_id, attempt), at_front=attempt > 1 or has_waited)
 
     def enqueue_inspection(self, mesh_id: str, attempt: int) -> None:
         """Ask for the analysis of a mesh; raise QueueUnavailableError."""

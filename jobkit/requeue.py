@@ -6,8 +6,9 @@ database and is not in the queue is put there again; a second entry is harmless,
 
 from dataclasses import dataclass
 from datetime import datetime, timedelta
+from typing import Any
 
-from sqlalchemy import exists, or_, select, update
+from sqlalchemy import Row, exists, or_, select, update
 
 from jobkit.database.clock import shared_now
 from jobkit.database.session import Database
@@ -61,15 +62,25 @@ def reconcile(
     return Reconciled(ended, jobs, meshes, models)
 
 
-def submit_job(database: Database, queue: TaskQueue, job_id: str, attempt: int) -> None:
-    """Put a queued job into the queue and note when; `attempt` is the number it has now.
+def submit_job(database: Database, queue: TaskQueue, job_id: str, attempt: int, *, has_waited: bool = False) -> None:
+    """Put a queued job into the queue and note when.
+
+    Parameters
+    ----------
+    database : Database
+    queue : TaskQueue
+    job_id : str
+    attempt : int
+        The number it has now.
+    has_waited : bool
+        Whether it goes to the front, as one whose attempt was lost does.
 
     Raises
     ------
     QueueUnavailableError
         If Redis does not answer; the row stays queued, and `reconcile` picks it up later.
     """
-    queue.enqueue_job(job_id, attempt + 1)
+    queue.enqueue_job(job_id, attempt + 1, has_waited=has_waited)
     with database.write() as session:
         session.execute(
             update(JobRow)
@@ -115,16 +126,23 @@ def _is_anything_open(database: Database) -> bool:
 def _enqueue_jobs(database: Database, queue: TaskQueue, entries: set[str], now: datetime) -> int:
     with database.read() as session:
         is_due = or_(JobRow.not_before.is_(None), JobRow.not_before <= now)
-        query = select(JobRow.id, JobRow.attempt, JobRow.enqueued_at)
+        query = select(JobRow.id, JobRow.attempt, JobRow.enqueued_at, JobRow.memory_wait_since)
         rows = session.execute(query.where(JobRow.state == JobState.QUEUED.value, is_due).order_by(JobRow.id)).all()
-    missing_jobs = [
-        (job_id, attempt)
-        for job_id, attempt, enqueued_at in rows
-        if job_entry(job_id, attempt + 1) not in entries and _is_overdue(enqueued_at, now)
-    ]
-    for job_id, attempt in missing_jobs:
-        submit_job(database, queue, job_id, attempt)
+    waiting_jobs = sorted(
+        (row for row in rows if row.memory_wait_since is not None), key=lambda row: row.memory_wait_since
+    )
+    missing_jobs = [row for row in rows if row.memory_wait_since is None and _is_overdue(row.enqueued_at, now)]
+    if not any(_entry(row) in entries for row in waiting_jobs):
+        # One is enough: the worker that takes it looks which of them fit.
+        missing_jobs += waiting_jobs[:1]
+    missing_jobs = [row for row in missing_jobs if _entry(row) not in entries]
+    for row in missing_jobs:
+        submit_job(database, queue, row.id, row.attempt, has_waited=row.memory_wait_since is not None)
     return len(missing_jobs)
+
+
+def _entry(row: Row[*tuple[Any, ...]]) -> str:
+    return job_entry(row.id, row.attempt + 1)
 
 
 def _enqueue_meshes(database: Database, queue: TaskQueue, entries: set[str], now: datetime) -> int:

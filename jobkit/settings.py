@@ -70,6 +70,21 @@ class Settings(BaseSettings):
     )
     job_time_limit_s: float = Field(default=900.0, ge=1, description="Most wall-clock seconds of one attempt.")
     job_memory_limit_mb: int = Field(default=4096, ge=256, description="Most memory of one attempt, in MiB.")
+    machine: str = Field(
+        default="",
+        max_length=128,
+        description="Name of the machine whose memory this worker shares with others; empty: its host name.",
+    )
+    machine_memory_mb: int = Field(
+        default=0,
+        ge=0,
+        description="Most memory that all engines of one machine may take together, in MiB; 0: what the machine has.",
+    )
+    memory_wait_s: float = Field(
+        default=60.0,
+        ge=0,
+        description="Seconds that a job waits for memory until its machine starts no other job before it.",
+    )
     max_attempts: int = Field(default=3, ge=1, le=20, description="Attempts before a job is given up.")
     queue_time_limit_s: float = Field(
         default=604_800.0, ge=1, description="Most seconds that a job waits for a worker until it is given up."

@@ -18,16 +18,20 @@ from jobkit.database.tables import (
     DamagedRow,
     DeliveryRow,
     JobRow,
+    MachineRow,
     MeshRow,
     ModelRow,
+    ReservationRow,
     ScrubRow,
     StageRow,
 )
 from jobkit.jobs.attempts import AT_WORK
+from jobkit.jobs.past_jobs import read_past
 from jobkit.schema import TASKS, DeliveryState, JobState, MeshState, ModelState
 from jobkit.storage.damage import OBJECT_KINDS
 from jobkit.storage.scrub_schedule import oldest_check
 
+_MIB = 1 << 20
 # They start at 0: the rate of a counter that first appears with 1 is 0.
 _EXPECTED_OUTCOMES = (
     (JobState.SUCCEEDED.value, ""),
@@ -63,6 +67,7 @@ def database_figures(database: Database, lease_s: float, scrub_days: float) -> l
             *_leases(session, now, lease_s),
             *_totals(session),
             *_models(session),
+            *_memory(session, now),
             *_scrub(session, now, scrub_days),
         ]
 
@@ -163,6 +168,38 @@ def _models(session: Session) -> Iterator[Metric]:
     for row in session.scalars(select(AliasRow)):
         aliases.add_metric([row.alias, row.name, str(row.version)], 1)
     yield from (models, aliases)
+
+
+def _memory(session: Session, now: datetime) -> Iterator[Metric]:
+    limit = GaugeMetricFamily("quadpatch_memory_limit_bytes", "What engines of a machine may take.", labels=["machine"])
+    free = GaugeMetricFamily(
+        "quadpatch_memory_free_bytes", "What was free on a machine when a worker last looked.", labels=["machine"]
+    )
+    reserved = GaugeMetricFamily(
+        "quadpatch_memory_reserved_bytes", "What engines of a machine are expected to need.", labels=["machine"]
+    )
+    reservations = select(ReservationRow.machine, func.sum(ReservationRow.reserved_mb)).group_by(ReservationRow.machine)
+    reserved_mb = {row[0]: row[1] for row in session.execute(reservations.where(ReservationRow.until >= now))}
+    for row in session.scalars(select(MachineRow).order_by(MachineRow.name)):
+        limit.add_metric([row.name], row.limit_mb * _MIB)
+        free.add_metric([row.name], row.free_mb * _MIB)
+        reserved.add_metric([row.name], reserved_mb.get(row.name, 0) * _MIB)
+    waiting = GaugeMetricFamily(
+        "quadpatch_memory_waiting_jobs",
+        "Jobs that wait for memory.",
+        value=session.scalars(select(func.count()).where(JobRow.memory_wait_since <= now)).one(),
+    )
+    peaks: dict[str, int] = {}
+    for job in read_past(session):
+        peaks[job.kind] = max(peaks.get(job.kind, 0), job.peak_memory_mb or 0)
+    peak = GaugeMetricFamily(
+        "quadpatch_job_peak_memory_bytes",
+        "Most memory of an engine in the last 500 jobs that succeeded, by task and kind of model.",
+        labels=["kind"],
+    )
+    for kind, peak_mb in sorted(peaks.items()):
+        peak.add_metric([kind], peak_mb * _MIB)
+    yield from (limit, free, reserved, waiting, peak)
 
 
 def _scrub(session: Session, now: datetime, days: float) -> Iterator[Metric]:

@@ -42,7 +42,7 @@ PACKAGES = ("quadpatch", "jobkit", "service", "worker", "training", "client", "o
 # Only bases of others; nothing raises them.
 BASES = {"quadpatch_error", "invalid_mesh", "jobkit_error", "not_found", "conflict"}
 # They stop a process or an attempt, and reach no client.
-INNER = {"invalid_settings", "stale_attempt"}
+INNER = {"invalid_settings", "stale_attempt", "memory_full"}
 
 
 def read(path: str) -> str:

@@ -72,6 +72,7 @@ def _run(settings: Settings, store: ObjectStore) -> int:
             # A worker that can't work takes no job: each would cost it an attempt.
             logging.critical("%s", error)
             return _EXIT_BROKEN
+        context.admission.refresh()
         stack.enter_context(ready_file())
         execute(context.queue, settings.queue_name, context.name, context.draining, settings.log_level.upper())
     return 0

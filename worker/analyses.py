@@ -2,6 +2,7 @@
 
 import json
 
+from jobkit.jobs.memory_needs import BY_GEOMETRY, expected_from_bytes
 from jobkit.meshes import Analysis
 from jobkit.requeue import submit_analysis
 from jobkit.schema import MeshFacts, MeshProblem
@@ -29,6 +30,7 @@ def analyse(context: Context, analysis: Analysis) -> None:
         release=lambda: meshes.release(analysis),
         forgive=lambda delay_s: meshes.forgive(analysis, delay_s),
         submit=lambda: submit_analysis(context.database, context.queue, mesh_id),
+        needed_mb=expected_from_bytes(BY_GEOMETRY, analysis.size_bytes),
     )
     run_check(
         context,

@@ -13,6 +13,7 @@ from worker.context import Context
 from worker.engine.supervision import Observer
 from worker.failures import OUTAGE_DELAY_S, Failure, StopReason
 from worker.heartbeat import Heartbeat, HeartbeatCalls
+from worker.memory import reserve_memory
 from worker.outcomes import outcome_of
 
 T = TypeVar("T")
@@ -40,6 +41,8 @@ class Check:
         Hands it back and does not count it; it is not taken again for so many seconds.
     submit : callable
         Puts it into the queue again; raises QueueUnavailableError.
+    needed_mb : int
+        Memory that its engine is expected to need, in MiB.
     """
 
     subject: str
@@ -49,6 +52,7 @@ class Check:
     release: Callable[[], None]
     forgive: Callable[[float], None]
     submit: Callable[[], object]
+    needed_mb: int
 
 
 def run_check(
@@ -87,9 +91,11 @@ def run_check(
 
 def _work_with_heartbeat(context: Context, check: Check, work: Callable[[Observer], T]) -> T:
     settings = context.settings
+    reserve_memory(context, check.needed_mb)
 
-    def renew(_memory_mb: int, _peak_mb: int) -> bool:
+    def renew(memory_mb: int, _peak_mb: int) -> bool:
         check.renew(settings.lease_s)
+        context.admission.renew(settings.lease_s, memory_mb)
         return False  # no client can cancel a check
 
     heartbeat_calls = HeartbeatCalls(

@@ -11,11 +11,15 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, field
+from functools import cached_property, partial
 from pathlib import Path
 
 from jobkit.database.session import Database
+from jobkit.jobs.admission import Admission, AdmissionRules
 from jobkit.jobs.attempts import Attempts
 from jobkit.jobs.jobs import Jobs
+from jobkit.jobs.memory_needs import MemoryNeeds
+from jobkit.jobs.reservations import Machine
 from jobkit.meshes import Meshes
 from jobkit.models.proofs import Proofs
 from jobkit.models.registry import Registry
@@ -24,6 +28,7 @@ from jobkit.settings import Settings
 from jobkit.storage.base import ObjectStore
 from jobkit.telemetry import Telemetry
 from worker.engine.client import ForkServer
+from worker.machine_memory import machine_memory
 
 
 @dataclass(frozen=True)
@@ -54,6 +59,14 @@ class Context:
     def attempts(self) -> Attempts:
         """Attempts at jobs."""
         return Attempts(self.database)
+
+    @cached_property
+    def admission(self) -> Admission:
+        """The memory of this worker's tasks."""
+        settings = self.settings
+        machine = Machine(settings.machine or socket.gethostname(), partial(machine_memory, settings.machine_memory_mb))
+        rules = AdmissionRules(settings.job_memory_limit_mb, settings.memory_wait_s)
+        return Admission(self.database, MemoryNeeds(self.database), self.name, machine, rules)
 
     @property
     def jobs(self) -> Jobs:

@@ -8,12 +8,13 @@ import logging
 from opentelemetry.trace import SpanKind, StatusCode
 from tenacity import Retrying, retry_if_exception_type, stop_after_delay, stop_when_event_set, wait_fixed
 
-from jobkit.errors import DatabaseUnavailableError, NotFoundError, StaleAttemptError
+from jobkit.errors import DatabaseUnavailableError, MemoryFullError, NotFoundError, StaleAttemptError
 from jobkit.logs import log_about
 from jobkit.requeue import GRACE_S
 from jobkit.schema import JobState
 from worker.analyses import analyse
 from worker.context import Context, current_context
+from worker.memory import memory_given_back, submit_fitting
 from worker.proofs import prove
 from worker.repairs import repair
 
@@ -26,12 +27,19 @@ def run_job(job_id: str) -> None:
     """Start an attempt at a job and work on it."""
     context = current_context()
     try:
-        started = _available(context)(lambda: context.attempts.start(job_id, context.name, context.settings.lease_s))
+        started = _available(context)(
+            lambda: context.attempts.start(job_id, context.name, context.settings.lease_s, context.admission)
+        )
+    except MemoryFullError as error:
+        _log.info("%s", error)
+        submit_fitting(context)
+        return
     except (StaleAttemptError, NotFoundError, DatabaseUnavailableError) as error:
         _log.info("nothing to do: %s", error)
         return
     attempt = started.attempt
     with (
+        memory_given_back(context),
         log_about(job_id=attempt.job_id, attempt=attempt.number, request_id=started.request_id),
         context.telemetry.span(
             "attempt",
@@ -60,7 +68,7 @@ def inspect_mesh(mesh_id: str) -> None:
     except (StaleAttemptError, NotFoundError, DatabaseUnavailableError) as error:
         _log.info("nothing to do: %s", error)
         return
-    with log_about(mesh_id=mesh_id, attempt=analysis.attempt):
+    with log_about(mesh_id=mesh_id, attempt=analysis.attempt), memory_given_back(context):
         analyse(context, analysis)
 
 
@@ -72,7 +80,7 @@ def prove_model(reference: str) -> None:
     except (StaleAttemptError, NotFoundError, DatabaseUnavailableError) as error:
         _log.info("nothing to do: %s", error)
         return
-    with log_about(model=reference, attempt=proof.attempt):
+    with log_about(model=reference, attempt=proof.attempt), memory_given_back(context):
         prove(context, proof)
 
 

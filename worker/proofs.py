@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+from jobkit.jobs.memory_needs import BY_GEOMETRY, expected_from_bytes
 from jobkit.models.proofs import Proof
 from jobkit.requeue import submit_proof
 from jobkit.schema import ModelProblem, ResolvedModel
@@ -29,6 +30,7 @@ def prove(context: Context, proof: Proof) -> None:
         release=lambda: proofs.release(proof),
         forgive=lambda delay_s: proofs.forgive(proof, delay_s),
         submit=lambda: submit_proof(context.database, context.queue, proof.reference),
+        needed_mb=expected_from_bytes(BY_GEOMETRY, proof.model.size_bytes),
     )
     run_check(
         context,

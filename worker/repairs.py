@@ -124,7 +124,8 @@ def _work(context: Context, started_attempt: StartedAttempt, heartbeat: Heartbea
     model = model_argument(job.model, context.registry, context.store, context.cache_folder)
     deprecated = deprecation(job.model, context.registry)
     settings = context.settings
-    limits = EngineLimits(settings.job_time_limit_s, settings.job_memory_limit_mb, n_threads=context.n_threads)
+    memory_mb = min(settings.job_memory_limit_mb, started_attempt.memory_mb or settings.job_memory_limit_mb)
+    limits = EngineLimits(settings.job_time_limit_s, memory_mb, n_threads=context.n_threads)
     request = replace(
         job_request(job.spec, source, model, limits, reference), model_card=network_card(job.model, context.registry)
     )
@@ -178,8 +179,14 @@ class _StopRule:
 
 def _heartbeat_calls(context: Context, started_attempt: StartedAttempt) -> HeartbeatCalls:
     attempts, attempt, settings = context.attempts, started_attempt.attempt, context.settings
+
+    def renew(memory_mb: int, peak_mb: int) -> bool:
+        is_cancel_requested = attempts.heartbeat(attempt, settings.lease_s, peak_mb)
+        context.admission.renew(settings.lease_s, memory_mb)
+        return is_cancel_requested
+
     return HeartbeatCalls(
-        renew=lambda _, peak_mb: attempts.heartbeat(attempt, settings.lease_s, peak_mb),
+        renew=renew,
         is_cancel_requested=lambda: attempts.is_canceling(attempt),
         report=lambda stage, percent: attempts.report_progress(attempt, stage, percent),
         heartbeat_s=settings.heartbeat_s,

@@ -28,8 +28,9 @@ def to_job(row: JobRow, retention_days: float = 0) -> Job:
 
     What depends on other jobs, `queue_position` and `eta_s`, is left to `jobkit.jobs.estimates`.
     """
-    names = Job.model_fields.keys() - {"links", "expires_at", "queue_position", "eta_s"}
+    names = Job.model_fields.keys() - {"links", "expires_at", "queue_position", "eta_s", "waits_for"}
     values = {name: getattr(row, name) for name in names}
+    values["waits_for"] = None if row.memory_wait_since is None else "memory"
     expires_at = expiry(row.finished_at, retention_days, row.pinned)
     return Job.model_validate(values | {"links": _links(row), "expires_at": expires_at})
 

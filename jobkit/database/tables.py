@@ -52,7 +52,9 @@ class JobRow(Base):
     drained worker, a store that refused writes) and don't count towards `max_attempts`. A queued job that waits for
     such a reason to pass is not started before `not_before`. `queued_at` is when it last began to wait. `mesh_name` is
     the name of the file that was uploaded for this job: the mesh itself may have another one later. `task` and
-    `reference_id`, the mesh that it learns from, are those of the spec.
+    `reference_id`, the mesh that it learns from, are those of the spec. A queued job that did not fit into the memory
+    of a machine waits since `memory_wait_since` for `needed_memory_mb`, in MiB, and `memory_wait_at` is the machine
+    that holds back others for it in the end.
     """
 
     __tablename__ = "jobs"
@@ -78,6 +80,9 @@ class JobRow(Base):
     enqueued_at: Mapped[datetime | None]
     queued_at: Mapped[datetime]
     not_before: Mapped[datetime | None]
+    needed_memory_mb: Mapped[int | None]
+    memory_wait_since: Mapped[datetime | None]
+    memory_wait_at: Mapped[str | None] = mapped_column(String(128))
     cancel_requested_at: Mapped[datetime | None]
     pinned: Mapped[bool] = mapped_column(default=False)
     request_id: Mapped[str | None] = mapped_column(String(64))
@@ -93,6 +98,7 @@ class JobRow(Base):
         Index(None, "reference_id"),
         Index(None, "finished_at"),
         Index(None, "checked_at", "finished_at"),
+        Index(None, "memory_wait_since"),
     )
 
 
@@ -215,6 +221,32 @@ class LeaderRow(Base):
     holder: Mapped[str] = mapped_column(String(128))
     until: Mapped[datetime]
     since: Mapped[datetime]
+
+
+class MachineRow(Base):
+    """The memory of a machine with workers, in MiB, as one of them found it last."""
+
+    __tablename__ = "machines"
+    name: Mapped[str] = mapped_column(String(128), primary_key=True)
+    limit_mb: Mapped[int]
+    free_mb: Mapped[int]
+    seen_at: Mapped[datetime]
+
+
+class ReservationRow(Base):
+    """The MiB that the engine of a worker is expected to need, and those that it has, as long as its lease lasts.
+
+    `is_job` tells the engine of a job from that of an analysis or a proof.
+    """
+
+    __tablename__ = "reservations"
+    worker: Mapped[str] = mapped_column(String(128), primary_key=True)
+    machine: Mapped[str] = mapped_column(String(128))
+    is_job: Mapped[bool]
+    reserved_mb: Mapped[int]
+    used_mb: Mapped[int]
+    until: Mapped[datetime]
+    __table_args__ = (Index(None, "machine"),)
 
 
 class StageRow(Base):

@@ -5,16 +5,18 @@ refused with StaleAttemptError.
 """
 
 from dataclasses import dataclass
-from datetime import timedelta
+from datetime import datetime, timedelta
 from typing import Any
 
 from sqlalchemy import func, or_, select, update
+from sqlalchemy.orm import Session
 
 from jobkit.database.clock import shared_now, utc_now
 from jobkit.database.job_rows import existing_job, to_job
 from jobkit.database.session import Database
 from jobkit.database.tables import AttemptRow, JobRow
-from jobkit.errors import StaleAttemptError
+from jobkit.errors import MemoryFullError, StaleAttemptError
+from jobkit.jobs.admission import Admission, Grant
 from jobkit.jobs.endings import (
     Attempt,
     Ending,
@@ -39,13 +41,15 @@ AT_WORK = (JobState.RUNNING.value, JobState.CANCELING.value)
 class StartedAttempt:
     """An attempt, and the job as it was when it started.
 
-    `request_id` and `traceparent` name the request that made the job.
+    `request_id` and `traceparent` name the request that made the job; `memory_mb` is the most memory of its engine, in
+    MiB, where its machine has less than it is expected to need.
     """
 
     attempt: Attempt
     job: Job
     request_id: str | None = None
     traceparent: str | None = None
+    memory_mb: int | None = None
 
 
 class Attempts:
@@ -54,7 +58,7 @@ class Attempts:
     def __init__(self, database: Database) -> None:
         self._database = database
 
-    def start(self, job_id: str, worker: str, lease_s: float) -> StartedAttempt:
+    def start(self, job_id: str, worker: str, lease_s: float, admission: Admission | None = None) -> StartedAttempt:
         """Take a queued job: raise its attempt number and lease it.
 
         Parameters
@@ -64,33 +68,29 @@ class Attempts:
             Name of the worker, for people.
         lease_s : float
             Seconds until the attempt is taken for lost unless it is renewed.
+        admission : Admission, optional
+            Reserves the memory that the job is expected to need; without it, no memory is asked for.
 
         Raises
         ------
         JobNotFoundError
             If there is no such job.
+        MemoryFullError
+            If the job does not fit into the memory of the worker's machine now: it waits.
         StaleAttemptError
             If the job is not queued, or not to be started yet: another worker has it, or it has ended.
         """
         with self._database.write() as session:
             now = shared_now(session)
             row = existing_job(session, job_id)
-            number = row.attempt + 1
-            values = {
-                "attempt": number,
-                "worker": worker,
-                "lease_until": now + timedelta(seconds=lease_s),
-                "started_at": now,
-                "stage": None,
-                "percent": 0.0,
-            }
-            transition = Transition(JobState.QUEUED, JobState.RUNNING, "started", values)
-            is_due = or_(JobRow.not_before.is_(None), JobRow.not_before <= now)
-            if not make_transition(session, job_id, transition, now, JobRow.attempt == number - 1, is_due):
-                raise StaleAttemptError(f"job {job_id} is {row.state} and can't be started now")
-            session.add(AttemptRow(job_id=job_id, number=number, worker=worker, started_at=now))
-            row = existing_job(session, job_id)
-            return StartedAttempt(Attempt(job_id, number), to_job(row), row.request_id, row.traceparent)
+            if row.state != JobState.QUEUED or (row.not_before is not None and row.not_before > now):
+                raise _not_startable(row)
+            grant = Grant() if admission is None else admission.admit(session, row, lease_s, now)
+            if grant is not None:
+                attempt = _start(session, row, worker, lease_s, now)
+                row = existing_job(session, job_id)
+                return StartedAttempt(attempt, to_job(row), row.request_id, row.traceparent, grant.limit_mb)
+        raise MemoryFullError(f"job {job_id} waits for memory")
 
     def heartbeat(self, attempt: Attempt, lease_s: float, memory_mb: int = 0) -> bool:
         """Renew the lease and note the most memory seen; return whether the job is to be canceled.
@@ -218,6 +218,29 @@ class Attempts:
     def _end(self, attempt: Attempt, ending: Ending) -> JobState:
         with self._database.write() as session:
             return end_attempt(session, attempt, ending, utc_now())
+
+
+def _start(session: Session, row: JobRow, worker: str, lease_s: float, now: datetime) -> Attempt:
+    number = row.attempt + 1
+    values = {
+        "attempt": number,
+        "worker": worker,
+        "lease_until": now + timedelta(seconds=lease_s),
+        "started_at": now,
+        "stage": None,
+        "percent": 0.0,
+    }
+    transition = Transition(JobState.QUEUED, JobState.RUNNING, "started", values)
+    # The row may have changed since it was read.
+    is_due = or_(JobRow.not_before.is_(None), JobRow.not_before <= now)
+    if not make_transition(session, row.id, transition, now, JobRow.attempt == number - 1, is_due):
+        raise _not_startable(row)
+    session.add(AttemptRow(job_id=row.id, number=number, worker=worker, started_at=now))
+    return Attempt(row.id, number)
+
+
+def _not_startable(row: JobRow) -> StaleAttemptError:
+    return StaleAttemptError(f"job {row.id} is {row.state} and can't be started now")
 
 
 def _fences(attempt: Attempt) -> tuple[Any, Any]:

@@ -46,6 +46,8 @@ def make_transition(
 ) -> bool:
     """Move a job if it is in the source state of the transition and within the fences; return whether it was."""
     values: dict[str, Any] = {"state": transition.target.value, "revision": JobRow.revision + 1, "updated_at": at}
+    if transition.source is JobState.QUEUED:
+        values |= {"memory_wait_since": None, "memory_wait_at": None}
     if transition.source in (JobState.RUNNING, JobState.CANCELING) and transition.target != JobState.CANCELING:
         values |= {"lease_until": None, "worker": None}
     if transition.target is JobState.QUEUED:

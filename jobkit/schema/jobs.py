@@ -117,6 +117,10 @@ class Job(Response):
     queue_position: int | None = Field(
         default=None, ge=1, description="Its place among the jobs that wait, from 1; null once it runs.", examples=[3]
     )
+    waits_for: Literal["memory"] | None = Field(
+        default=None,
+        description="`memory`: it did not fit into the memory of a machine, and starts once it does; else null.",
+    )
     eta_s: float | None = Field(
         default=None,
         ge=0,

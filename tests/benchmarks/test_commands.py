@@ -10,6 +10,7 @@ COMMANDS = (
     "benchmarks.flood",
     "benchmarks.flooding",
     "benchmarks.jobs",
+    "benchmarks.memory",
     "benchmarks.polling",
     "benchmarks.service",
     "benchmarks.stages",

@@ -18,6 +18,7 @@ def job(state: str, **more: Any) -> Job:
     [
         ("queued", {}, "queued"),
         ("queued", {"queue_position": 3, "eta_s": 100.0}, "queued, number 3 in line, about 2 min left"),
+        ("queued", {"queue_position": 1, "waits_for": "memory"}, "waits for memory, number 1 in line"),
         ("running", {}, "starting"),
         ("running", {"stage": "inpaint"}, "inpaint"),
         ("running", {"stage": "inpaint", "eta_s": 0.0}, "inpaint, about 1 s left"),

@@ -10,6 +10,8 @@ from tests.faults.violations import consistency_violations
 
 # Short leases, so that the loss of a worker shows within seconds.
 FAST = {"QUADPATCH_HEARTBEAT_S": "0.5", "QUADPATCH_DISPATCH_S": "0.3", "QUADPATCH_LEADER_LEASE_S": "4"}
+# Less than the three workers need at once: some jobs wait for memory when processes are killed.
+SCARCE = {"QUADPATCH_MACHINE_MEMORY_MB": "360", "QUADPATCH_MEMORY_WAIT_S": "3"}
 KILLS = (faults.kill_worker, faults.kill_engine, faults.kill_api, faults.kill_dispatcher)
 OUTAGES = (faults.kill_valkey, faults.flush_valkey, faults.stop_database, faults.refuse_store, faults.freeze_worker)
 
@@ -23,7 +25,7 @@ def outcome(tmp_path_factory: pytest.TempPathFactory) -> Outcome:
         "sqlite-local",
         rounds=1,
         pause_s=(0.2, 1.0),
-        settings=FAST,
+        settings={**FAST, **SCARCE},
         kills=KILLS,
         outages=OUTAGES,
         wants_namespaces=False,

@@ -1,7 +1,7 @@
 """One real local stack for each test process, and meshes built in code."""
 
 from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager, ExitStack
+from contextlib import AbstractContextManager, ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -59,18 +59,30 @@ class RunningStack:
 
 
 @pytest.fixture(scope="session")
-def local_stack(
+def run_stack(
     tmp_path_factory: pytest.TempPathFactory, new_places: Callable[[], AbstractContextManager[dict[str, str]]]
-) -> Iterator[RunningStack]:
-    data = tmp_path_factory.mktemp("stack")
-    with ExitStack() as exits:
-        places = {f"QUADPATCH_{name.upper()}": url for name, url in exits.enter_context(new_places()).items()}
-        # For the local stack alone: other tests of this process read the environment, too.
-        with pytest.MonkeyPatch.context() as environment:
-            for name, value in {**FAST, **places}.items():
-                environment.setenv(name, value)
-            url = exits.enter_context(running_stack(data))
-        yield RunningStack(url, data)
+) -> Callable[..., AbstractContextManager[RunningStack]]:
+    """Make a context manager that runs a local stack with some settings changed, by their variables."""
+
+    @contextmanager
+    def run(**changes: str) -> Iterator[RunningStack]:
+        data = tmp_path_factory.mktemp("stack")
+        with ExitStack() as exits:
+            places = {f"QUADPATCH_{name.upper()}": url for name, url in exits.enter_context(new_places()).items()}
+            # For the local stack alone: other tests of this process read the environment, too.
+            with pytest.MonkeyPatch.context() as environment:
+                for name, value in {**FAST, **places, **changes}.items():
+                    environment.setenv(name, value)
+                url = exits.enter_context(running_stack(data))
+            yield RunningStack(url, data)
+
+    return run
+
+
+@pytest.fixture(scope="session")
+def local_stack(run_stack: Callable[..., AbstractContextManager[RunningStack]]) -> Iterator[RunningStack]:
+    with run_stack() as stack:
+        yield stack
 
 
 @pytest.fixture

@@ -9,12 +9,13 @@ from jobkit.queue import TaskQueue, job_entry, mesh_entry
 from jobkit.settings import Settings
 
 
-def test_tasks_stand_by_age_but_for_jobs_that_lost_an_attempt(settings: Settings) -> None:
+def test_tasks_stand_by_age_but_for_jobs_that_lost_an_attempt_or_wait_for_memory(settings: Settings) -> None:
     with closing(TaskQueue(settings.redis_url.get_secret_value(), settings.queue_name, 60)) as queue:
         queue.enqueue_job("first", 1)
         queue.enqueue_job("second", 1)
         queue.enqueue_job("lost", 2)
         queue.enqueue_inspection("mesh", 1)
+        queue.enqueue_job("large", 1, has_waited=True)
         entries = Queue(settings.queue_name, connection=queue.connection, serializer=JSONSerializer).get_job_ids()
-    expected = [job_entry("lost", 2), job_entry("first", 1), job_entry("second", 1), mesh_entry("mesh", 1)]
-    assert entries == expected
+    first = [job_entry("large", 1), job_entry("lost", 2)]
+    assert entries == [*first, job_entry("first", 1), job_entry("second", 1), mesh_entry("mesh", 1)]

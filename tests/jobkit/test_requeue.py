@@ -5,12 +5,14 @@ import pytest
 from redis import Redis
 from rq import Queue
 from rq.serializers import JSONSerializer
+from sqlalchemy import update
 
 from jobkit.database.clock import utc_now
 from jobkit.database.session import Database
+from jobkit.database.tables import JobRow
 from jobkit.errors import QueueUnavailableError
 from jobkit.jobs.attempts import Attempts
-from jobkit.jobs.jobs import Jobs
+from jobkit.jobs.jobs import Jobs, NewJob
 from jobkit.jobs.timeouts import TimeLimits
 from jobkit.meshes import MAX_ANALYSES, Meshes
 from jobkit.queue import INSPECT_MESH, RUN_JOB, TaskQueue, job_entry, mesh_entry
@@ -86,6 +88,28 @@ def test_an_attempt_whose_worker_went_silent_is_started_again(database: Database
     assert (found.ended, found.enqueued_jobs) == (1, 1)
     assert job_entry(job.id, 2) in queue.entries()
     assert attempts.start(job.id, "w", 5).attempt.number == 2
+
+
+def test_of_jobs_that_wait_for_memory_one_at_a_time_goes_to_the_front(
+    database: Database, queue: TaskQueue, rq_queue: Queue, new_job: NewJob
+) -> None:
+    jobs = [Jobs(database).create(new_job)[0] for _ in range(4)]
+    other, early, late, tried = (job.id for job in jobs)
+    submit_job(database, queue, other, 0)
+    now = utc_now()
+    with database.write() as session:
+        for job_id, since_s, pause_s in ((early, 60, 0), (late, 30, 0), (tried, 90, 1)):
+            times = {
+                "memory_wait_since": now - timedelta(seconds=since_s),
+                "not_before": now + timedelta(seconds=pause_s),
+            }
+            session.execute(update(JobRow).where(JobRow.id == job_id).values(times))
+    assert reconcile(database, queue, LIMITS, now).enqueued_jobs == 1
+    assert rq_queue.get_job_ids()[:2] == [job_entry(early, 1), job_entry(other, 1)]
+    assert reconcile(database, queue, LIMITS, now).enqueued_jobs == 0
+    rq_queue.remove(job_entry(early, 1))
+    assert reconcile(database, queue, LIMITS, now + timedelta(seconds=2)).enqueued_jobs == 1
+    assert rq_queue.get_job_ids()[:2] == [job_entry(tried, 1), job_entry(other, 1)]
 
 
 def test_the_row_stays_queued_when_the_queue_is_away(database: Database, job: Job) -> None:

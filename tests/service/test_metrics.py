@@ -15,6 +15,11 @@ from dispatcher.scrub import Scrub, ScrubLimits
 from jobkit.database.clock import utc_now
 from jobkit.database.leadership import DISPATCHER, Leadership
 from jobkit.database.tables import JobRow
+from jobkit.errors import MemoryFullError
+from jobkit.jobs.admission import Admission, AdmissionRules
+from jobkit.jobs.memory_needs import MemoryNeeds
+from jobkit.jobs.past_jobs import kind_of
+from jobkit.jobs.reservations import Machine, MachineMemory
 from jobkit.jobs.stage_seconds import StageSeconds
 from jobkit.schema import TASKS, HoleCounts, Job, JobError, JobResult, ModelVersion
 from jobkit.settings import Settings
@@ -221,6 +226,34 @@ def test_a_service_with_keys_asks_for_one_unless_its_metrics_are_open(keyed: Cal
         assert client.get("/metrics").status_code == 200
         assert client.get("/v1/jobs").status_code == 401
         assert client.app.openapi()["paths"]["/metrics"]["get"]["security"] == []  # type: ignore[attr-defined]
+
+
+def test_memory_of_machines_and_of_past_jobs_is_told(services: Services, job_id: str, mesh_id: str) -> None:
+    assert figures(services)[sample("memory_waiting_jobs")] == 0
+    machine = Machine("m-1", lambda: MachineMemory(limit_mb=4000, free_mb=3000))
+    rules = AdmissionRules(attempt_mb=4096, wait_s=60.0)
+    first, second = (
+        Admission(services.database, MemoryNeeds(services.database), worker, machine, rules) for worker in ("w1", "w2")
+    )
+    first.reserve(3900, lease_s=600.0)
+    with pytest.raises(MemoryFullError):
+        services.attempts.start(job_id, "w2", 600.0, second)
+    found = figures(services)
+    assert found[sample("memory_limit_bytes", machine="m-1")] == 4000 << 20
+    assert found[sample("memory_free_bytes", machine="m-1")] == 3000 << 20
+    assert found[sample("memory_reserved_bytes", machine="m-1")] == 3900 << 20
+    assert found[sample("memory_waiting_jobs")] == 1
+    first.reserve(3900, lease_s=-1.0)
+    with services.database.write() as session:
+        session.execute(update(JobRow).values(not_before=None))
+    attempt = services.attempts.start(job_id, "w2", 600.0, second).attempt
+    services.attempts.publish(attempt, JobResult(format="ply", peak_memory_mb=312))
+    second.release()
+    found = figures(services)
+    assert found[sample("memory_reserved_bytes", machine="m-1")] == 0
+    assert found[sample("memory_waiting_jobs")] == 0
+    kind = kind_of("fill", services.jobs.get(job_id).model.kind)
+    assert found[sample("job_peak_memory_bytes", kind=kind)] == 312 << 20
 
 
 def test_the_hands_of_a_worker_show_in_the_figures(

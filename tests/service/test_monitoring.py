@@ -12,6 +12,9 @@ from prometheus_client.parser import text_string_to_metric_families
 from starlette.testclient import TestClient
 
 from jobkit.database.leadership import DISPATCHER, Leadership
+from jobkit.jobs.admission import Admission, AdmissionRules
+from jobkit.jobs.memory_needs import MemoryNeeds
+from jobkit.jobs.reservations import Machine, MachineMemory
 from jobkit.jobs.stage_seconds import StageSeconds
 from jobkit.schema import HoleCounts, JobResult, ModelVersion
 from service.services import Services
@@ -43,7 +46,10 @@ def samples(
     client.put("/v1/aliases/default", json={"model": "parts@1"})
     Leadership(services.database, DISPATCHER, "d-1", 60).lead()
     attempt = services.attempts.start(job_id, "w", 30).attempt
-    result = JobResult(format="ply", holes=HoleCounts(found=1), files=[])
+    machine = Machine("m-1", lambda: MachineMemory(4000, 3000))
+    needs, rules = MemoryNeeds(services.database), AdmissionRules(4096, 60.0)
+    Admission(services.database, needs, "w", machine, rules).reserve(300, lease_s=600.0)
+    result = JobResult(format="ply", holes=HoleCounts(found=1), files=[], peak_memory_mb=300)
     services.attempts.publish(attempt, result, StageSeconds("smooth", {"fill": 2.5}))
     found: Families = {}
     for family in text_string_to_metric_families(client.get("/metrics").text):

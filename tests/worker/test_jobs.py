@@ -1,21 +1,28 @@
-"""A whole repair in this process, with a real engine: what its log, its trace and the sums of stages say of it."""
+"""A whole repair in this process, with a real engine: what its log, its trace and the sums of stages say of it.
+
+Also tests `worker.memory`.
+"""
 
 import logging
+import socket
 from collections.abc import Iterator
 from contextlib import closing
+from dataclasses import replace
+from datetime import timedelta
 
 import pytest
 from opentelemetry.sdk.trace import TracerProvider
 from opentelemetry.sdk.trace.export import SimpleSpanProcessor
 from opentelemetry.sdk.trace.export.in_memory_span_exporter import InMemorySpanExporter
-from sqlalchemy import select
+from sqlalchemy import delete, select, update
 
+from jobkit.database.clock import utc_now
 from jobkit.database.session import Database
-from jobkit.database.tables import StageRow
+from jobkit.database.tables import JobRow, ReservationRow, StageRow
 from jobkit.jobs.jobs import Jobs, NewJob
 from jobkit.logs import _add_subject
 from jobkit.meshes import Meshes
-from jobkit.queue import TaskQueue
+from jobkit.queue import TaskQueue, job_entry
 from jobkit.schema import Job, JobSpec, JobState, ResolvedModel
 from jobkit.settings import Settings
 from jobkit.storage.base import ObjectStore
@@ -24,6 +31,7 @@ from tests.integration.conftest import ply_bytes, punched_relief
 from worker.context import Context, use_context
 from worker.engine.client import ForkServer
 from worker.jobs import run_job
+from worker.memory import memory_given_back, reserve_memory, submit_fitting
 
 TRACE = "0af7651916cd43dd8448eb211c80319c"
 SENT = f"00-{TRACE}-b7ad6b7169203331-01"
@@ -101,3 +109,56 @@ def test_every_line_about_a_job_names_it_its_attempt_and_its_request(
     assert not attempt.status.is_ok
     assert attempt.attributes is not None
     assert attempt.attributes["quadpatch.state"] == "failed"
+
+
+def reservations(context: Context) -> list[ReservationRow]:
+    with context.database.read() as session:
+        return list(session.scalars(select(ReservationRow)))
+
+
+@pytest.mark.parametrize("is_mesh", [True, False])
+def test_a_job_gives_back_its_memory_however_it_ends(context: Context, is_mesh: bool) -> None:
+    job = new_job(context, ply_bytes(*punched_relief(24)) if is_mesh else b"no mesh at all")
+    run_job(job.id)
+    ended = context.jobs.get(job.id)
+    assert ended.state is (JobState.SUCCEEDED if is_mesh else JobState.FAILED)
+    assert (ended.result is not None and 50 < (ended.result.peak_memory_mb or 0) < 1024) is is_mesh
+    assert reservations(context) == []
+
+
+def test_the_end_of_a_task_submits_the_jobs_that_waited_for_its_memory(context: Context) -> None:
+    mesh_bytes = ply_bytes(*punched_relief(24))
+    first, second = new_job(context, mesh_bytes), new_job(context, mesh_bytes)
+    machine = socket.gethostname()
+    with context.database.write() as session:
+        all_mb = 1 << 30
+        until = utc_now() + timedelta(seconds=600)
+        row = ReservationRow(worker="w-2", machine=machine, is_job=True, reserved_mb=all_mb, used_mb=0, until=until)
+        session.add(row)
+    for job in (first, second):
+        run_job(job.id)
+        assert context.jobs.get(job.id).waits_for == "memory"
+    assert context.queue.entries() == set()
+    with context.database.write() as session:
+        session.execute(delete(ReservationRow))
+        session.execute(update(JobRow).values(not_before=utc_now()))
+    run_job(second.id)
+    assert context.jobs.get(second.id).state is JobState.SUCCEEDED
+    assert context.queue.entries() == {job_entry(first.id, 1)}
+    submit_fitting(context)
+    assert context.queue.depth() == 1
+
+
+def test_an_outage_of_the_queue_keeps_no_task_from_ending(context: Context, caplog: pytest.LogCaptureFixture) -> None:
+    job = new_job(context, ply_bytes(*punched_relief(24)))
+    with context.database.write() as session:
+        times = {"memory_wait_since": utc_now(), "not_before": utc_now(), "needed_memory_mb": 1}
+        session.execute(update(JobRow).where(JobRow.id == job.id).values(times))
+    with (
+        closing(TaskQueue("redis://127.0.0.1:1/0", "none", 60)) as away,
+        memory_given_back(replace(context, queue=away)),
+    ):
+        reserve_memory(context, 300)
+        assert [row.reserved_mb for row in reservations(context)] == [300]
+    assert reservations(context) == []
+    assert "submitted later" in caplog.text
