@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from quadpatch.calibration.kept import KeptCalibrations
 from quadpatch.errors import EmptyMeshError
 from quadpatch.filling.islands import hosts_of
 from quadpatch.formats.marks import NUMBERED
@@ -91,17 +92,19 @@ def repair_file(
     return repair_and_keep(source, output, model, options, progress).report
 
 
-def repair_and_keep(
+def repair_and_keep(  # noqa: PLR0913, PLR0917  the same arguments as every task's, and what is kept
     source: Path,
     output: Path,
     model: str | Path = SELF,
     options: RepairOptions | None = None,
     progress: Progress = no_progress,
     network_card: dict[str, Any] | None = None,
+    kept: KeptCalibrations | None = None,
 ) -> RepairedFile:
     """Repair one file and keep what pictures of it are drawn from; see `repair_file`.
 
-    A network that was published without a card in its file goes by `network_card`.
+    A network that was published without a card in its file goes by `network_card`. What calibration found out in
+    earlier repairs of the scan is taken from `kept`, and what this one finds out is added to it.
     """
     options = options or RepairOptions()
     check_suffix(output)
@@ -112,7 +115,7 @@ def repair_and_keep(
         scan, welded = read_surface(source, options.weld_tolerance)
         named = written_as(output, scan)
         precision = check_precision(scan, named)
-    repair = _inpaint(welded, inpainter, options, stages)
+    repair = _inpaint(welded, inpainter, options, stages, kept)
     with stages.stage("write"):
         losses = write_scan(output, scan, _fill(scan, welded, repair))
     warnings = [
@@ -191,14 +194,15 @@ def _unit_warnings(scan: Scan, output: Path) -> list[str]:
     return [f"the scan states no length unit, and {output.suffix} always means {implied}: the numbers are unchanged"]
 
 
-def _inpaint(welded: Weld, inpainter: Inpainter | None, options: RepairOptions, stages: Stages) -> Repair:
+def _inpaint(
+    welded: Weld, inpainter: Inpainter | None, options: RepairOptions, stages: Stages, kept: KeptCalibrations | None
+) -> Repair:
+    obstacles = welded.ignored_triangles
     if inpainter is None or options.recipe == "default":
-        return inpaint(
-            welded.mesh, inpainter, options, stages, obstacles=welded.ignored_triangles, survey=welded.survey
-        )
+        return inpaint(welded.mesh, inpainter, options, stages, obstacles=obstacles, survey=welded.survey, kept=kept)
     from quadpatch.recipes.paper import inpaint_as_paper  # noqa: PLC0415  the other recipe does without it
 
-    return inpaint_as_paper(welded.mesh, inpainter, options, stages, obstacles=welded.ignored_triangles)
+    return inpaint_as_paper(welded.mesh, inpainter, options, stages, obstacles=obstacles)
 
 
 def _fill(scan: Scan, welded: Weld, repair: Repair) -> Fill:

@@ -116,6 +116,7 @@ def build_report(
             "count": completion.n_patches,
             "believed_share": completion.blend_factor,
         },
+        "calibration": _calibration(repair),
         "stages": describe_stages(stages),
         "warnings": repair.warnings,
     }
@@ -149,6 +150,14 @@ def describe_stages(stages: Stages) -> list[dict[str, Any]]:
         {"name": name, "seconds": round(seconds, 4), "peak_memory_mib": stages.peak_memory_mib[name]}
         for name, seconds in stages.seconds.items()
     ]
+
+
+def _calibration(repair: Repair) -> dict[str, Any] | None:
+    """Say how many calibration holes there were, and how long calibration took, in this repair or an earlier one."""
+    record = repair.calibration
+    if record is None:
+        return None
+    return {"holes": record.n_holes, "reused": repair.is_calibration_reused, "seconds": round(record.seconds, 4)}
 
 
 def _hole(result: HoleResult) -> dict[str, Any]:

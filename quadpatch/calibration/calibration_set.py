@@ -52,7 +52,7 @@ _MOST_LOST = 0.05
 
 @dataclass(frozen=True)
 class CalibrationSet:
-    """A mesh with calibration holes, closed again. Real holes are open in it.
+    """A mesh with calibration holes. Real holes are open in it.
 
     Attributes
     ----------
@@ -64,7 +64,8 @@ class CalibrationSet:
         Triangles of the mesh that calibration holes took.
     loops : list of (n_loop,) int64
         Rims of the calibration holes.
-    closed : ClosedMesh
+    opened : TriangleMesh
+        The mesh without what they took.
     diameter : float
         That the calibration holes were meant to have, in mesh units.
     diameters : (n_holes,) float64
@@ -75,9 +76,14 @@ class CalibrationSet:
     removed: BoolArray
     cut_away: BoolArray
     loops: list[IntArray]
-    closed: ClosedMesh
+    opened: TriangleMesh
     diameter: float
     diameters: FloatArray
+
+    @cached_property
+    def closed(self) -> ClosedMesh:
+        """The calibration holes, closed again: by few vertices where they are large for their edges."""
+        return close_holes(self.opened, self.loops, graded=True)
 
     @property
     def is_graded(self) -> bool:
@@ -98,7 +104,7 @@ class CalibrationSet:
 def cut_calibration_set(
     mesh: TriangleMesh, diameter: float, edge_length: float, rng: np.random.Generator
 ) -> CalibrationSet | None:
-    """Cut holes into undamaged surface and close them.
+    """Cut holes into undamaged surface.
 
     Parameters
     ----------
@@ -129,8 +135,7 @@ def cut_calibration_set(
     adjacent = triangles_around(mesh.triangles, np.flatnonzero(punched.removed), len(mesh.vertices), 2)
     truth = TriangleMesh(mesh.vertices, mesh.triangles[adjacent])
     diameters = np.array([loop_diameter(mesh.vertices[loop]) for loop in punched.loops])
-    closed = close_holes(punched.mesh, punched.loops, graded=True)
-    return CalibrationSet(truth, punched.removed, punched.cut_away, punched.loops, closed, used, diameters)
+    return CalibrationSet(truth, punched.removed, punched.cut_away, punched.loops, punched.mesh, used, diameters)
 
 
 def choose_energy(errors: FloatArray, diameter: float, energies: Sequence[Energy], default: Energy) -> Energy:

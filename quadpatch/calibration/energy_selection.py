@@ -82,6 +82,11 @@ class EnergyBlend:
         fills = _faired(close_holes(mesh, loops), [self.energies[i] for i in used], reach)
         return replace(_blended(fills, weights[:, used]), energy_weights=weights)
 
+    def fair(self, closed: ClosedMesh, weights: FloatArray) -> FilledMesh:
+        """Fair holes by weights (n_holes, n_energies), as `learn_energy_blend` does: the smallest count too."""
+        fills = _faired(closed, self.energies, no_fraction)
+        return replace(fills[0] if len(fills) == 1 else _blended(fills, weights), energy_weights=weights)
+
     def weights(self, misses: FloatArray) -> FloatArray:
         """Turn misses (n_holes, n_energies), NaN where unknown, into weights of the fills: rows sum to 1.
 
@@ -123,7 +128,7 @@ def learn_energy_blend(
     mean = errors.mean(axis=1)
     kept = [i for i, energy in enumerate(energies) if mean[i] <= _LOST * mean.min() or energy is chosen]
     energies, fills, errors = [energies[i] for i in kept], [fills[i] for i in kept], errors[kept]
-    misses = leave_one_ring_out(calibration.closed.mesh, calibration.loops, energies, part_of(reach, 0.5, 1.0))
+    misses = leave_one_ring_out(calibration.opened, calibration.loops, energies, part_of(reach, 0.5, 1.0))
     best = energies.index(chosen)
     typical = np.nanmean(misses, axis=0) if np.isfinite(misses).any() else np.ones(len(energies))
     tiny = np.finfo(np.float64).tiny

@@ -4,6 +4,8 @@ The stages are those of Sarkar, Varanasi and Stricker, "Learning Quadrangulated 
 geometric fill, base surface, quads, patches, learning, completion, reconstruction, verdicts.
 """
 
+import time
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 
@@ -13,6 +15,8 @@ from quadpatch.calibration.calibration_set import MAX_HOLES, CalibrationSet, cut
 from quadpatch.calibration.crease_selection import calibrate_creases
 from quadpatch.calibration.energy_selection import EnergyBlend, learn_energy_blend
 from quadpatch.calibration.error_model import PRIOR
+from quadpatch.calibration.kept import KeptCalibrations, array_digest, key_of
+from quadpatch.calibration.record import CalibrationRecord
 from quadpatch.errors import NoQuadsError
 from quadpatch.filling.checked_fill import LoopsToFill, fill_checked, with_creases
 from quadpatch.filling.fairing import THIN_PLATE, Energy
@@ -52,7 +56,7 @@ PRIOR_ENERGY = THIN_PLATE
 WIDEST_CALIBRATION = 24.0
 
 
-def inpaint(
+def inpaint(  # noqa: PLR0913  what may be known of a scan beforehand goes by name
     mesh: TriangleMesh,
     inpainter: Inpainter | None,
     options: RepairOptions,
@@ -60,6 +64,7 @@ def inpaint(
     *,
     obstacles: Triangles | None = None,
     survey: EdgeSurvey | None = None,
+    kept: KeptCalibrations | None = None,
 ) -> Repair:
     """Repair the holes of a mesh.
 
@@ -75,6 +80,8 @@ def inpaint(
         Triangles that the mesh leaves out, such as repeated ones: a fill may not run through them either.
     survey : EdgeSurvey, optional
         Of the mesh, where that was made before.
+    kept : KeptCalibrations, optional
+        What earlier repairs found out by calibration; what this one finds out is added.
 
     Returns
     -------
@@ -90,12 +97,13 @@ def inpaint(
         holes = find_holes(mesh, survey)
         selection = select_holes(holes, options.holes, diagonal(mesh))
         rims = join_islands(mesh, holes, selection.chosen)
-        task = _Task(mesh, holes, selection, rims, edge_statistics(mesh), inpainter, _with_lengths(options, mesh))
+        lengths = _with_lengths(options, mesh)
+        task = _Task(mesh, holes, selection, rims, edge_statistics(mesh), inpainter, lengths, obstacles, kept)
         part = repair_region(mesh, rims.loops, task.reach(), obstacles, np.random.default_rng([options.seed, 1]))
-    repair = _repair(task, part, obstacles, stages)
+    repair = _repair(task, part, stages)
     if not part.holds(repair.filled):
         part = RepairRegion.all_of(mesh, len(rims.loops))
-        repair = _repair(task, part, obstacles, stages)
+        repair = _repair(task, part, stages)
     return replace(repair, filled=part.region.widened(repair.filled))
 
 
@@ -115,6 +123,10 @@ class _Task:
         Of the scan.
     inpainter : Inpainter or None
     options : RepairOptions
+    obstacles : (k, 3) int64 or None
+        Triangles that the mesh leaves out.
+    kept : KeptCalibrations or None
+        Of earlier repairs.
     """
 
     mesh: TriangleMesh
@@ -124,6 +136,8 @@ class _Task:
     edges: EdgeStatistics
     inpainter: Inpainter | None
     options: RepairOptions
+    obstacles: Triangles | None
+    kept: KeptCalibrations | None
 
     @cached_property
     def by_model(self) -> BoolArray:
@@ -154,25 +168,35 @@ class _Task:
         scale = choose_scale(self.diameters, self.edges.mean, self.options.patches, self.inpainter.resolution)
         return Reach(diameter, scale.length, self.edges, coarse_edge_length(scale, self.edges.mean))
 
+    def calibration_key(self, kept: KeptCalibrations, diameter: float, part: RepairRegion) -> str:
+        """Hash all that calibration in a part of this scan depends on."""
+        scan = kept.scan or self._digest()
+        return key_of(scan, self.options.weld_tolerance, diameter, self.options.seed, part.digest())
+
+    def _digest(self) -> str:
+        """Hash the scan."""
+        left_out = [] if self.obstacles is None else [self.obstacles]
+        return array_digest(self.mesh.vertices, self.mesh.triangles, *left_out)
+
 
 def _with_lengths(options: RepairOptions, mesh: TriangleMesh) -> RepairOptions:
     """Write out what a preset of patches stands for on a scan."""
     return replace(options, patches=preset_scale(options.patches, longest_side(mesh)))
 
 
-def _repair(task: _Task, part: RepairRegion, obstacles: Triangles | None, stages: Stages) -> Repair:
+def _repair(task: _Task, part: RepairRegion, stages: Stages) -> Repair:
     """Repair the part of a scan that has its holes."""
     region = part.region
-    mesh, rims, inpainter, obstacles = region.mesh, task.rims, task.inpainter, region.local_triangles(obstacles)
-    rng = np.random.default_rng(task.options.seed)
+    mesh, rims, inpainter, obstacles = region.mesh, task.rims, task.inpainter, region.local_triangles(task.obstacles)
     with stages.stage("fill"):
         local = region.local(np.concatenate(rims.loops)) if rims.loops else np.zeros(0, np.int64)
         wanted = replace(task.wanted, loops=cut_at(local, laid_out(rims.loops)[0]))
         share = _share_of_calibration(task)
-        calibration = _calibrate(task, mesh, rng, stages.part(0.0, share))
-        fill = partial(calibration.blend.fill, reach=stages.part(share, 1.0))
+        calibration = _calibrate(task, part, stages.part(0.0, share))
+        found = calibration.record
+        fill = partial(found.blend.fill, reach=stages.part(0.0 if calibration.is_reused else share, 1.0))
         checked = fill_checked(mesh, wanted, fill, obstacles)
-        checked = with_creases(checked, calibration.crease_share, obstacles)
+        checked = with_creases(checked, found.crease_share, obstacles)
     completion, warnings, by_model = None, [], task.by_model
     if inpainter is not None and by_model[checked.filled.vertex_hole].any():
         try:
@@ -187,11 +211,11 @@ def _repair(task: _Task, part: RepairRegion, obstacles: Triangles | None, stages
             completion = replace(completion.limited_to(by_model, checked.filled), left_out=~by_model)
         completion, filled, faults = without_faults(completion, checked, obstacles)
         of_model = completion.error_model if completion else None
-        error_model, size = of_model or calibration.error_model, diagonal(task.mesh)
+        error_model, size = of_model or found.error_model, diagonal(task.mesh)
         closed = _filled_ones(task.selection, rims)
         results = assess(task.holes, closed, checked.filled, completion, error_model, size)
-        results = verified_results(results, rims, checked, calibration.blend, faults, size)
-    return Repair(filled, rims.chosen, results, calibration.blend, completion, warnings)
+        results = verified_results(results, rims, checked, found.blend, faults, size)
+    return Repair(filled, rims.chosen, results, found.blend, completion, warnings, found, calibration.is_reused)
 
 
 def _with_action(rims: JoinedRims, selection: Selection, action: HoleAction) -> BoolArray:
@@ -211,16 +235,41 @@ def _share_of_calibration(task: _Task) -> float:
     return n_calibration / max(n_calibration + len(task.rims.loops), 1)
 
 
-def _calibrate(task: _Task, mesh: TriangleMesh, rng: np.random.Generator, reach: Fraction) -> Calibration:
+def _calibrate(task: _Task, part: RepairRegion, reach: Fraction) -> Calibration:
+    """Calibrate, or take what an earlier repair of the same scan has found out."""
+    diameter, edge, kept = task.typical_diameter(), task.edges.mean, task.kept
+    cut = partial(_cut, part.region.mesh, diameter, edge, task.options.seed)
+    if kept is None or diameter is None:
+        return _calibrated(task, cut, reach)
+    key = task.calibration_key(kept, diameter, part)
+    record = kept.find(key)
+    if record is not None:
+        # Only models are tried on calibration holes again.
+        holes = cut() if record.n_holes and task.inpainter is not None and task.by_model.any() else None
+        if holes is None or len(holes.loops) == record.n_holes:
+            return Calibration(task.diameters, edge, record, holes, is_reused=True)
+    calibration = _calibrated(task, cut, reach)
+    kept.add(key, calibration.record)
+    return calibration
+
+
+def _cut(mesh: TriangleMesh, diameter: float | None, edge: float, seed: int) -> CalibrationSet | None:
+    return None if diameter is None else cut_calibration_set(mesh, diameter, edge, np.random.default_rng(seed))
+
+
+def _calibrated(task: _Task, cut: Callable[[], CalibrationSet | None], reach: Fraction) -> Calibration:
     """Learn from calibration holes how to fill, and how large an error to expect of that."""
-    diameter, edge = task.typical_diameter(), task.edges.mean
-    holes = None if diameter is None else cut_calibration_set(mesh, diameter, edge, rng)
+    start, edge = time.perf_counter(), task.edges.mean
+    holes = cut()
     blend, filled = suitable_blend(holes, reach)
     if holes is None or filled is None:
-        return Calibration(task.diameters, edge, blend, PRIOR, holes, filled)
+        return Calibration(task.diameters, edge, CalibrationRecord(blend, PRIOR, seconds=time.perf_counter() - start))
     creases = calibrate_creases(holes, blend, filled)
-    filled = creases.filled or filled
-    return Calibration(task.diameters, edge, blend, expect(holes, filled), holes, filled, creases.share)
+    model = expect(holes, creases.filled or filled)
+    seconds = time.perf_counter() - start
+    record = CalibrationRecord(blend, model, creases.share, holes.is_graded, filled.energy_weights, seconds)
+    # A graded fill is denser once models are tried on it.
+    return Calibration(task.diameters, edge, record, holes, creases.filled or (None if holes.is_graded else filled))
 
 
 def suitable_blend(

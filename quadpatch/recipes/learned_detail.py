@@ -9,9 +9,8 @@ from functools import partial
 import numpy as np
 
 from quadpatch.calibration.calibration_set import CalibrationSet, choose_blend_factor, error_per_hole, expect
-from quadpatch.calibration.crease_selection import fill_uniformly
-from quadpatch.calibration.energy_selection import EnergyBlend
 from quadpatch.calibration.error_model import ErrorModel
+from quadpatch.calibration.record import CalibrationRecord
 from quadpatch.calibration.training_pairs import TrainingSurface
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.inpainters.competing import FittedCompetitors
@@ -45,32 +44,25 @@ class Calibration:
         Of the real holes, in mesh units.
     edge_length : float
         Mean of the mesh, in mesh units.
-    blend : EnergyBlend
-        What its holes are faired by.
-    error_model : ErrorModel
-        How large an error of that to expect.
+    record : CalibrationRecord
     holes : CalibrationSet or None
-        None where the surface has no room for calibration holes.
+        None where the surface has no room for calibration holes, or nothing but the record is asked for.
     filled : FilledMesh or None
-        The calibration holes, filled like the real ones; graded where faired fills are.
-    crease_share : float
-        See `quadpatch.calibration.crease_selection.CreaseCalibration`.
+        The calibration holes, filled like the real ones and as densely; None where that is still to be done.
+    is_reused : bool
+        Whether an earlier repair has found it out.
     """
 
     diameters: list[float]
     edge_length: float
-    blend: EnergyBlend
-    error_model: ErrorModel
+    record: CalibrationRecord
     holes: CalibrationSet | None = None
     filled: FilledMesh | None = None
-    crease_share: float = 0.0
+    is_reused: bool = False
 
     def uniform_fill(self) -> FilledMesh | None:
-        """Give the calibration holes, filled as densely as real ones; None without any."""
-        # Creases were tried on such a fill.
-        if self.holes is None or self.filled is None or self.crease_share:
-            return self.filled
-        return fill_uniformly(self.holes, self.blend, self.filled)
+        """Give the calibration holes, filled like the real ones and as densely; None without any."""
+        return self.filled if self.holes is None or self.filled is not None else self.record.fill(self.holes)
 
 
 @dataclass(frozen=True)
@@ -189,7 +181,7 @@ def _training_surface(
     surface: PatchSurface, calibration: Calibration, seeds: Seeds, scale: PatchScale
 ) -> TrainingSurface:
     diameters = np.array(calibration.diameters)
-    return TrainingSurface(surface.undamaged, seeds, scale, calibration.blend, diameters, surface.edge_length)
+    return TrainingSurface(surface.undamaged, seeds, scale, calibration.record.blend, diameters, surface.edge_length)
 
 
 def _some(count: int, rng: np.random.Generator) -> BoolArray:

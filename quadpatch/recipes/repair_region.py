@@ -10,6 +10,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from quadpatch.calibration.calibration_set import MARGIN_EDGES, MAX_HOLES
+from quadpatch.calibration.kept import array_digest
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.filling.region import Region, region_around
 from quadpatch.mesh.loops import laid_out
@@ -55,6 +56,11 @@ class RepairRegion:
     def all_of(cls, mesh: TriangleMesh, n_loops: int) -> "RepairRegion":
         """Work on a whole mesh."""
         return cls(Region.all_of(mesh), np.zeros((n_loops, 3)), np.full(n_loops, np.inf), np.zeros((0, 3)), np.inf)
+
+    def digest(self) -> str:
+        """Hash what says, besides the scan, what belongs to the region."""
+        places = (self.centres, self.radii, self.sites, np.array([self.room]))
+        return array_digest(*places) if len(self.sites) else "whole"
 
     def coarse_copy(self, reach: "Reach") -> CoarseCopy | None:
         """Prepare a coarse copy of what patches show; None where they show triangles of the scan themselves."""

@@ -10,6 +10,7 @@ import numpy as np
 
 from quadpatch.calibration.energy_selection import EnergyBlend
 from quadpatch.calibration.error_model import ErrorModel
+from quadpatch.calibration.record import CalibrationRecord
 from quadpatch.filling.fairing import Energy
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.mesh.holes import Hole
@@ -136,6 +137,10 @@ class Repair:
     completion : Completion or None
         None where geometry alone filled the holes.
     warnings : list of str
+    calibration : CalibrationRecord or None
+        None where the recipe has none.
+    is_calibration_reused : bool
+        Whether an earlier repair has found it out.
     """
 
     filled: FilledMesh
@@ -144,3 +149,5 @@ class Repair:
     blend: EnergyBlend
     completion: Completion | None
     warnings: list[str]
+    calibration: CalibrationRecord | None = None
+    is_calibration_reused: bool = False

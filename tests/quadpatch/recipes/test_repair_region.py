@@ -3,6 +3,7 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
+from quadpatch.calibration.kept import KeptCalibrations
 from quadpatch.filling.checked_fill import fill_checked
 from quadpatch.filling.region import Region
 from quadpatch.mesh.distance import distance_to_mesh
@@ -84,3 +85,15 @@ def test_the_place_of_a_fill_tells_whether_the_part_was_enough(repaired: Repair)
     assert part.holds(repaired.filled)
     new = repaired.filled.mesh.vertices[repaired.filled.n_measured_vertices :]
     assert not part.holds(repaired.filled.with_vertices(new + np.array([0.0, 0.0, 1.0])))
+
+
+def test_a_kept_calibration_belongs_to_the_part_that_it_was_made_on(
+    repaired: Repair, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    kept = KeptCalibrations("scan")
+    made, again = (inpaint(SCAN, None, RepairOptions(), kept=kept) for _ in range(2))
+    assert (made.is_calibration_reused, again.is_calibration_reused) == (False, True)
+    for repair in (made, again):
+        assert repair.filled.mesh.vertices.tobytes() == repaired.filled.mesh.vertices.tobytes()
+    monkeypatch.setattr("quadpatch.filling.region.MOST_OF_MESH", 0.0)
+    assert not inpaint(SCAN, None, RepairOptions(), kept=kept).is_calibration_reused
