@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from quadpatch.cli.calibration_file import read_calibrations, write_calibrations
 from quadpatch.cli.flags import (
     Output,
     Overlap,
@@ -59,6 +60,14 @@ def fill(  # noqa: PLR0913, PLR0917  one argument per flag
         typer.Option(metavar="DIR", help="Draw every chosen hole before and after, as hole_<id>.png in this folder."),
     ] = None,
     overwrite: Overwrite = False,
+    calibration: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE",
+            help="Keep here what calibration finds out, for the next repair of this scan with the same options, such "
+            "as with another model; read if it is there.",
+        ),
+    ] = None,
     max_diameter: Annotated[float | None, typer.Option(help="Leave wider holes open (mesh units).")] = None,
     max_perimeter: Annotated[float | None, typer.Option(help="Leave longer rims open (mesh units).")] = None,
     all_but_largest: Annotated[bool, typer.Option(help="Leave the widest loop open.")] = False,
@@ -108,19 +117,23 @@ def fill(  # noqa: PLR0913, PLR0917  one argument per flag
             NetworkOptions(fit_steps, fit_seconds),
             read_tolerance(weld_tolerance),
         )
-        others = [path for path in (report, preview) if path]
+        if calibration and recipe == "paper":
+            raise OptionError("--calibration goes with the recipe default: the paper calibrates nothing")
+        others = [path for path in (report, preview, calibration) if path]
         check_outputs(source, output, others, may_overwrite=overwrite)
         if closeups:
             check_folder(closeups, [source, output, *others])
         prepare_libraries()
         from quadpatch.repair import repair_and_keep  # noqa: PLC0415  numerical libraries, once there is work to do
 
-        repaired = repair_and_keep(source, output, model, options, progress)
+        kept = read_calibrations(calibration)
+        repaired = repair_and_keep(source, output, model, options, progress, kept=kept)
         logging.getLogger("quadpatch").addHandler(logging.NullHandler())  # what people read is in the warnings
         if report and (preview or closeups) and not is_stream(report):  # drawing may take the process down
             write_report(repaired.report, report)
         _draw(repaired, preview, closeups)
         write_report(repaired.report, report)
+        write_calibrations(calibration, kept)
     if not quiet:
         say(summary(repaired.report))
 

@@ -1,6 +1,7 @@
 """The command line as a person or a script calls it.
 
-Also tests `quadpatch.cli.holes`, `quadpatch.cli.flags`, `quadpatch.cli.messages` and `quadpatch.cli.reports`.
+Also tests `quadpatch.cli.calibration_file`, `quadpatch.cli.holes`, `quadpatch.cli.flags`, `quadpatch.cli.messages` and
+`quadpatch.cli.reports`.
 """
 
 import json
@@ -73,6 +74,60 @@ def test_a_picture_that_fails_is_a_warning_and_mesh_and_report_are_there(
     assert json.loads(report.read_text())["warnings"] == ["there is no picture: an internal error (ZeroDivisionError)"]
     assert len(read_scan(output).triangles) > len(read_scan(scan_file).triangles)
     assert not (tmp_path / "out.png").exists()
+
+
+def test_what_calibration_found_out_is_kept_for_the_next_repair_of_the_same_scan(
+    scan_file: Path, tmp_path: Path
+) -> None:
+    kept, report = tmp_path / "calibration.json", tmp_path / "out.json"
+
+    def is_reused(*flags: str | Path) -> bool:
+        flags = ("-o", tmp_path / "out.ply", "--report", report, "--calibration", kept, *flags)
+        result = run("fill", scan_file, *flags)
+        assert result.exit_code == 0, result.output
+        return bool(json.loads(report.read_text())["calibration"]["reused"])
+
+    assert not is_reused("--model", "smooth")
+    first, meshes = kept.read_bytes(), [(tmp_path / "out.ply").read_bytes()]
+    assert is_reused("--model", "smooth")
+    meshes.append((tmp_path / "out.ply").read_bytes())
+    assert meshes[0] == meshes[1]
+    assert kept.read_bytes() == first
+    assert not is_reused("--model", "smooth", "--seed", "1")
+    assert len(kept.read_bytes()) > len(first)
+    assert is_reused("--model", "general-dictionary@1")
+    # Nothing is kept unless it is asked for.
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["calibration.json", "out.json", "out.ply"]
+
+
+def test_a_file_that_is_no_file_of_calibrations_is_not_written_over(scan_file: Path, tmp_path: Path) -> None:
+    other = tmp_path / "notes.json"
+    other.write_text('{"notes": []}')
+    for path, words in ((other, "is no file of --calibration"), (scan_file, "is named twice"), ("-", "names a file")):
+        result = run("fill", scan_file, "-o", tmp_path / "out.ply", "--calibration", path)
+        assert result.exit_code == 1
+        assert words in " ".join(result.stderr.split())
+    assert other.read_text() == '{"notes": []}'
+    assert not (tmp_path / "out.ply").exists()
+
+
+def test_a_damaged_calibration_is_made_anew(scan_file: Path, tmp_path: Path) -> None:
+    kept, flags = tmp_path / "calibration.json", ("-o", tmp_path / "out.ply", "--model", "smooth")
+    assert run("fill", scan_file, *flags, "--calibration", kept).exit_code == 0
+    sound, mesh = json.loads(kept.read_text()), (tmp_path / "out.ply").read_bytes()
+    (record,) = sound["records"].values()
+    record["belief"] = 2.0
+    kept.write_text(json.dumps(sound))
+    assert run("fill", scan_file, *flags, "--calibration", kept).exit_code == 0
+    assert (tmp_path / "out.ply").read_bytes() == mesh
+    (record,) = json.loads(kept.read_text())["records"].values()
+    assert record["belief"] <= 1.0
+
+
+def test_the_recipe_of_the_paper_has_no_calibration_to_keep(scan_file: Path, tmp_path: Path) -> None:
+    flags = ("-o", tmp_path / "out.ply", "--recipe", "paper", "--calibration", tmp_path / "calibration.json")
+    result = run("fill", scan_file, *flags)
+    assert (result.exit_code, "the paper calibrates nothing" in result.stderr) == (1, True)
 
 
 def test_the_scan_is_kept_unless_it_may_be_overwritten(scan_file: Path, tmp_path: Path) -> None:
