@@ -87,6 +87,16 @@ class Meshes:
         with self._database.read() as session:
             return _to_source(_existing(session, mesh_id))
 
+    def calibrations(self, mesh_id: str) -> str | None:
+        """Return what repairs of a mesh have kept, as it was given; None where that is nothing."""
+        with self._database.read() as session:
+            return session.scalar(select(MeshRow.calibrations).where(MeshRow.id == mesh_id))
+
+    def keep_calibrations(self, mesh_id: str, calibrations: str) -> None:
+        """Keep what a repair found out about a mesh, in place of what was kept; of a mesh that is gone nothing is."""
+        with self._database.write() as session:
+            session.execute(update(MeshRow).where(MeshRow.id == mesh_id).values(calibrations=calibrations))
+
     def start_analysis(self, mesh_id: str, worker: str, lease_s: float) -> Analysis:
         """Take a mesh for analysis; raise StaleAttemptError where another worker has it or nothing is to be done."""
         with self._database.write() as session:

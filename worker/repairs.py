@@ -25,6 +25,7 @@ from jobkit.schema import JobError, JobResult, JobState
 from jobkit.schema.methods import SmoothMethod
 from jobkit.telemetry import StageSpans
 from quadpatch.stages import failure_of
+from worker.calibrations import hand_on, take_back
 from worker.context import Context
 from worker.engine.limits import EngineLimits
 from worker.engine.request import LOG_NAME
@@ -130,6 +131,7 @@ def _work(context: Context, started_attempt: StartedAttempt, heartbeat: Heartbea
         job_request(job.spec, source, model, limits, reference), model_card=network_card(job.model, context.registry)
     )
     with folder_with_mesh(context, source, reference) as folder:
+        before = hand_on(context.meshes, job.mesh_id, folder) if request.scan else b""
         with context.telemetry.stages() as spans:
             observer = Observer(
                 _report_to_both(heartbeat, spans),
@@ -142,6 +144,8 @@ def _work(context: Context, started_attempt: StartedAttempt, heartbeat: Heartbea
             note_lost_pictures(folder, request, failure)
         elif missing_pictures(folder, request):
             log_engine_tail(folder / LOG_NAME)
+        if request.scan:
+            take_back(context.meshes, job.mesh_id, folder, before)
         if deprecated is not None:
             note_deprecation(folder, f"{job.model.name}@{job.model.version}", deprecated.reason)
         cost = Cost(time.monotonic() - started_at, heartbeat.peak_mb)

@@ -9,7 +9,7 @@ Tested in `tests/jobkit/database/test_session.py`.
 from datetime import datetime
 from typing import Any
 
-from sqlalchemy import JSON, BigInteger, ForeignKey, ForeignKeyConstraint, Index, String, UniqueConstraint
+from sqlalchemy import JSON, BigInteger, ForeignKey, ForeignKeyConstraint, Index, String, Text, UniqueConstraint
 from sqlalchemy.orm import Mapped, mapped_column
 
 from jobkit.database.table_base import Base
@@ -18,7 +18,8 @@ from jobkit.database.table_base import Base
 class MeshRow(Base):
     """An uploaded mesh and its analysis.
 
-    `filename` is that of its latest upload.
+    `filename` is that of its latest upload. `calibrations` is what repairs found out about it by calibration
+    (`shared_rules/calibration_records.py`), for the next one.
     `used_at` is when its bytes came last, or when the last job on it ended that retention has removed since.
     `checked_at`, here, of jobs and of models, is when the scrub last read the objects that the row names.
     """
@@ -37,6 +38,7 @@ class MeshRow(Base):
     enqueued_at: Mapped[datetime | None]
     facts: Mapped[dict[str, Any] | None]
     problem: Mapped[dict[str, Any] | None]
+    calibrations: Mapped[str | None] = mapped_column(Text, deferred=True)
     pinned: Mapped[bool] = mapped_column(default=False)
     used_at: Mapped[datetime]
     checked_at: Mapped[datetime | None]

@@ -124,6 +124,27 @@ def test_a_job_that_asks_for_close_ups_has_one_of_each_chosen_hole(settings: Set
     assert report["stages"][-1]["name"] == "closeups"
 
 
+def test_the_second_repair_of_a_mesh_takes_what_the_first_one_found_out_by_calibration(
+    settings: Settings, store: ObjectStore, caplog: pytest.LogCaptureFixture
+) -> None:
+    with working(settings, Database(settings.effective_database_url), store) as context:
+        reports, meshes = [], []
+        for step in range(4):
+            job = new_job(context)
+            run_job(job.id)
+            assert context.jobs.get(job.id).state is JobState.SUCCEEDED
+            reports.append(json.loads(b"".join(store.read(result_key(job.id, 1, "report.json")))))
+            meshes.append(b"".join(store.read(result_key(job.id, 1, "repaired.ply"))))
+            kept = context.meshes.calibrations(job.mesh_id)
+            assert kept is not None
+            if step == 1:  # a row that says something else
+                context.meshes.keep_calibrations(job.mesh_id, kept.replace('"belief": ', '"belief": -'))
+    assert [report["calibration"].pop("reused") for report in reports] == [False, True, False, True]
+    assert "a kept calibration is left out" in caplog.text
+    assert len(set(meshes)) == 1
+    assert all(report["holes"] == reports[0]["holes"] for report in reports)
+
+
 @pytest.mark.parametrize(
     ("asked", "words"), [({"preview": True}, "there is no picture"), ({"closeups": True}, "there are no close-ups")]
 )

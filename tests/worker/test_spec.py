@@ -209,3 +209,10 @@ def test_each_picture_is_drawn_where_it_is_asked_for() -> None:
             assert (request.with_preview, request.with_close_ups) == (preview, closeups)
     default = job_request(spec(), source(), "smooth", LIMITS)
     assert (default.with_preview, default.with_close_ups) == (True, False)
+
+
+def test_what_is_kept_of_a_calibration_goes_by_the_bytes_of_the_mesh_and_how_they_are_read() -> None:
+    as_ply, as_stl = (job_request(spec(), source(form), "smooth", LIMITS).scan for form in ("ply", "stl"))
+    assert as_ply != as_stl
+    assert source("ply").mesh_id in as_ply
+    assert not job_request(spec(task="denoise"), source("stl"), "self", LIMITS, source("ply", "clean.ply")).scan

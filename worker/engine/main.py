@@ -10,17 +10,28 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from quadpatch.calibration.kept import KeptCalibrations
 from quadpatch.formats.output_files import write_whole
 from quadpatch.inpainters.proof import prove_model
 from quadpatch.options import RepairOptions
 from quadpatch.preview.drawing import add_close_up_archive, add_comparison, add_picture
+from quadpatch.recipes.default import FAIRING_ENERGIES
 from quadpatch.repair import repair_and_keep
+from quadpatch.stages import failure_of
 from quadpatch.tasks.inspect import inspect_any
 from shared_rules.garbage_collection import collect_seldom
 from worker.engine import preloading  # noqa: F401  loads what would else be loaded in each engine
 from worker.engine.entry import run_confined
 from worker.engine.reports import Reporter
-from worker.engine.request import CLOSE_UPS_NAME, FACTS_NAME, PREVIEW_NAME, REPORT_NAME, EngineRequest, EngineTask
+from worker.engine.request import (
+    CALIBRATION_NAME,
+    CLOSE_UPS_NAME,
+    FACTS_NAME,
+    PREVIEW_NAME,
+    REPORT_NAME,
+    EngineRequest,
+    EngineTask,
+)
 from worker.engine.tasks import MESH_TASKS
 
 
@@ -33,8 +44,11 @@ def run_request(folder: Path, descriptor: int) -> None:
 def _repair(folder: Path, request: EngineRequest, reporter: Reporter) -> None:
     source, output = folder / request.source, folder / request.output
     options = RepairOptions.from_dict(request.options)
-    repaired = repair_and_keep(source, output, request.model, options, reporter.progress, request.model_card)
+    kept = _kept_calibrations(folder, request.scan)
+    repaired = repair_and_keep(source, output, request.model, options, reporter.progress, request.model_card, kept)
     _write_json(folder / REPORT_NAME, repaired.report)
+    if kept.has_new:
+        failure_of(lambda: write_whole(folder / CALIBRATION_NAME, kept.written()))
     reporter.delivered()
     if request.with_preview:
         reporter.progress("preview", 0.0)
@@ -44,6 +58,12 @@ def _repair(folder: Path, request: EngineRequest, reporter: Reporter) -> None:
         reporter.progress("closeups", 0.0)
         add_close_up_archive(repaired, folder / CLOSE_UPS_NAME, reporter.progress)
         _write_json(folder / REPORT_NAME, repaired.report)
+
+
+def _kept_calibrations(folder: Path, scan: str) -> KeptCalibrations:
+    """Read what earlier repairs kept; the worker has checked the file, and says what is wrong with it."""
+    path = folder / CALIBRATION_NAME
+    return KeptCalibrations.read(path.read_bytes(), FAIRING_ENERGIES, scan) if path.exists() else KeptCalibrations(scan)
 
 
 def _inspect(folder: Path, request: EngineRequest, reporter: Reporter) -> None:

@@ -10,6 +10,7 @@
     report.json      what was done to every hole, or what else was done
     preview.png      the before/after picture
     closeups.zip     a picture of each chosen hole
+    calibration.json what repairs of this mesh found out by calibration; the engine adds what it finds out
     facts.json       what an inspection found
     engine.log       all that the child prints
 
@@ -31,6 +32,7 @@ REPORT_NAME = "report.json"
 FACTS_NAME = "facts.json"
 PREVIEW_NAME = "preview.png"
 CLOSE_UPS_NAME = "closeups.zip"
+CALIBRATION_NAME = "calibration.json"
 LOG_NAME = "engine.log"
 
 EngineTask = Literal["repair", "restore", "denoise", "encode", "decode", "inspect", "prove"]
@@ -63,6 +65,8 @@ class EngineRequest:
         Path of the clean scan in the request's folder; empty where nothing is learned from another mesh.
     missing : dict or None
         Which vertices to restore, as `jobkit.schema.Missing` says it.
+    scan : str
+        Names the bytes of the mesh and how they are read, for what is kept of a calibration; empty where nothing is.
     """
 
     task: EngineTask
@@ -76,6 +80,7 @@ class EngineRequest:
     model_card: dict[str, Any] | None = None
     reference: str = ""
     missing: dict[str, Any] | None = None
+    scan: str = ""
 
     def save(self, folder: Path) -> None:
         """Write the request into its folder."""

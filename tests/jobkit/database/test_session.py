@@ -18,6 +18,7 @@ from jobkit.database.session import Database
 from jobkit.database.table_base import Base
 from jobkit.database.tables import JobRow, MeshRow, ModelRow
 from jobkit.errors import DatabaseError, DatabaseUnavailableError, RowConflictError, SettingsError
+from jobkit.meshes import Meshes
 from tests.servers import PostgresServer, fresh_database, running_postgres
 from tests.waiting import GUARD_S, let_others_run
 
@@ -70,6 +71,7 @@ def test_an_upgrade_keeps_the_rows_and_fills_what_is_new_and_so_does_the_way_bac
     assert job.mesh_name == "scan.ply"
     assert (job.task, job.reference_id) == ("fill", None)
     assert (mesh.used_at, mesh.pinned) == (NOW, False)
+    assert Meshes(database).calibrations("m") is None
     for revision in ("0001", "head"):
         database.migrate(revision)
         with database.engine.connect() as connection:
