@@ -48,7 +48,7 @@ def record(url: str, scan: bytes) -> dict[str, str]:
             mesh = http.get(f"/v1/meshes/{uploaded['id']}", params={"wait": "10"}).json()
         spec = {
             "mesh_id": mesh["id"],
-            "method": {"method": "dictionary", "model": "self"},
+            "method": {"method": "auto", "effort": "standard"},
             "holes": {"max_diameter": 25.0},
             "label": "station 4, part 1187",
         }

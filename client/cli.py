@@ -48,7 +48,7 @@ from client.running import Connection, run
 from client.screen import Screen
 from client.tables import print_holes, print_jobs, print_models
 from client.task_commands import decode, denoise, encode, restore
-from shared_rules.option_words import Preset, Recipe
+from shared_rules.option_words import Effort, Preset, Recipe
 
 app = typer.Typer(
     name="quadpatch-client",
@@ -59,7 +59,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 _PATCHES = "Patches"
-_FITTING = "Fitting a network to the mesh (--method cnn --model self)"
+_FITTING = "Fitting a network to the mesh (--effort best, or --method cnn --model self)"
 
 
 @app.command(epilog=f"Exit codes:\n\n{exit_codes_text()}")
@@ -67,7 +67,21 @@ def repair(  # noqa: PLR0913 - one parameter per option of the command line
     mesh: MeshArgument,
     *,
     output: OutputOption,
-    method: Annotated[MethodName, typer.Option(help="How holes are filled.")] = "dictionary",
+    effort: Annotated[
+        Effort | None,
+        typer.Option(
+            help="How much the method auto tries: fast (geometry only), standard (also a dictionary of this mesh and "
+            "the shipped network: seconds), best (also a network fitted to this mesh: minutes).",
+            show_default="standard",
+        ),
+    ] = None,
+    method: Annotated[
+        MethodName | None,
+        typer.Option(
+            help="How holes are filled; auto finds out what is best on this very mesh.",
+            show_default="auto; dictionary with a --model or --recipe",
+        ),
+    ] = None,
     model: Annotated[
         str | None,
         typer.Option(help="name@version, an alias, or 'self': learned from the mesh itself.", show_default="default"),
@@ -133,7 +147,7 @@ def repair(  # noqa: PLR0913 - one parameter per option of the command line
             output=output,
             holes=HoleChoice(max_diameter, max_perimeter, all_but_largest, hole, include_borders, cap, rule),
             method=MethodChoice(
-                method, model, patch_length, resolution, overlap, recipe, fit_steps, fit_seconds, preset
+                method, model, patch_length, resolution, overlap, recipe, fit_steps, fit_seconds, preset, effort
             ),
             rest={
                 "seed": seed,

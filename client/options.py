@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 import typer
 
-from shared_rules.option_words import OutputFormat, Preset, Recipe
+from shared_rules.option_words import Effort, OutputFormat, Preset, Recipe
 
 DEFAULT_URL = "http://127.0.0.1:8000"
 MethodName = Literal["auto", "dictionary", "cnn", "smooth"]
@@ -132,9 +132,15 @@ class HoleChoice:
 
 @dataclass(frozen=True)
 class MethodChoice:
-    """How to fill them."""
+    """How to fill them.
 
-    method: MethodName = "dictionary"
+    Attributes
+    ----------
+    method : str, optional
+        `dictionary` where a model or a recipe is named, else `auto`.
+    """
+
+    method: MethodName | None = None
     model: str | None = None
     length: float | None = None
     resolution: int | None = None
@@ -143,6 +149,7 @@ class MethodChoice:
     fit_steps: int | None = None
     fit_seconds: float | None = None
     preset: Preset | None = None
+    effort: Effort | None = None
 
 
 def tolerance(word: str | None) -> float | str | None:

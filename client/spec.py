@@ -40,18 +40,27 @@ def _method(choice: MethodChoice) -> dict[str, Any]:
     fitting = _given({"steps": choice.fit_steps, "seconds": choice.fit_seconds})
     if choice == MethodChoice():
         return {}  # the service has a default of its own for each task
-    if fitting and (choice.method, choice.model) != ("cnn", SELF):
-        raise UsageError("only the method 'cnn' with the model 'self' fits a network; others take no time to fit")
-    if choice.method == "smooth":
+    method = choice.method or ("auto" if choice.model is choice.recipe is None else "dictionary")
+    if method == "auto":
+        return _auto(choice, patches, fitting)
+    if choice.effort is not None:
+        raise UsageError(f"an effort goes with the method 'auto' alone, not with '{method}'")
+    if fitting and (method, choice.model) != ("cnn", SELF):
+        raise UsageError("only the effort 'best' and the method 'cnn' with the model 'self' fit a network")
+    if method == "smooth":
         if choice.model is not None or choice.recipe is not None or patches:
             raise UsageError("the method 'smooth' takes no model, no recipe and no patch options")
         return {"method": "smooth"}
-    if choice.method == "auto":
-        if choice.model is not None or choice.recipe is not None:
-            raise UsageError("the method 'auto' finds the model by itself: it takes no model and no recipe")
-        return _given({"method": "auto", "patches": patches})
     rest = _given({"model": choice.model, "recipe": choice.recipe, "fitting": fitting})
-    return {"method": choice.method, "patches": patches, **rest}
+    return {"method": method, "patches": patches, **rest}
+
+
+def _auto(choice: MethodChoice, patches: dict[str, Any], fitting: dict[str, Any]) -> dict[str, Any]:
+    if choice.model is not None or choice.recipe is not None:
+        raise UsageError("the method 'auto' finds the model by itself: name another method for a model or a recipe")
+    if fitting and choice.effort != "best":
+        raise UsageError("of the efforts, only 'best' fits a network; the others take no time to fit")
+    return _given({"method": "auto", "effort": choice.effort, "patches": patches, "fitting": fitting})
 
 
 def _given(values: dict[str, Any]) -> dict[str, Any]:

@@ -26,7 +26,6 @@ from onebox.logs import log_tail
 from onebox.processes import stop
 from worker.engine.parent_death import parent_death_signal
 
-MODEL = "general-dictionary@1"
 _HOST = "127.0.0.1"
 _SCAN = Path("tests/sample_meshes/rangemaps/face000.ply")
 _READY_TIMEOUT_S = 900.0
@@ -49,7 +48,7 @@ def demo(folder: Path) -> None:
         source=scan,
         output=folder / "face000_repaired.ply",
         holes=HoleChoice(),
-        method=MethodChoice("dictionary", MODEL),
+        method=MethodChoice(),
         rest={"output": {"preview": True}, "label": "demo"},
         report=folder / "report.json",
         preview=folder / "before_after.png",

@@ -2,7 +2,7 @@
 
 Each inpainter is imported where it is asked for: geometry alone needs none of them, nor the libraries behind them.
 
-Tested in `tests/quadpatch/test_repair_by_fitting.py`.
+Tested in `tests/quadpatch/test_repair_by_effort.py`.
 """
 
 import hashlib
@@ -25,25 +25,31 @@ SELF_NETWORK = "self-network"
 # The same, as a job names the kind of its model.
 SELF_NETWORK_KIND = "self_network"
 
+_FITTED = (SELF_NETWORK, SELF_NETWORK_KIND)
+
 # The network that is fitted to a mesh where `SELF_NETWORK` is asked for.
 BASE_NETWORK = "general-residual"
 
+FITS_NOTHING = (
+    f"network.steps and network.seconds go with the model {SELF_NETWORK}, and with the effort best of {AUTO}, only"
+)
 NOTHING_TO_DO = (
     "the recipe paper is a way to use a learned model; with smooth there is none: drop the recipe or take self"
 )
 
 
 def choose_model(
-    model: str | Path, options: RepairOptions, progress: Progress, network_card: dict[str, Any] | None
+    model: str | Path | None, options: RepairOptions, progress: Progress, network_card: dict[str, Any] | None
 ) -> tuple[Inpainter | None, dict[str, Any]]:
     """Turn a model's name or path into its inpainter.
 
     Parameters
     ----------
-    model : str or Path
-        `auto` (what calibration finds best), `smooth` (no learning), `self` (learn a dictionary from the mesh itself),
-        `self-network` (fit the shipped network to the mesh itself), the name of a shipped model (`name` or
-        `name@version`), or a model file.
+    model : str or Path or None
+        `auto` (what calibration finds best; `options.effort` says of how much), `smooth` (no learning), `self` (learn
+        a dictionary from the mesh itself), `self-network` (fit the shipped network to the mesh itself), the name of a
+        shipped model (`name` or `name@version`), or a model file. None stands for `auto`, with the recipe paper for
+        `self`.
     options : RepairOptions
     progress : callable
     network_card : dict or None
@@ -63,22 +69,31 @@ def choose_model(
     ModelError
         If there is no such model, or its file is none.
     """
+    if model is None:
+        model = SELF if options.recipe == "paper" else AUTO
     if model == SMOOTH and options.recipe == "paper":
         raise OptionError(NOTHING_TO_DO)
-    if model in (SELF_NETWORK, SELF_NETWORK_KIND):
+    if model == AUTO:
+        return _automatic(options, progress)
+    _check_choice(model, options)
+    if model in _FITTED:
         return _network_to_fit(options, progress)
-    if options.network != NetworkOptions():
-        raise OptionError(f"network.steps and network.seconds go with the model {SELF_NETWORK} only")
     if model == SMOOTH:
         return None, {"name": SMOOTH}
-    if model == AUTO:
-        return _competing(options, progress), {"name": AUTO}
     if model == SELF:
         return _dictionary_of_the_mesh(options, progress), {"name": SELF}
     loaded, facts = find_model(model)
     if loaded.dictionary is None:
         return _network(loaded.path, options, network_card), facts
     return _dictionary(loaded, loaded.dictionary, options), facts
+
+
+def _check_choice(model: str | Path, options: RepairOptions) -> None:
+    """Refuse options that go with other models."""
+    if options.effort != RepairOptions.effort:
+        raise OptionError(f"effort goes with the model {AUTO} only")
+    if options.network != NetworkOptions() and model not in _FITTED:
+        raise OptionError(FITS_NOTHING)
 
 
 def find_model(model: str | Path) -> tuple["Model", dict[str, Any]]:
@@ -111,14 +126,37 @@ def sha256_of(path: Path) -> str:
         return hashlib.file_digest(file, "sha256").hexdigest()
 
 
-def _competing(options: RepairOptions, progress: Progress) -> Inpainter:
-    """Let a dictionary of the mesh itself and the shipped network compete."""
+def _automatic(options: RepairOptions, progress: Progress) -> tuple[Inpainter | None, dict[str, Any]]:
+    """Choose what competes on the mesh, by the effort: the best of it, their mean or geometry alone fills the holes."""
     if options.recipe == "paper":
         raise OptionError("the recipe paper is a way to use one learned model: name it, or take self")
+    if options.effort != "best" and options.network != NetworkOptions():
+        raise OptionError(FITS_NOTHING)
+    facts: dict[str, Any] = {"name": AUTO, "effort": options.effort}
+    if options.effort == "fast":
+        return None, facts
     from quadpatch.inpainters.competing import CompetingInpainters  # noqa: PLC0415  see the module docstring
 
-    network = _network(find_model(BASE_NETWORK)[0].path, options, None)
-    return CompetingInpainters({SELF: _dictionary_of_the_mesh(options, progress), BASE_NETWORK: network})
+    networks, not_tried = _competing_networks(options, progress)
+    if not_tried:
+        facts["not_tried"] = not_tried
+    return CompetingInpainters({SELF: _dictionary_of_the_mesh(options, progress), **networks}), facts
+
+
+def _competing_networks(options: RepairOptions, progress: Progress) -> tuple[dict[str, Inpainter], dict[str, str]]:
+    """Open the networks that an effort asks for; say of those that can't compete, why."""
+    from quadpatch.patches.scale import asked_resolution  # noqa: PLC0415  see the module docstring
+
+    shipped, asked = _network(find_model(BASE_NETWORK)[0].path, options, None), asked_resolution(options.patches)
+    if asked is not None and asked != shipped.resolution:
+        names = [BASE_NETWORK, SELF_NETWORK] if options.effort == "best" else [BASE_NETWORK]
+        return {}, dict.fromkeys(names, f"its patches have {shipped.resolution} bins along a side, not {asked}")
+    if options.effort != "best":
+        return {BASE_NETWORK: shipped}, {}
+    try:
+        return {BASE_NETWORK: shipped, SELF_NETWORK: _network_to_fit(options, progress)[0]}, {}
+    except TorchMissingError as error:
+        return {BASE_NETWORK: shipped}, {SELF_NETWORK: str(error)}
 
 
 def _dictionary_of_the_mesh(options: RepairOptions, progress: Progress) -> Inpainter:

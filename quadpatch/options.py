@@ -7,7 +7,7 @@ from typing import Any, Literal, TypeVar, get_args
 
 from quadpatch.errors import OptionError
 from shared_rules.hole_selection import MODEL_FILLS_ONLY, Cap, HoleKind, RuleAction, names_fills
-from shared_rules.option_words import Preset, Recipe
+from shared_rules.option_words import Effort, Preset, Recipe
 
 RESOLUTION_RANGE = (8, 128)
 OVERLAP_RANGE = (0, 8)
@@ -201,6 +201,8 @@ class RepairOptions:
     weld_tolerance : float or "auto"
         How far apart boundary vertices are taken for one, in mesh units: 0 for equal positions alone, `auto` for what
         rounding in the file accounts for.
+    effort : str
+        How much the model `auto` tries: `fast`, `standard` or `best`.
     """
 
     holes: HoleOptions = field(default_factory=HoleOptions)
@@ -210,11 +212,12 @@ class RepairOptions:
     dictionary: DictionaryOptions = field(default_factory=DictionaryOptions)
     network: NetworkOptions = field(default_factory=NetworkOptions)
     weld_tolerance: float | Literal["auto"] = "auto"
+    effort: Effort = "standard"
 
     def __post_init__(self) -> None:
         check_weld_tolerance(self.weld_tolerance)
-        if self.recipe not in get_args(Recipe):
-            raise OptionError(f"recipe must be one of {', '.join(get_args(Recipe))}; it is {self.recipe!r}")
+        _check_choice("recipe", self.recipe, get_args(Recipe))
+        _check_choice("effort", self.effort, get_args(Effort))
         if self.recipe == "paper" and names_fills(self.holes):
             raise OptionError(MODEL_FILLS_ONLY)
         if self.recipe != "paper" and self.dictionary != DictionaryOptions():

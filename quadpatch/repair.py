@@ -20,7 +20,7 @@ from quadpatch.mesh.measures import diagonal
 from quadpatch.mesh.near_vertices import Tolerance
 from quadpatch.mesh.orientation import triangles_facing_flipped
 from quadpatch.mesh.weld import Weld, weld
-from quadpatch.model_choice import SELF, choose_model
+from quadpatch.model_choice import choose_model
 from quadpatch.options import RepairOptions, check_weld_tolerance
 from quadpatch.progress import Progress, no_progress
 from quadpatch.recipes.default import inpaint
@@ -62,7 +62,7 @@ class RepairedFile:
 def repair_file(
     source: Path,
     output: Path,
-    model: str | Path = SELF,
+    model: str | Path | None = None,
     options: RepairOptions | None = None,
     progress: Progress = no_progress,
 ) -> dict[str, Any]:
@@ -72,7 +72,7 @@ def repair_file(
     ----------
     source, output : Path
         The output's suffix says its format; standard output (`-`), a device or a pipe gets that of the scan.
-    model : str or Path
+    model : str or Path, optional
         See `quadpatch.model_choice.choose_model`.
     options : RepairOptions, optional
     progress : callable
@@ -95,7 +95,7 @@ def repair_file(
 def repair_and_keep(  # noqa: PLR0913, PLR0917  the same arguments as every task's, and what is kept
     source: Path,
     output: Path,
-    model: str | Path = SELF,
+    model: str | Path | None = None,
     options: RepairOptions | None = None,
     progress: Progress = no_progress,
     network_card: dict[str, Any] | None = None,

@@ -19,7 +19,7 @@ from quadpatch.mesh.holes import Hole
 from quadpatch.mesh.measures import bounding_box, mean_edge_length
 from quadpatch.mesh.weld import Weld, WeldCounts
 from quadpatch.options import RepairOptions
-from quadpatch.recipes.result import HoleResult, Repair
+from quadpatch.recipes.result import Completion, HoleResult, Repair
 from quadpatch.stages import Stages
 from quadpatch.types import TriangleMesh
 from shared_rules.text import printable
@@ -101,7 +101,7 @@ def build_report(
         "source": describe_mesh(scan, welded.mesh),
         "welded": asdict(welded.counts),
         "length_unit": scan.unit or UNKNOWN_UNIT,
-        "model": {**model, "shares": completion.shares} if completion and completion.shares else model,
+        "model": {**model, **_competition(completion)},
         "options": plain_options(options),
         "counts": {
             "found": len(repair.results),
@@ -121,6 +121,17 @@ def build_report(
         "warnings": repair.warnings,
     }
     return {**json_ready(report), "holes": [_hole(result) for result in repair.results]}
+
+
+def _competition(completion: Completion | None) -> dict[str, Any]:
+    """Say which models competed, and what part the winners have; nothing where none did."""
+    if completion is None or not completion.trials:
+        return {}
+    trials = [
+        {"models": trial.shares, "believed_share": trial.blend_factor, "error": trial.error}
+        for trial in completion.trials
+    ]
+    return {"shares": completion.shares, "trials": trials}
 
 
 def describe_task(

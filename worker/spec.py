@@ -1,7 +1,7 @@
 """The one place where the wire schema of a job becomes a request to the method."""
 
 from pathlib import PurePath
-from typing import Any, get_args
+from typing import Any, TypeGuard, get_args
 
 from jobkit.meshes import MeshSource
 from jobkit.schema import (
@@ -11,6 +11,7 @@ from jobkit.schema import (
     Denoising,
     Format,
     JobSpec,
+    Method,
     OutputFormat,
     RegionBox,
     ResultFormat,
@@ -59,7 +60,7 @@ def job_request(
     source : MeshSource
         The job's mesh.
     model : str
-        `smooth`, `self`, `self-network`, or the path of the pinned version's file.
+        `auto`, `smooth`, `self`, `self-network`, or the path of the pinned version's file.
     limits : EngineLimits
         Of the worker; the spec may only lower them.
     reference : MeshSource, optional
@@ -99,10 +100,19 @@ def method_options(spec: JobSpec, time_s: float) -> dict[str, Any]:
     recipe = "default" if isinstance(spec.method, SmoothMethod | AutoMethod) else spec.method.recipe
     options = {"holes": spec.holes.model_dump(), "patches": patches, "seed": spec.seed, "recipe": recipe}
     options["weld_tolerance"] = spec.weld_tolerance
-    if isinstance(spec.method, CnnMethod) and spec.method.model == SELF:
+    if isinstance(spec.method, AutoMethod):
+        options["effort"] = spec.method.effort
+    if fits_a_network(spec.method):
         fitting = spec.method.fitting
         options["network"] = {"steps": fitting.steps, "seconds": min(fitting.seconds, _FITTING_SHARE * time_s)}
     return options
+
+
+def fits_a_network(method: Method) -> TypeGuard[AutoMethod | CnnMethod]:
+    """Say whether a network is fitted to the mesh."""
+    if isinstance(method, AutoMethod):
+        return method.effort == "best"
+    return isinstance(method, CnnMethod) and method.model == SELF
 
 
 def task_options(spec: JobSpec) -> dict[str, Any]:

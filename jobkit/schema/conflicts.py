@@ -8,7 +8,7 @@ Tested in `tests/jobkit/schema/test_tasks.py`.
 
 from collections.abc import Mapping
 
-from jobkit.schema.methods import SELF, AutoMethod, CnnMethod, DictionaryMethod, PatchOptions, SmoothMethod
+from jobkit.schema.methods import SELF, AutoMethod, CnnMethod, DictionaryMethod, Fitting, PatchOptions, SmoothMethod
 from jobkit.schema.spec import HoleSelection, RepairSpec
 from shared_rules.hole_selection import MODEL_FILLS_ONLY, names_fills
 from shared_rules.tasks import Task
@@ -37,7 +37,11 @@ def _conflict_of_fill(spec: RepairSpec) -> str | None:
     if isinstance(spec.method, SmoothMethod):
         return _options_of_another_task(spec)
     if isinstance(spec.method, AutoMethod):
-        return _conflict_of_patches(spec.method.patches) or _options_of_another_task(spec)
+        return (
+            _conflict_of_effort(spec.method)
+            or _conflict_of_patches(spec.method.patches)
+            or _options_of_another_task(spec)
+        )
     if spec.method.recipe == "paper" and names_fills(spec.holes):
         return MODEL_FILLS_ONLY
     if spec.method.recipe == "paper" and isinstance(spec.method, CnnMethod) and spec.method.model == SELF:
@@ -53,6 +57,12 @@ def _conflict_of_task(spec: RepairSpec) -> str | None:
         or _conflict_of_method(spec)
         or _conflict_of_output(spec)
     )
+
+
+def _conflict_of_effort(method: AutoMethod) -> str | None:
+    if method.effort != "best" and method.fitting != Fitting():
+        return "method.fitting goes with the effort best: drop it, or ask for that effort"
+    return None
 
 
 def _conflict_of_patches(patches: PatchOptions) -> str | None:

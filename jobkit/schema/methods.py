@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from jobkit.schema.base import REFERENCE_PATTERN, WHOLE, Request
-from shared_rules.option_words import Preset, Recipe
+from shared_rules.option_words import Effort, Preset, Recipe
 
 DEFAULT_MODEL = "default"
 DEFAULT_NETWORK = "default-network"
@@ -63,7 +63,7 @@ class DictionaryMethod(Request):
 
 
 class Fitting(Request):
-    """How long a network is fitted to the mesh itself; goes with the model `self` alone."""
+    """How long a network is fitted to the mesh itself."""
 
     steps: FittingSteps = Field(default=1000, description="At most so many steps, of 64 patches each.", examples=[1000])
     seconds: float = Field(
@@ -106,12 +106,21 @@ class SmoothMethod(Request):
 
 
 class AutoMethod(Request):
-    """A dictionary learned from the mesh itself and the network that ships compete on holes cut for calibration.
+    """Models compete on holes cut for calibration; the best one, a mean of several or geometry alone fills the holes.
 
-    The better one, their mean or geometry alone fills the holes; the report says which.
+    The report says which were tried, and what came of it.
     """
 
     method: Literal["auto"] = Field(description="What calibration on the mesh finds best.", examples=["auto"])
+    effort: Effort = Field(
+        default="standard",
+        description="What is tried: `fast` geometry alone, `standard` also a dictionary learned from the mesh itself "
+        "and the network that ships (seconds), `best` also that network fitted to the mesh (minutes).",
+        examples=["standard"],
+    )
+    fitting: Fitting = Field(
+        default_factory=Fitting, description="How long the network is fitted; refused with another effort than `best`."
+    )
     patches: PatchOptions = Field(default_factory=PatchOptions, description="How patches are laid out.")
 
 

@@ -5,7 +5,7 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import Field, model_validator
 
 from jobkit.schema.base import TEXT_PATTERN, WHOLE, MeshId, Request
-from jobkit.schema.methods import DEFAULT_MODEL, SELF, DictionaryMethod, Method
+from jobkit.schema.methods import SELF, AutoMethod, DictionaryMethod, Method
 from jobkit.schema.tasks import Denoising, Encoding, Restoring
 from shared_rules.hole_selection import Cap, HoleKind, RuleAction
 from shared_rules.option_words import OutputFormat
@@ -121,10 +121,11 @@ class Limits(Request):
     memory_mb: MemoryMb | None = Field(default=None, description="Memory of the engine, in MiB.", examples=[2048])
 
 
-def _default_method(fields: dict[str, Any]) -> DictionaryMethod:
+def _default_method(fields: dict[str, Any]) -> AutoMethod | DictionaryMethod:
     """Return the method of a job that names none: tasks other than `fill` go by what the mesh itself teaches."""
-    model = DEFAULT_MODEL if fields.get("task") == FILL else SELF
-    return DictionaryMethod(method="dictionary", model=model)
+    if fields.get("task") == FILL:
+        return AutoMethod(method="auto")
+    return DictionaryMethod(method="dictionary", model=SELF)
 
 
 class RepairSpec(Request):
@@ -139,8 +140,8 @@ class RepairSpec(Request):
     method: Method = Field(
         default_factory=_default_method,
         description="How patches are completed or coded. `encode` and `decode` go by a dictionary, `denoise` by one or "
-        "`smooth`. Left out, it is a dictionary: the model `default` where the task is `fill`, else `self`. For "
-        "`decode`, `self` means the dictionary that the file holds or names.",
+        "`smooth`. Left out, it is `auto` where the task is `fill`, else a dictionary, `self`. For `decode`, `self` "
+        "means the dictionary that the file holds or names.",
     )
     restore: Restoring | None = Field(default=None, description="Options of the task `restore`, which needs them.")
     denoise: Denoising | None = Field(default=None, description="Options of the task `denoise`.")

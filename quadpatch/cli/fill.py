@@ -30,7 +30,7 @@ from quadpatch.errors import OptionError
 from quadpatch.formats.output_files import check_folder, check_outputs, is_stream
 from quadpatch.options import DictionaryOptions, HoleOptions, HoleRule, NetworkOptions, PatchOptions, RepairOptions
 from shared_rules.hole_selection import Cap
-from shared_rules.option_words import Recipe
+from shared_rules.option_words import Effort, Recipe
 from shared_rules.rule_text import RuleTextError, read_rule
 
 if TYPE_CHECKING:
@@ -43,13 +43,20 @@ def fill(  # noqa: PLR0913, PLR0917  one argument per flag
     source: Source,
     output: Output,
     model: Annotated[
-        str,
+        str | None,
         typer.Option(
-            help="self (learn a dictionary from this mesh), auto (self, the shipped network or their mean, whichever "
-            "calibration finds best), self-network (fit a network to this mesh: minutes), "
-            "smooth (geometry only), a shipped model, or a model file."
+            help="auto (what is best on this very mesh: see --effort), self (learn a dictionary from it), "
+            "self-network (fit a network to it: minutes), smooth (geometry only), a shipped model, or a model file.",
+            show_default="auto; self with the recipe paper",
         ),
-    ] = "self",
+    ] = None,
+    effort: Annotated[
+        Effort,
+        typer.Option(
+            help="How much auto tries: fast (geometry only), standard (also a dictionary of this mesh and the shipped "
+            "network: seconds), best (also a network fitted to this mesh: minutes)."
+        ),
+    ] = "standard",
     recipe: Annotated[
         Recipe, typer.Option(help="How the model is put to use: our way, or exactly the paper's.")
     ] = "default",
@@ -92,8 +99,12 @@ def fill(  # noqa: PLR0913, PLR0917  one argument per flag
     nonzero: Annotated[
         int | None, typer.Option(help="Atoms that one patch may use (recipe paper, model self).")
     ] = None,
-    fit_steps: Annotated[int, typer.Option(help="Fit at most so many steps (model self-network).")] = FITTING.steps,
-    fit_seconds: Annotated[float, typer.Option(help="Fit at most so long (model self-network).")] = FITTING.seconds,
+    fit_steps: Annotated[
+        int, typer.Option(help="Fit at most so many steps (self-network, effort best).")
+    ] = FITTING.steps,
+    fit_seconds: Annotated[
+        float, typer.Option(help="Fit at most so long (self-network, effort best).")
+    ] = FITTING.seconds,
     weld_tolerance: WeldTolerance = "auto",
     seed: Seed = 0,
     quiet: Quiet = False,
@@ -116,6 +127,7 @@ def fill(  # noqa: PLR0913, PLR0917  one argument per flag
             DictionaryOptions(atoms, nonzero),
             NetworkOptions(fit_steps, fit_seconds),
             read_tolerance(weld_tolerance),
+            effort,
         )
         if calibration and recipe == "paper":
             raise OptionError("--calibration goes with the recipe default: the paper calibrates nothing")

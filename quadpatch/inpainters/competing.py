@@ -1,4 +1,4 @@
-"""Several models for one mesh, of which calibration takes the best one, or the mean of all: the model `auto`.
+"""Several models for one mesh, of which calibration takes the best one, or the mean of some: the model `auto`.
 
 A mean of predictions has the smaller error where models err in different ways (T. Hastie, R. Tibshirani, J. Friedman,
 "The Elements of Statistical Learning", 2009, section 8.8).
@@ -6,6 +6,7 @@ A mean of predictions has the smaller error where models err in different ways (
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import chain, combinations
 
 import numpy as np
 
@@ -26,11 +27,9 @@ class FittedCompetitors:
         return next(iter(self.members.values())).resolution
 
     def mixtures(self) -> list["FittedCompetitors"]:
-        """List what may be taken: each model by itself and, of several, their mean."""
-        shares = [{name: 1.0} for name in self.members]
-        if len(self.members) > 1:
-            shares.append({name: 1.0 / len(self.members) for name in self.members})
-        return [FittedCompetitors(self.members, share) for share in shares]
+        """List what may be taken: each model by itself, and the mean of any several."""
+        groups = chain.from_iterable(combinations(self.members, n + 1) for n in range(len(self.members)))
+        return [FittedCompetitors(self.members, dict.fromkeys(names, 1.0 / len(names))) for names in groups]
 
     def mixed(self, predicted: Mapping[str, FloatArray]) -> FloatArray:
         """Mix what the models predict, (n_patches, N, N) each, by their shares."""

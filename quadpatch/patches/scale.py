@@ -80,6 +80,11 @@ def preset_scale(options: PatchOptions, longest_side: float) -> PatchOptions:
     return replace(options, length=share * longest_side, resolution=resolution, preset=None)
 
 
+def asked_resolution(options: PatchOptions) -> int | None:
+    """Return the bins along a patch that options ask for; None where they ask for none."""
+    return options.resolution if options.preset is None else PRESETS[options.preset][1]
+
+
 def base_surface_iterations(length: float, edge_length: float) -> int:
     """Count the iterations under patches of a length; one of them moves a point by an edge over sqrt(2)."""
     wanted = round(2 * (BASE_SURFACE_SHARE * length / edge_length) ** 2)

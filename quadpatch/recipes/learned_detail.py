@@ -3,6 +3,7 @@
 Tested in `tests/quadpatch/recipes/test_default.py`.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -22,7 +23,7 @@ from quadpatch.patches.scale import PatchScale, choose_scale
 from quadpatch.patches.seeds import Seeds
 from quadpatch.recipes.assessment import agreeing_holes, measure_agreement
 from quadpatch.recipes.patch_surfaces import CoarseCopy, PatchSurface, PatchSurfaces
-from quadpatch.recipes.result import Completion, PatchAgreement
+from quadpatch.recipes.result import Completion, PatchAgreement, Trial
 from quadpatch.reconstruction.displacement import displace, join_at_rim, rim_vertices
 from quadpatch.stages import Stages
 from quadpatch.types import BoolArray, FloatArray, Patches
@@ -75,14 +76,14 @@ class _Choice:
     blend_factor : float
     error_model : ErrorModel or None
         None without calibration.
-    error : float
-        Mean over the calibration holes, in mesh units.
+    trials : list of Trial
+        Of geometry alone, and of every model; empty without calibration.
     """
 
     model: FittedCompetitors
     blend_factor: float = PRIOR_BLEND_FACTOR
     error_model: ErrorModel | None = None
-    error: float = np.inf
+    trials: Sequence[Trial] = ()
 
 
 def complete(
@@ -143,7 +144,7 @@ def complete(
         predicted = choice.model.predict(sampled.patches, sampled.base_heights) if choice.blend_factor else None
     with stages.stage("reconstruct"):
         completion = _completion(filled, sampled, predicted, choice, scale)
-    return completion if isinstance(fitted, FittedCompetitors) else replace(completion, shares={})
+    return completion if isinstance(fitted, FittedCompetitors) else replace(completion, shares={}, trials=())
 
 
 def _completion(
@@ -153,11 +154,12 @@ def _completion(
     n_patches, unmoved = len(sampled.patches), np.zeros((len(filled.vertex_hole), 3))
     if predicted is None:
         nowhere = np.zeros(len(filled.disagreement), bool)
-        return Completion(unmoved, None, nowhere, choice.blend_factor, choice.error_model, scale, n_patches)
+        unchanged = choice.blend_factor, choice.error_model, scale, n_patches
+        return Completion(unmoved, None, nowhere, *unchanged, trials=choice.trials)
     joined, agreement = _displacements(filled, sampled.patches, predicted)
     displaced_holes = agreeing_holes(agreement)
     displacement = choice.blend_factor * np.where(displaced_holes[filled.vertex_hole][:, None], joined, 0.0)
-    model = choice.blend_factor, choice.error_model, scale, n_patches, dict(choice.model.shares)
+    model = choice.blend_factor, choice.error_model, scale, n_patches, dict(choice.model.shares), choice.trials
     return Completion(displacement, agreement, displaced_holes, *model)
 
 
@@ -202,17 +204,18 @@ def _sample_calibration(filled: FilledMesh, surface: PatchSurface, seeds: Seeds,
 def _calibrate_models(
     holes: CalibrationSet, filled: FilledMesh, sampled: Sampled, competitors: FittedCompetitors
 ) -> _Choice:
-    """Complete the calibration holes by each model and by their mean: take what leaves the smallest error."""
+    """Complete the calibration holes by each model and by the means of several: take what leaves the least error."""
     predicted = competitors.predict_each(sampled.patches, sampled.base_heights)
-    choices = []
+    choices, trials = [], [Trial({}, 0.0, float(error_per_hole(holes, filled).mean()))]
     for model in competitors.mixtures():
         joined, agreement = _displacements(filled, sampled.patches, model.mixed(predicted))
         joined = np.where(agreeing_holes(agreement)[filled.vertex_hole][:, None], joined, 0.0)
         factor = choose_blend_factor(holes, filled, joined)
         completed = filled.displaced(factor * joined)
-        error = float(error_per_hole(holes, completed).mean())
-        choices.append(_Choice(model, factor, expect(holes, completed), error))
-    return min(choices, key=lambda choice: choice.error)
+        trials.append(Trial(dict(model.shares), factor, float(error_per_hole(holes, completed).mean())))
+        choices.append(_Choice(model, factor, expect(holes, completed), trials))
+    best = min(range(len(choices)), key=lambda number: trials[number + 1].error)
+    return choices[best]
 
 
 def _displacements(filled: FilledMesh, patches: Patches, predicted: FloatArray) -> tuple[FloatArray, PatchAgreement]:

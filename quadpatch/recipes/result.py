@@ -74,6 +74,25 @@ class PatchAgreement:
 
 
 @dataclass(frozen=True)
+class Trial:
+    """What calibration says of one of the models that competed, or of the mean of several.
+
+    Attributes
+    ----------
+    shares : dict of str to float
+        Of the models, by name; empty for geometry alone.
+    blend_factor : float
+        Share of what they predict that is best, 0..1; 0 where geometry alone does as well.
+    error : float
+        Mean error of the calibration holes with that share, in mesh units.
+    """
+
+    shares: dict[str, float]
+    blend_factor: float
+    error: float
+
+
+@dataclass(frozen=True)
 class Completion:
     """What a model says of the fill.
 
@@ -93,6 +112,8 @@ class Completion:
     n_patches : int
     shares : dict of str to float
         Of the models that competed, by name; empty where there was one, or none was applied.
+    trials : sequence of Trial
+        Of geometry and the models that competed; empty where there was one, or no calibration.
     undone : (n_holes,) bool or None
         Holes whose displacement was taken back, since it made their fill fold or run through other surface.
     left_out : (n_holes,) bool or None
@@ -107,6 +128,7 @@ class Completion:
     scale: PatchScale
     n_patches: int
     shares: dict[str, float] = field(default_factory=dict)
+    trials: Sequence[Trial] = ()
     undone: BoolArray | None = None
     left_out: BoolArray | None = None
 

@@ -1,18 +1,29 @@
+from typing import get_args
+
 import pytest
 
 from client.errors import UsageError
 from client.options import HoleChoice, MethodChoice, MethodName, tolerance
 from client.spec import make_spec
 from jobkit.schema import AutoMethod, CnnMethod, DictionaryMethod, Fitting, HoleRule, PatchOptions
+from shared_rules.option_words import Effort
 
 MESH_ID = "0" * 64
 
 
 def test_a_recipe_reaches_the_spec_and_is_the_services_default_otherwise() -> None:
+    by_default = make_spec(MESH_ID, HoleChoice(), MethodChoice(recipe="paper"))
+    assert by_default.method == DictionaryMethod(method="dictionary", recipe="paper")
     chosen = make_spec(MESH_ID, HoleChoice(), MethodChoice(model="self", recipe="paper"))
     assert chosen.method == DictionaryMethod(method="dictionary", model="self", recipe="paper")
+    usual = make_spec(MESH_ID, HoleChoice(), MethodChoice(model="self"))
+    assert usual.method == DictionaryMethod(method="dictionary", model="self")
+
+
+def test_what_is_not_asked_for_is_left_to_the_service() -> None:
     usual = make_spec(MESH_ID, HoleChoice(), MethodChoice())
-    assert usual.method == DictionaryMethod(method="dictionary")
+    assert "method" not in usual.model_fields_set
+    assert usual.method == AutoMethod(method="auto", effort="standard")
 
 
 def test_recipes_go_with_learned_models() -> None:
@@ -28,8 +39,38 @@ def test_auto_finds_the_model_by_itself() -> None:
     chosen = make_spec(MESH_ID, HoleChoice(), MethodChoice("auto", overlap=1))
     assert chosen.method == AutoMethod(method="auto", patches=PatchOptions(overlap=1))
     for given in ({"model": "self"}, {"recipe": "paper"}):
-        with pytest.raises(UsageError, match="it takes no model and no recipe"):
+        with pytest.raises(UsageError, match="name another method for a model or a recipe"):
             make_spec(MESH_ID, HoleChoice(), MethodChoice("auto", **given))  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("effort", get_args(Effort))
+@pytest.mark.parametrize("method", ["auto", None])
+def test_an_effort_reaches_the_spec(effort: Effort, method: MethodName | None) -> None:
+    chosen = make_spec(MESH_ID, HoleChoice(), MethodChoice(method, effort=effort))
+    assert chosen.method == AutoMethod(method="auto", effort=effort)
+
+
+def test_the_effort_best_can_be_told_how_long_to_fit() -> None:
+    chosen = make_spec(MESH_ID, HoleChoice(), MethodChoice(effort="best", fit_steps=30, fit_seconds=12.5, overlap=1))
+    fitting, patches = Fitting(steps=30, seconds=12.5), PatchOptions(overlap=1)
+    assert chosen.method == AutoMethod(method="auto", effort="best", fitting=fitting, patches=patches)
+    for effort in (None, "fast", "standard"):
+        with pytest.raises(UsageError, match="only 'best' fits a network"):
+            make_spec(MESH_ID, HoleChoice(), MethodChoice(effort=effort, fit_steps=30))
+
+
+@pytest.mark.parametrize(
+    ("choice", "method"),
+    [
+        (MethodChoice("smooth", effort="fast"), "smooth"),
+        (MethodChoice("cnn", "self", effort="best"), "cnn"),
+        (MethodChoice(model="self", effort="standard"), "dictionary"),
+        (MethodChoice(recipe="paper", effort="best"), "dictionary"),
+    ],
+)
+def test_an_effort_goes_with_no_other_method_than_auto(choice: MethodChoice, method: str) -> None:
+    with pytest.raises(UsageError, match=f"an effort goes with the method 'auto' alone, not with '{method}'"):
+        make_spec(MESH_ID, HoleChoice(), choice)
 
 
 def test_a_preset_takes_the_place_of_a_length_and_a_resolution() -> None:
@@ -51,7 +92,7 @@ def test_how_long_to_fit_a_network_reaches_the_spec_and_is_the_services_default_
 )
 def test_only_a_network_can_be_told_how_long_to_be_fitted(method: MethodName, model: str | None) -> None:
     for choice in (MethodChoice(method, model, fit_steps=30), MethodChoice(method, model, fit_seconds=5.0)):
-        with pytest.raises(UsageError, match="only the method 'cnn' with the model 'self' fits a network"):
+        with pytest.raises(UsageError, match="the method 'cnn' with the model 'self' fit a network"):
             make_spec(MESH_ID, HoleChoice(), choice)
 
 

@@ -15,12 +15,13 @@ from client.errors import UsageError
 from client.exit_codes import ExitCode
 from client.missing_vertices import read_missing
 from client.task_summary import task_sentence
-from jobkit.schema import JobResult, Task
+from jobkit.schema import AutoMethod, JobResult, Task
 from tests.client.conftest import ScriptedServer
 from tests.client.wire_jobs import JOB_ID, PATH, body
 
 SHA256 = hashlib.sha256(b"result").hexdigest()
-REPORT = json.dumps({"length_unit": "mm", "stages": [{"name": "read", "seconds": 0.25}], "warnings": []}).encode()
+STAGES = [{"name": "read", "seconds": 0.25}]
+REPORT = json.dumps({"length_unit": "mm", "holes": [], "stages": STAGES, "warnings": []}).encode()
 
 
 def file_of(role: str, data: bytes) -> dict[str, Any]:
@@ -71,6 +72,34 @@ def sent_spec(server: ScriptedServer) -> dict[str, Any]:
     texts = [data for method, path, _, data in server.requests if (method, path) == ("POST", "/v1/jobs")]
     spec: dict[str, Any] = json.loads(texts[-1]) if texts else {}
     return spec
+
+
+@pytest.mark.parametrize(
+    ("flags", "method"),
+    [
+        ([], {"effort": "standard"}),
+        (["--effort", "fast"], {"effort": "fast"}),
+        (["--effort", "best", "--fit-steps", "30"], {"effort": "best", "fitting": {"steps": 30}}),
+    ],
+)
+def test_the_effort_of_a_repair_reaches_its_spec(
+    run: Callable[..., Result], server: ScriptedServer, flags: list[str], method: dict[str, Any]
+) -> None:
+    done = run("repair", "out.ply", *flags)
+    assert done.exit_code == ExitCode.OK, done.stderr
+    assert AutoMethod.model_validate(sent_spec(server)["method"]) == AutoMethod.model_validate(
+        {"method": "auto", **method}
+    )
+
+
+@pytest.mark.parametrize("flags", [["--method", "smooth"], ["--model", "self"], ["--recipe", "paper"]])
+def test_an_effort_beside_another_method_is_wrong_usage(
+    run: Callable[..., Result], server: ScriptedServer, flags: list[str]
+) -> None:
+    refused = run("repair", "out.ply", "--effort", "best", *flags)
+    assert refused.exit_code == ExitCode.USAGE
+    assert "an effort goes with the method 'auto' alone" in " ".join(refused.stderr.split())
+    assert server.requests == []
 
 
 def test_restore_says_which_vertices_are_missing(run: Callable[..., Result], server: ScriptedServer) -> None:

@@ -11,8 +11,10 @@ from client.sdk import Client
 from jobkit.schema import JobSpec, JobState, MeshState
 from quadpatch.formats.reading import read_scan
 from quadpatch.inpainters.model_file import shipped_model
+from quadpatch.model_choice import BASE_NETWORK
 from quadpatch.repair import inspect_file
 from tests.integration.conftest import ply_bytes, punched_relief, stl_bytes
+from tests.quadpatch.shapes import punched, relief, write_ply
 from tests.waiting import GUARD_S
 
 SMOOTH = {"method": "smooth"}
@@ -59,11 +61,12 @@ def test_the_recipe_of_the_paper_works_where_no_model_is_named(
     assert {hole["confidence"] for hole in report["holes"]} == {None}
 
 
-def test_auto_lets_models_compete_and_the_report_names_those_that_took_part(
-    client: Client, relief_file: Callable[[str], Path], tmp_path: Path
+def test_without_a_word_about_the_method_models_compete_and_the_report_names_them(
+    client: Client, tmp_path: Path
 ) -> None:
-    mesh = client.upload(relief_file("float.ply"))
-    job = client.create_job(spec(mesh.id, method={"method": "auto", "patches": {"overlap": 1}}))
+    scan = punched(relief(100, 2.0, 0.03, 10), *[(x, y, 0.0) for x in (-0.5, 0.5) for y in (-0.45, 0.5)], radius=0.1)
+    mesh = client.upload(write_ply(tmp_path / "relief.ply", scan))
+    job = client.create_job(spec(mesh.id))
     assert (job.model.requested, job.model.kind, job.model.name) == ("auto", "auto", None)
     job = client.wait(job.id, timeout_s=GUARD_S)
     assert job.state == JobState.SUCCEEDED, job.error
@@ -71,9 +74,22 @@ def test_auto_lets_models_compete_and_the_report_names_those_that_took_part(
     report = json.loads((tmp_path / "report.json").read_text())
     assert report["counts"]["filled"] + report["counts"]["filled_smooth"] == 4
     model = report["model"]
-    assert model["name"] == "auto"
+    assert (model["name"], model["effort"]) == ("auto", "standard")
+    geometry, *others = model["trials"]
+    assert geometry["models"] == {}
+    assert [set(trial["models"]) for trial in others] == [{"self"}, {BASE_NETWORK}, {"self", BASE_NETWORK}]
     believed = report["patches"]["believed_share"] > 0
-    assert (sum(model.get("shares", {}).values()) == pytest.approx(1.0)) is believed
+    assert (sum(model["shares"].values()) == pytest.approx(1.0)) is believed
+
+
+def test_the_effort_fast_gives_the_bytes_of_the_method_smooth(
+    client: Client, relief_file: Callable[[str], Path], tmp_path: Path
+) -> None:
+    mesh = client.upload(relief_file("float.ply"))
+    for name, method in (("fast", {"method": "auto", "effort": "fast"}), ("smooth", SMOOTH)):
+        job = client.wait(client.create_job(spec(mesh.id, method=method)).id, timeout_s=GUARD_S)
+        client.download(job, "result", tmp_path / name)
+    assert (tmp_path / "fast").read_bytes() == (tmp_path / "smooth").read_bytes()
 
 
 def test_a_job_leaves_a_report_and_a_picture_that_fit_its_facts(
@@ -99,15 +115,16 @@ def test_a_job_leaves_a_report_and_a_picture_that_fit_its_facts(
 def test_facets_that_share_no_vertex_have_their_picture(
     client: Client, tmp_path: Path, name: str, asked: str | None
 ) -> None:
-    """By the default spec: about 5,000 facets, each under a hundredth of the area."""
+    """About 5,000 facets, each under a hundredth of the area."""
     vertices, triangles = punched_relief(54)
     source = tmp_path / name
     write = stl_bytes if name.endswith(".stl") else ply_bytes
     source.write_bytes(write(vertices, triangles))
     assert len(triangles) > 5000
     mesh = client.upload(source)
-    output = {} if asked is None else {"output": {"format": asked}}
-    job = client.wait(client.create_job(JobSpec.model_validate({"mesh_id": mesh.id, **output})).id, timeout_s=240)
+    job = client.wait(
+        client.create_job(spec(mesh.id, method=SMOOTH, output={"format": asked, "preview": True})).id, timeout_s=240
+    )
     client.download(job, "result", tmp_path / "out.stl")
     client.download(job, "preview", tmp_path / "out.png")
     client.download(job, "report", tmp_path / "report.json")
@@ -129,10 +146,11 @@ def test_a_job_is_named_after_the_file_that_came_for_it(client: Client, relief_f
     assert [client.wait(job.id, timeout_s=120).mesh_name for job in jobs] == ["front.ply", "back.ply"]
 
 
-def test_a_job_without_a_word_about_its_model_is_pinned_to_the_one_that_ships(
+def test_a_dictionary_without_a_name_is_pinned_to_the_one_that_ships(
     client: Client, relief_file: Callable[[str], Path]
 ) -> None:
-    job = client.wait(client.create_job(spec(client.upload(relief_file("float.ply")).id)).id, timeout_s=GUARD_S)
+    asked = spec(client.upload(relief_file("float.ply")).id, method={"method": "dictionary"})
+    job = client.wait(client.create_job(asked).id, timeout_s=GUARD_S)
     shipped = shipped_model("general-dictionary@1").read_bytes()
     assert (job.model.requested, job.model.name, job.model.version) == ("default", "general-dictionary", 1)
     assert job.model.sha256 == hashlib.sha256(shipped).hexdigest()

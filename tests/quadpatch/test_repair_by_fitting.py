@@ -3,7 +3,8 @@
 import json
 import subprocess
 import sys
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import combinations
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +17,7 @@ from quadpatch.errors import ModelError, OptionError
 from quadpatch.formats.reading import read_scan
 from quadpatch.inpainters import model_file
 from quadpatch.mesh.distance import distance_to_mesh
-from quadpatch.model_choice import BASE_NETWORK, SELF_NETWORK, SELF_NETWORK_KIND
+from quadpatch.model_choice import AUTO, BASE_NETWORK, SELF, SELF_NETWORK, SELF_NETWORK_KIND
 from quadpatch.options import NetworkOptions, PatchOptions, RepairOptions
 from quadpatch.repair import repair_file
 from tests.quadpatch.shapes import punched, relief, write_ply
@@ -105,6 +106,20 @@ def test_the_command_line_says_how_long_to_fit_and_what_was_fitted_and_repeats_i
 
 
 @pytest.mark.usefixtures("unlearned")
+def test_the_effort_best_lets_a_fitted_network_compete(scan_file: Path, tmp_path: Path) -> None:
+    report = repair_file(scan_file, tmp_path / "out.ply", options=replace(OPTIONS, effort="best"))
+    assert (report["model"]["name"], report["model"]["effort"]) == (AUTO, "best")
+    assert "not_tried" not in report["model"]
+    trials = report["model"]["trials"]
+    names = (SELF, BASE_NETWORK, SELF_NETWORK)
+    groups = [tuple(trial["models"]) for trial in trials]
+    assert groups == [group for n in range(4) for group in combinations(names, n)]
+    # What the network learned of the relief helps; one that has learned nothing does not.
+    by_group = {group: trial["believed_share"] for group, trial in zip(groups, trials, strict=True)}
+    assert (by_group[BASE_NETWORK,], by_group[SELF_NETWORK,] >= 0.5) == (0.0, True)
+
+
+@pytest.mark.usefixtures("unlearned")
 def test_without_time_to_learn_the_fill_stays_as_it_is(scan_file: Path, tmp_path: Path) -> None:
     """The network of these tests knows nothing, so calibration believes nothing of what it says."""
     no_time = RepairOptions(network=NetworkOptions(steps=1, seconds=1e-6))
@@ -120,7 +135,7 @@ def test_without_time_to_learn_the_fill_stays_as_it_is(scan_file: Path, tmp_path
 def test_only_a_network_that_is_fitted_takes_steps_and_seconds(
     scan_file: Path, tmp_path: Path, model: str, network: NetworkOptions
 ) -> None:
-    with pytest.raises(OptionError, match=r"network\.steps and network\.seconds go with the model self-network only"):
+    with pytest.raises(OptionError, match="go with the model self-network, and with the effort best of auto, only"):
         repair_file(scan_file, tmp_path / "out.ply", model, RepairOptions(network=network))
 
 

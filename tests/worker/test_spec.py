@@ -1,3 +1,4 @@
+from dataclasses import replace
 from typing import Any, get_args
 
 import pytest
@@ -13,9 +14,16 @@ from quadpatch.denoising.denoise import DenoiseOptions
 from quadpatch.inpainters.model_file import RECIPES
 from quadpatch.options import HoleOptions, HoleRule, NetworkOptions, PatchOptions, RepairOptions
 from quadpatch.restoration.restore import RestoreOptions
-from shared_rules.option_words import Recipe
+from shared_rules.option_words import Effort, Recipe
 from worker.engine.limits import EngineLimits
-from worker.spec import inspect_request, job_request, method_options, output_format, source_name, task_options
+from worker.spec import (
+    inspect_request,
+    job_request,
+    method_options,
+    output_format,
+    source_name,
+    task_options,
+)
 
 MESH_ID = "0" * 64
 OPTIONS: dict[str, Any] = {
@@ -35,7 +43,9 @@ def spec(**fields: Any) -> JobSpec:
 
 
 def test_a_job_without_wishes_is_a_repair_with_all_defaults() -> None:
+    assert RepairOptions.from_dict(method_options(spec(), LIMITS.time_s)) == RepairOptions()
     for method in (
+        {"method": "auto"},
         {"method": "dictionary"},
         {"method": "smooth"},
         {"method": "cnn"},
@@ -75,14 +85,28 @@ def test_the_weld_tolerance_of_a_job_reaches_the_method() -> None:
 
 
 def test_how_long_to_fit_a_network_reaches_the_method() -> None:
-    method = {"method": "cnn", "model": "self", "fitting": {"steps": 30, "seconds": 45.0}, "patches": {"length": 2.0}}
+    rest = {"fitting": {"steps": 30, "seconds": 45.0}, "patches": {"length": 2.0}}
+    expected = RepairOptions(patches=PatchOptions(length=2.0), network=NetworkOptions(30, 45.0))
+    method = {"method": "cnn", "model": "self", **rest}
+    assert RepairOptions.from_dict(method_options(spec(method=method), LIMITS.time_s)) == expected
+    method = {"method": "auto", "effort": "best", **rest}
     options = RepairOptions.from_dict(method_options(spec(method=method), LIMITS.time_s))
-    assert options == RepairOptions(patches=PatchOptions(length=2.0), network=NetworkOptions(30, 45.0))
+    assert options == replace(expected, effort="best")
 
 
-def test_fitting_leaves_a_third_of_the_time_to_the_rest_of_the_job() -> None:
-    job = spec(method={"method": "cnn", "model": "self"}, limits={"time_s": 90.0})
-    request = job_request(job, source(), "self-network", LIMITS)
+@pytest.mark.parametrize("effort", get_args(Effort))
+def test_an_effort_reaches_the_method(effort: Effort) -> None:
+    options = RepairOptions.from_dict(method_options(spec(method={"method": "auto", "effort": effort}), LIMITS.time_s))
+    assert options == RepairOptions(effort=effort)
+
+
+@pytest.mark.parametrize(
+    ("method", "model"),
+    [({"method": "cnn", "model": "self"}, "self-network"), ({"method": "auto", "effort": "best"}, "auto")],
+)
+def test_fitting_leaves_a_third_of_the_time_to_the_rest_of_the_job(method: dict[str, str], model: str) -> None:
+    job = spec(method=method, limits={"time_s": 90.0})
+    request = job_request(job, source(), model, LIMITS)
     assert request.options["network"] == {"steps": NetworkOptions().steps, "seconds": pytest.approx(60.0)}
     RepairOptions.from_dict(request.options)
 

@@ -12,7 +12,7 @@ MESH = {"mesh_id": "a" * 64}
 
 def test_a_mesh_alone_is_a_whole_job() -> None:
     spec = JobSpec.model_validate(MESH)
-    assert spec.method == DictionaryMethod(method="dictionary", model="default")
+    assert spec.method == AutoMethod(method="auto", effort="standard")
     assert spec.output.format is None
     assert spec.holes.ids is None
 

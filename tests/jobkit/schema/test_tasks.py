@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 from pydantic import ValidationError
 
-from jobkit.schema import SELF, TASKS, DictionaryMethod, JobSpec, RepairSpec, conflict_of, identity_of
+from jobkit.schema import SELF, TASKS, AutoMethod, DictionaryMethod, JobSpec, RepairSpec, conflict_of, identity_of
 
 MESH = {"mesh_id": "a" * 64}
 NAN = {"restore": {"missing": {"kind": "nan"}}}
@@ -31,8 +31,8 @@ def test_a_spec_of_before_there_were_tasks_fills() -> None:
 
 @pytest.mark.parametrize("task", TASKS)
 def test_a_task_without_a_method_has_its_own_default(task: str) -> None:
-    model = "default" if task == "fill" else SELF
-    assert spec(task).method == DictionaryMethod(method="dictionary", model=model)
+    of_others = DictionaryMethod(method="dictionary", model=SELF)
+    assert spec(task).method == (AutoMethod(method="auto") if task == "fill" else of_others)
     assert "method" not in RepairSpec.model_validate({"task": task, **WHOLE[task]}).model_fields_set
 
 
@@ -91,6 +91,12 @@ def test_what_is_not_in_the_contract_is_refused(change: dict[str, Any]) -> None:
             "denoise.reference takes the place of a model",
         ),
         ("encode", {"output": {"format": "ply"}}, "leave output.format out"),
+        ("fill", {"method": {"method": "auto", "fitting": {"steps": 5}}}, "method.fitting goes with the effort best"),
+        (
+            "fill",
+            {"method": {"method": "auto", "effort": "fast", "fitting": {"seconds": 5.0}}},
+            "method.fitting goes with the effort best",
+        ),
     ],
 )
 def test_options_that_do_not_go_with_the_task_are_named(task: str, fields: dict[str, Any], words: str) -> None:

@@ -196,9 +196,21 @@ def test_flags_about_patches_reach_them(scan_file: Path, tmp_path: Path) -> None
         "recipe": "default",
         "dictionary": {"atoms": None, "nonzero": None},
         "network": {"steps": 1000, "seconds": 600.0},
+        "effort": "standard",
     }
     assert content["patches"]["resolution"] == 18
-    assert content["model"] == {"name": "self"}
+    assert (content["model"]["name"], content["model"]["effort"]) == ("auto", "standard")
+    assert content["model"]["not_tried"] == {"general-residual": "its patches have 32 bins along a side, not 18"}
+
+
+def test_the_effort_fast_is_geometry_alone(scan_file: Path, tmp_path: Path) -> None:
+    report = tmp_path / "out.json"
+    fast = run("fill", scan_file, "-o", tmp_path / "fast.ply", "--effort", "fast", "--report", report)
+    assert fast.exit_code == 0, fast.output
+    assert run("fill", scan_file, "-o", tmp_path / "smooth.ply", "--model", "smooth").exit_code == 0
+    assert (tmp_path / "fast.ply").read_bytes() == (tmp_path / "smooth.ply").read_bytes()
+    content = json.loads(report.read_text())
+    assert (content["model"], content["options"]["effort"]) == ({"name": "auto", "effort": "fast"}, "fast")
 
 
 def test_flags_about_the_recipe_reach_it(scan_file: Path, tmp_path: Path) -> None:
@@ -207,6 +219,7 @@ def test_flags_about_the_recipe_reach_it(scan_file: Path, tmp_path: Path) -> Non
     result = run("fill", scan_file, "-o", tmp_path / "out.ply", "--report", report, *flags)
     assert result.exit_code == 0, result.output
     assert verdicts(report) == ["skipped", "filled", "filled", "filled"]
+    assert json.loads(report.read_text())["model"] == {"name": "self"}
     options = json.loads(report.read_text())["options"]
     assert (options["recipe"], options["dictionary"]) == ("paper", {"atoms": 30, "nonzero": 5})
     assert run("fill", scan_file, "-o", tmp_path / "out.ply", "--recipe", "paper", "--model", "smooth").exit_code == 1
@@ -264,6 +277,10 @@ def test_holes_are_listed_for_people(scan_file: Path) -> None:
         (["fill", "SCAN", "-o", "out.ply", "--model", "self-network", "--fit-steps", "0"], "invalid_option"),
         (["fill", "SCAN", "-o", "out.ply", "--model", "self-network", "--fit-seconds", "nan"], "invalid_option"),
         (["fill", "SCAN", "-o", "out.ply", "--model", "self-network", "--recipe", "paper"], "invalid_option"),
+        (["fill", "SCAN", "-o", "out.ply", "--model", "auto", "--recipe", "paper"], "invalid_option"),
+        (["fill", "SCAN", "-o", "out.ply", "--recipe", "paper", "--effort", "best"], "invalid_option"),
+        (["fill", "SCAN", "-o", "out.ply", "--model", "smooth", "--effort", "fast"], "invalid_option"),
+        (["fill", "SCAN", "-o", "out.ply", "--effort", "fast", "--fit-steps", "30"], "invalid_option"),
         (["fill", "SCAN", "-o", "no/such/folder/out.ply", "--model", "smooth"], "not_writable"),
         (["fill", "SCAN", "-o", "out.ply", "--model", "smooth", "--report", "no/such/out.json"], "not_writable"),
         (["fill", "SCAN", "-o", "out.ply", "--model", "smooth", "--picture", "no/such/out.png"], "not_writable"),

@@ -47,6 +47,14 @@ def test_each_model_competes_by_itself_and_all_by_their_mean() -> None:
     assert predicted == [1.0, 3.0, 2.0]
 
 
+def test_of_three_models_every_two_compete_by_their_mean_too() -> None:
+    three = fitted(a=1.0, b=2.0, c=6.0)
+    assert three is not None
+    assert ["".join(mixture.shares) for mixture in three.mixtures()] == ["a", "b", "c", "ab", "ac", "bc", "abc"]
+    assert all(sum(mixture.shares.values()) == pytest.approx(1.0) for mixture in three.mixtures())
+    assert [float(m.predict(NOTHING, HEIGHTS).mean()) for m in three.mixtures()[3:]] == [1.5, 3.5, 4.0, 3.0]
+
+
 def test_one_model_competes_with_nothing() -> None:
     one = fitted(only=1.0)
     assert one is not None
@@ -70,7 +78,7 @@ def test_auto_lets_a_dictionary_of_the_mesh_and_the_shipped_network_compete() ->
     inpainter, facts = choose_model(AUTO, RepairOptions(), no_progress, None)
     assert isinstance(inpainter, CompetingInpainters)
     assert (list(inpainter.members), inpainter.resolution) == ([SELF, BASE_NETWORK], 32)
-    assert facts == {"name": AUTO}
+    assert facts == {"name": AUTO, "effort": "standard"}
     with pytest.raises(OptionError, match="one learned model"):
         choose_model(AUTO, RepairOptions(recipe="paper"), no_progress, None)
 

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 from starlette.testclient import TestClient
 
-from jobkit.schema import Job, JobError, JobState, ModelVersion
+from jobkit.schema import AutoMethod, Job, JobError, JobState, ModelVersion
 from service.services import Services
 from tests.jobkit.models.test_registry import NETWORK
 
@@ -28,14 +28,41 @@ def test_a_job_is_promised_with_its_place_and_its_defaults(
     assert f"{job['id']}-1" in services.queue.entries()
 
 
-def test_a_mesh_id_alone_is_a_job_for_the_default_dictionary(
+def test_a_mesh_id_alone_is_a_job_in_which_models_compete(client: TestClient, mesh_id: str) -> None:
+    job = client.post("/v1/jobs", json={"mesh_id": mesh_id}).json()
+    assert (job["model"]["requested"], job["model"]["kind"], job["model"]["name"]) == ("auto", "auto", None)
+    assert job["spec"]["method"] == AutoMethod(method="auto", effort="standard").model_dump()
+
+
+@pytest.mark.parametrize(
+    ("method", "status", "words"),
+    [
+        ({"method": "auto", "effort": "best", "fitting": {"steps": 40, "seconds": 30.0}}, 202, ""),
+        ({"method": "auto", "effort": "fast"}, 202, ""),
+        ({"method": "auto", "fitting": {"steps": 40}}, 422, "method.fitting goes with the effort best"),
+        ({"method": "auto", "effort": "most"}, 422, "/method/effort"),
+        ({"method": "auto", "model": "self"}, 422, "/method/model"),
+        ({"method": "smooth", "effort": "fast"}, 422, "/method/effort"),
+        ({"method": "cnn", "model": "self", "effort": "best"}, 422, "/method/effort"),
+    ],
+)
+def test_an_effort_goes_with_auto_and_fitting_with_the_effort_best(
+    client: TestClient, mesh_id: str, method: dict[str, Any], status: int, words: str
+) -> None:
+    answer = client.post("/v1/jobs", json={"mesh_id": mesh_id, "method": method})
+    assert answer.status_code == status
+    assert words in answer.text
+
+
+def test_a_dictionary_without_a_name_is_the_default_one_as_it_was_when_the_job_came(
     client: TestClient, mesh_id: str, dictionary_bytes: Callable[[int], bytes], publish: Publish
 ) -> None:
-    missing = client.post("/v1/jobs", json={"mesh_id": mesh_id})
+    spec = {"mesh_id": mesh_id, "method": {"method": "dictionary"}}
+    missing = client.post("/v1/jobs", json=spec)
     assert (missing.status_code, missing.json()["code"]) == (404, "model_not_found")
     publish("reliefs", dictionary_bytes(1))
     client.put("/v1/aliases/default", json={"model": "reliefs@1"})
-    job = client.post("/v1/jobs", json={"mesh_id": mesh_id}).json()
+    job = client.post("/v1/jobs", json=spec).json()
     assert (job["model"]["name"], job["model"]["version"], job["model"]["requested"]) == ("reliefs", 1, "default")
     publish("reliefs", dictionary_bytes(2))
     client.put("/v1/aliases/default", json={"model": "reliefs@2"})

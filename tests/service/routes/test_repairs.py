@@ -28,10 +28,11 @@ def test_the_parts_may_come_in_any_order(client: TestClient) -> None:
     assert answer.json()["spec"]["seed"] == 3
 
 
-def test_without_a_spec_the_default_dictionary_is_asked_for(client: TestClient) -> None:
+def test_without_a_spec_models_compete(client: TestClient) -> None:
     answer = client.post("/v1/repairs", files={"mesh": MESH})
-    assert (answer.status_code, answer.json()["code"]) == (404, "model_not_found")
-    assert "'default'" in answer.json()["detail"]
+    assert answer.status_code == 202
+    job = answer.json()
+    assert (job["model"]["kind"], job["spec"]["method"]["effort"]) == ("auto", "standard")
 
 
 def test_a_repeated_key_starts_nothing_twice(client: TestClient) -> None:

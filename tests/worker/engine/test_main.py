@@ -1,5 +1,6 @@
 import json
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -46,6 +47,16 @@ def test_a_worker_without_torch_fails_a_job_that_needs_it_for_good_and_says_how_
     # Before any work is done.
     assert heard == []
     assert not (tmp_path / "repaired.ply").exists()
+
+
+def test_a_worker_without_torch_goes_on_where_all_that_can_be_tried_is_asked_for(
+    fork_server: ForkServer, tmp_path: Path
+) -> None:
+    request = replace(repair_request(tmp_path, "auto"), options={"effort": "best"})
+    run_engine(fork_server, request, tmp_path, Observer(lambda stage, fraction: None, lambda: None))
+    model = json.loads((tmp_path / REPORT_NAME).read_text())["model"]
+    assert (model["effort"], list(model["not_tried"])) == ("best", ["self-network"])
+    assert (tmp_path / "repaired.ply").is_file()
 
 
 def test_a_worker_without_torch_runs_networks_that_are_ready(fork_server: ForkServer, tmp_path: Path) -> None:
