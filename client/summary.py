@@ -5,6 +5,7 @@ from typing import Any
 
 from client.task_summary import counted, task_sentence
 from jobkit.schema import HoleCounts, Job, JobResult
+from shared_rules.competition import outcome
 
 _LONGEST_LIST = 6
 
@@ -73,6 +74,9 @@ def paragraph(name: str, job: Job, report: Mapping[str, Any]) -> str:
         f"{name} has {counted(counts.found, 'hole')}: {verdicts(counts)}.",
         _added(job.result),
     ]
+    competition = outcome(report.get("model", {}))
+    if competition:
+        sentences.append(competition)
     smooth = geometry_only(report)
     if smooth:
         sentences.append(f"By geometry alone: {smooth}.")

@@ -29,6 +29,7 @@ from quadpatch.cli.scipy_start import prepare_libraries
 from quadpatch.errors import OptionError
 from quadpatch.formats.output_files import check_folder, check_outputs, is_stream
 from quadpatch.options import DictionaryOptions, HoleOptions, HoleRule, NetworkOptions, PatchOptions, RepairOptions
+from shared_rules.competition import outcome
 from shared_rules.hole_selection import Cap
 from shared_rules.option_words import Effort, Recipe
 from shared_rules.rule_text import RuleTextError, read_rule
@@ -166,7 +167,8 @@ def summary(report: dict[str, Any]) -> str:
     model = f"{base}, fitted to this mesh" if base else "the model"
     text = f"{n_holes(counts['found'])}: {counts['filled']} filled by {model}, {counts['filled_smooth']} by geometry"
     text += _reasons(report, "filled_smooth") + f", {open_holes} left open" + _reasons(report, "skipped", "refused")
-    return f"{text}. {closing_words(report)}"
+    competition = outcome(report["model"])
+    return " ".join(filter(None, [f"{text}.", competition, closing_words(report)]))
 
 
 def _reasons(report: dict[str, Any], *verdicts: str) -> str:

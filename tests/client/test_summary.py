@@ -60,6 +60,13 @@ def test_a_paragraph_tells_counts_reasons_and_seconds() -> None:
     )
 
 
+def test_a_paragraph_tells_which_model_was_best() -> None:
+    job = finished_job(holes={"found": 1, "filled_smooth": 1}, new_vertices=1200, new_triangles=2400, seconds=1.25)
+    model = {"shares": {}, "trials": [{"models": {}, "believed_share": 0.0, "error": 0.5}]}
+    report = {"model": model, "holes": [hole(0, "filled_smooth")], "stages": []}
+    assert "kept its bits. Least error on calibration holes: geometry alone. The repair" in paragraph("a", job, report)
+
+
 def test_there_is_no_paragraph_without_a_result() -> None:
     job = finished_job().model_copy(update={"result": None})
     with pytest.raises(ValueError, match="has no result"):

@@ -201,6 +201,7 @@ def test_flags_about_patches_reach_them(scan_file: Path, tmp_path: Path) -> None
     assert content["patches"]["resolution"] == 18
     assert (content["model"]["name"], content["model"]["effort"]) == ("auto", "standard")
     assert content["model"]["not_tried"] == {"general-residual": "its patches have 32 bins along a side, not 18"}
+    assert "Not tried: general-residual (its patches have 32 bins" in " ".join(result.stderr.split())
 
 
 def test_the_effort_fast_is_geometry_alone(scan_file: Path, tmp_path: Path) -> None:
@@ -345,6 +346,13 @@ def test_the_summary_counts_reasons() -> None:
     assert summary(report) == expected
     fitted = {**report, "model": {"name": "self-network", "fitted_from": "general-residual@1"}}
     assert summary(fitted) == expected.replace("the model", "general-residual@1, fitted to this mesh")
+    trials = [
+        {"models": {}, "believed_share": 0.0, "error": 0.5},
+        {"models": {"self": 1.0}, "believed_share": 0.7, "error": 0.44},
+    ]
+    competed = {**report, "model": {"name": "auto", "shares": {"self": 1.0}, "trials": trials}}
+    sentence = "Least error on calibration holes: a dictionary of this mesh, 12 % less than geometry alone."
+    assert summary(competed) == expected.replace("1.8 s", f"{sentence} 1.8 s")
 
 
 def test_the_module_runs_as_a_process(scan_file: Path, tmp_path: Path) -> None:
