@@ -161,7 +161,8 @@ class Admission:
 
     def _needed_mb(self, session: Session, row: JobRow) -> int:
         size_bytes = session.scalars(select(MeshRow.size_bytes).where(MeshRow.id == row.mesh_id)).one()
-        expected_mb = self._needs.expected_mb(kind_of(row.task, row.model["kind"]), size_bytes)
+        effort = (row.spec.get("method") or {}).get("effort")
+        expected_mb = self._needs.expected_mb(kind_of(row.task, row.model["kind"], effort), size_bytes)
         own_limit_mb = (row.spec.get("limits") or {}).get("memory_mb")
         return min(expected_mb, self._rules.attempt_mb, own_limit_mb or expected_mb)
 

@@ -14,8 +14,10 @@ from jobkit.database.session import Database
 from jobkit.jobs.past_jobs import PastJob, Rates, Sample, kind_of, read_past
 from shared_rules.tasks import FILL
 
-# Task and kind of model of a fill by geometry alone.
+# A fill by geometry alone, and kinds that are as frugal, or that fit a network.
 BY_GEOMETRY = kind_of(FILL, "none")
+_BY_GEOMETRY = (BY_GEOMETRY, kind_of(FILL, "auto", "fast"))
+_FITTING = (kind_of(FILL, "self_network"), kind_of(FILL, "auto", "best"))
 # Of an engine that has read nothing.
 BASE_MB = 80
 _MIB = 1 << 20
@@ -61,7 +63,7 @@ class MemoryNeeds:
         Parameters
         ----------
         kind : str
-            Task and kind of the model, as `jobkit.jobs.past_jobs.kind_of` has it.
+            Task, kind of the model and effort, as `jobkit.jobs.past_jobs.kind_of` has it.
         size_bytes : int
             Of the mesh.
         """
@@ -75,10 +77,10 @@ def expected_from_bytes(kind: str, size_bytes: int) -> int:
     """Return the expected peak of a job without similar past ones, in MiB; parameters as above."""
     size_mb = size_bytes / _MIB
     needed_mb = _GEOMETRY_MB + _GEOMETRY_PER_MB * size_mb
-    if kind != BY_GEOMETRY:
+    if kind not in _BY_GEOMETRY:
         most_mb = _PATCHES_OF_FILL_MOST_MB if kind.startswith(f"{FILL} ") else math.inf
         needed_mb += _PATCHES_MB + min(_PATCHES_PER_MB * size_mb, most_mb)
-    if kind.endswith(" self_network"):
+    if kind in _FITTING:
         needed_mb += _FITTING_MB
     return math.ceil(needed_mb)
 

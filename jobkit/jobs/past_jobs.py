@@ -1,7 +1,7 @@
 """What past jobs took, as a basis for what a job like them will take.
 
-A past job is similar if its task is the same, its model of the same kind and its mesh of about the same size. A kind or
-size with too few past jobs is no basis.
+A past job is similar if its task is the same, its model of the same kind, chosen with the same effort, and its mesh of
+about the same size. A kind or size with too few past jobs is no basis.
 
 Tested in `tests/jobkit/jobs/test_estimates.py`.
 """
@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-from sqlalchemy import Select, select
+from sqlalchemy import Select, func, literal, select
 from sqlalchemy.orm import Session
 
 from jobkit.database.tables import JobRow, MeshRow
@@ -34,7 +34,7 @@ class Sample(NamedTuple):
 
 @dataclass(frozen=True)
 class PastJob:
-    """What a job took that succeeded; `kind` is its task with the kind of its model.
+    """What a job took that succeeded; `kind` is its task with the kind of its model and the effort.
 
     Attributes
     ----------
@@ -104,12 +104,14 @@ def read_past(session: Session) -> list[PastJob]:
     ]
 
 
-def kind_of(task: str, model_kind: str) -> str:
-    """Name the kind of a job, as `kinds_and_sizes` does."""
-    return f"{task} {model_kind}"
+def kind_of(task: str, model_kind: str, effort: str | None = None) -> str:
+    """Name the kind of a job, as `kinds_and_sizes` does; `auto` alone has an effort."""
+    return " ".join(filter(None, (task, model_kind, effort)))
 
 
 def kinds_and_sizes(*columns: Any) -> Select[*tuple[Any, ...]]:
     """Return a query for jobs: their id, kind, the bytes of their mesh (`size_bytes`), and more columns."""
-    kind = JobRow.task.concat(" ").concat(JobRow.model["kind"].as_string()).label("kind")
+    # Efforts differ tenfold.
+    effort = func.coalesce(literal(" ").concat(JobRow.spec["method"]["effort"].as_string()), "")
+    kind = JobRow.task.concat(" ").concat(JobRow.model["kind"].as_string()).concat(effort).label("kind")
     return select(JobRow.id, kind, MeshRow.size_bytes, *columns).join(MeshRow, MeshRow.id == JobRow.mesh_id)

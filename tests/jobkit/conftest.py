@@ -10,7 +10,7 @@ import pytest
 from jobkit.database.session import Database
 from jobkit.jobs.jobs import Jobs, NewJob
 from jobkit.meshes import Meshes
-from jobkit.schema import Job, JobSpec, Mesh, ResolvedModel
+from jobkit.schema import DictionaryMethod, Job, JobSpec, Mesh, ResolvedModel
 from jobkit.storage.base import ObjectStore
 from jobkit.storage.open import open_store
 from tests.servers import fresh_bucket, fresh_database
@@ -26,7 +26,8 @@ def mesh(database: Database, store: ObjectStore) -> Mesh:
 
 @pytest.fixture
 def new_job(mesh: Mesh) -> NewJob:
-    return NewJob(JobSpec(mesh_id=mesh.id), ResolvedModel(requested="self", kind="self"), max_attempts=2)
+    spec = JobSpec(mesh_id=mesh.id, method=DictionaryMethod(method="dictionary", model="self"))
+    return NewJob(spec, ResolvedModel(requested="self", kind="self"), max_attempts=2)
 
 
 @pytest.fixture

@@ -14,9 +14,11 @@ from jobkit.jobs.attempts import Attempts
 from jobkit.jobs.estimates import Estimates, remaining_queued_s, remaining_running_s
 from jobkit.jobs.jobs import Jobs, NewJob
 from jobkit.jobs.past_jobs import MIN_PAST, Rates, Sample
-from jobkit.schema import Job, JobError, JobResult, JobState
+from jobkit.schema import AutoMethod, Job, JobError, JobResult, JobState, ResolvedModel
+from shared_rules.option_words import Effort
 
 MIB = 1 << 20
+AUTO = ResolvedModel(requested="auto", kind="auto")
 seconds = st.floats(0.1, 1e4)
 
 
@@ -166,6 +168,23 @@ def test_jobs_of_one_task_foretell_nothing_about_another(
     fill, denoise = (completed(estimates, Jobs(database).get(job.id)).eta_s for job in jobs)
     assert fill == pytest.approx(100.0, abs=5.0)
     assert denoise is None
+
+
+@pytest.mark.usefixtures("past")
+def test_jobs_of_one_effort_foretell_nothing_about_another(
+    database: Database, new_job: NewJob, estimates: Estimates
+) -> None:
+    efforts: tuple[Effort, ...] = ("standard", "best", "standard")
+    with database.write() as session:
+        past_spec = new_job.spec.model_copy(update={"method": AutoMethod(method="auto")})
+        session.execute(update(JobRow).values(spec=past_spec.model_dump(mode="json"), model=AUTO.model_dump()))
+    specs = [past_spec.model_copy(update={"method": AutoMethod(method="auto", effort=effort)}) for effort in efforts]
+    jobs = [Jobs(database).create(replace(new_job, spec=spec, model=AUTO))[0] for spec in specs]
+    for job in jobs:
+        Attempts(database).start(job.id, "test", 60)
+    standard, best, again = (completed(estimates, Jobs(database).get(job.id)).eta_s for job in jobs)
+    assert [standard, again] == pytest.approx([100.0, 100.0], abs=5.0)
+    assert best is None
 
 
 @pytest.mark.usefixtures("past")

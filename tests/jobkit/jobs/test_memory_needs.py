@@ -76,7 +76,7 @@ def test_past_jobs_are_read_once_a_minute(database: Database, new_job: NewJob) -
 
 @given(size_bytes=st.integers(1, 1 << 32), more=st.integers(1, 1 << 32))
 def test_without_past_jobs_a_larger_file_is_expected_to_need_more(size_bytes: int, more: int) -> None:
-    kinds = (BY_GEOMETRY, "fill self", "denoise self", "fill self_network")
+    kinds = (BY_GEOMETRY, "fill self", "denoise self", "fill self_network", "fill auto best")
     needs = [expected_from_bytes(kind, size_bytes) for kind in kinds]
     assert needs[0] < needs[1] <= needs[2]
     assert needs[1] < needs[3]
