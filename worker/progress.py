@@ -1,18 +1,40 @@
 """From stages and fractions to one percentage that never falls."""
 
 from collections.abc import Mapping
+from typing import Literal
 
 from shared_rules.tasks import FILL, Task
 
-# Share of a typical job's time, in percent. A repair by geometry alone is one long stage, `fill`.
-_BY_GEOMETRY: Mapping[str, int] = {
-    "read": 6,
-    "holes": 4,
-    "fill": 76,
-    "judge": 4,
-    "write": 4,
-    "preview": 3,
-    "closeups": 3,
+# What holes are filled by, as far as the time goes: a model that is ready or learned in seconds, or one that is fitted.
+FilledBy = Literal["geometry", "model", "fitting"]
+
+# Share of a typical job's time, in percent. A repair by geometry alone is one long stage, `fill`; a network that is
+# fitted to the mesh takes longer than all the rest.
+_OTHER_FILLS: Mapping[str, Mapping[str, int]] = {
+    "geometry": {
+        "read": 6,
+        "holes": 4,
+        "fill": 76,
+        "judge": 4,
+        "write": 4,
+        "preview": 3,
+        "closeups": 3,
+    },
+    "fitting": {
+        "read": 1,
+        "holes": 1,
+        "fill": 8,
+        "smooth": 1,
+        "quadrangulate": 1,
+        "patchify": 1,
+        "learn": 80,
+        "inpaint": 1,
+        "reconstruct": 1,
+        "judge": 1,
+        "write": 1,
+        "preview": 1,
+        "closeups": 2,
+    },
 }
 _SHARES: Mapping[Task, Mapping[str, int]] = {
     "fill": {
@@ -69,10 +91,10 @@ _MOST = 99.0
 
 
 class Progress:
-    """The furthest point that an attempt at a task has reached; whether geometry alone fills says how long it takes."""
+    """The furthest point that an attempt at a task has reached; what fills holes says how long each stage takes."""
 
-    def __init__(self, task: Task = FILL, *, by_geometry: bool = False) -> None:
-        self._shares = _BY_GEOMETRY if by_geometry and task == FILL else _SHARES[task]
+    def __init__(self, task: Task = FILL, filled_by: FilledBy = "model") -> None:
+        self._shares = _OTHER_FILLS.get(filled_by, _SHARES[FILL]) if task == FILL else _SHARES[task]
         self.stage = ""
         self.percent = 0.0
 

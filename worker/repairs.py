@@ -22,7 +22,6 @@ from jobkit.jobs.attempts import StartedAttempt
 from jobkit.jobs.stage_seconds import StageSeconds
 from jobkit.requeue import submit_job
 from jobkit.schema import JobError, JobResult, JobState
-from jobkit.schema.methods import SmoothMethod
 from jobkit.telemetry import StageSpans
 from quadpatch.stages import failure_of
 from worker.calibrations import hand_on, take_back
@@ -44,7 +43,7 @@ from worker.results import (
     stage_seconds,
     store_result,
 )
-from worker.spec import job_request
+from worker.spec import filled_by, job_request
 
 # A repair that is nearly done may finish when its worker is asked to stop; the others are handed back.
 _DRAIN_GRACE_S = 2.0
@@ -113,7 +112,7 @@ def _drop(context: Context, started_attempt: StartedAttempt) -> None:
 
 def _run(context: Context, started_attempt: StartedAttempt) -> _Repaired:
     spec = started_attempt.job.spec
-    progress = Progress(spec.task, by_geometry=isinstance(spec.method, SmoothMethod))
+    progress = Progress(spec.task, filled_by(spec.method))
     with Heartbeat(_heartbeat_calls(context, started_attempt), progress) as heartbeat:
         return _work(context, started_attempt, heartbeat)
 

@@ -20,6 +20,7 @@ from jobkit.schema import (
 from shared_rules.tasks import DONE
 from worker.engine.limits import EngineLimits
 from worker.engine.request import MESH_FOLDER, REFERENCE_FOLDER, EngineRequest
+from worker.progress import FilledBy
 
 # Formats that are read, but handed back as another one: a glTF with its side files is no single file.
 _WRITTEN_AS: dict[str, OutputFormat] = {"gltf": "glb"}
@@ -106,6 +107,13 @@ def method_options(spec: JobSpec, time_s: float) -> dict[str, Any]:
         fitting = spec.method.fitting
         options["network"] = {"steps": fitting.steps, "seconds": min(fitting.seconds, _FITTING_SHARE * time_s)}
     return options
+
+
+def filled_by(method: Method) -> FilledBy:
+    """Say what fills the holes, as far as it matters for the time."""
+    if isinstance(method, SmoothMethod) or (isinstance(method, AutoMethod) and method.effort == "fast"):
+        return "geometry"
+    return "fitting" if fits_a_network(method) else "model"
 
 
 def fits_a_network(method: Method) -> TypeGuard[AutoMethod | CnnMethod]:

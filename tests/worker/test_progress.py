@@ -3,7 +3,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from jobkit.schema import STAGES, TASKS, Task
-from worker.progress import Progress
+from worker.progress import FilledBy, Progress
 
 stages = st.sampled_from([*STAGES, "preview", "closeups", "something new"])
 
@@ -29,8 +29,20 @@ def test_every_stage_of_the_contract_moves_it_on() -> None:
     assert progress.percent == 99.0
 
 
+@pytest.mark.parametrize(("by", "longest"), [("geometry", "fill"), ("model", "fill"), ("fitting", "learn")])
+def test_no_stage_of_a_repair_takes_longer_than_that_of_what_fills_holes(by: FilledBy, longest: str) -> None:
+    progress = Progress(filled_by=by)
+    shares = {}
+    for stage in [*STAGES, "preview", "closeups"]:
+        before = progress.percent
+        progress.reach(stage, 1.0)
+        shares[stage] = progress.percent - before
+    assert max(shares, key=lambda stage: shares[stage]) == longest
+    assert progress.percent == 99.0
+
+
 def test_a_repair_by_geometry_spends_most_of_its_time_filling() -> None:
-    progress = Progress(by_geometry=True)
+    progress = Progress(filled_by="geometry")
     progress.reach("fill", 0.0)
     start = progress.percent
     progress.reach("fill", 0.5)

@@ -17,6 +17,7 @@ from quadpatch.restoration.restore import RestoreOptions
 from shared_rules.option_words import Effort, Recipe
 from worker.engine.limits import EngineLimits
 from worker.spec import (
+    filled_by,
     inspect_request,
     job_request,
     method_options,
@@ -92,6 +93,21 @@ def test_how_long_to_fit_a_network_reaches_the_method() -> None:
     method = {"method": "auto", "effort": "best", **rest}
     options = RepairOptions.from_dict(method_options(spec(method=method), LIMITS.time_s))
     assert options == replace(expected, effort="best")
+
+
+@pytest.mark.parametrize(
+    ("method", "by"),
+    [
+        ({"method": "smooth"}, "geometry"),
+        ({"method": "auto", "effort": "fast"}, "geometry"),
+        ({"method": "auto"}, "model"),
+        ({"method": "cnn"}, "model"),
+        ({"method": "cnn", "model": "self"}, "fitting"),
+        ({"method": "auto", "effort": "best"}, "fitting"),
+    ],
+)
+def test_what_fills_the_holes_goes_by_method_and_effort(method: dict[str, str], by: str) -> None:
+    assert filled_by(spec(method=method).method) == by
 
 
 @pytest.mark.parametrize("effort", get_args(Effort))
