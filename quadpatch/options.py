@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import Any, Literal, TypeVar, get_args
 
 from quadpatch.errors import OptionError
-from shared_rules.hole_selection import MODEL_FILLS_ONLY, Cap, HoleKind, RuleAction, names_fills
+from shared_rules.hole_selection import MODEL_FILLS_ONLY, Cap, HoleKind, RuleAction, names_fills, repeated_loop
 from shared_rules.option_words import Effort, Preset, Recipe
 
 RESOLUTION_RANGE = (8, 128)
@@ -80,6 +80,8 @@ class HoleOptions:
         `flat`: close open ends by a plane patch.
     rules : tuple of HoleRule
         The first one whose conditions a hole meets says what is done with it.
+    bridges : tuple of (int, int)
+        Pairs of loops that a strip of surface joins, whatever else is said of these.
     """
 
     max_diameter: float | None = None
@@ -89,18 +91,23 @@ class HoleOptions:
     include_borders: bool = False
     cap: Cap | None = None
     rules: tuple[HoleRule, ...] = ()
+    bridges: tuple[tuple[int, int], ...] = ()
 
     def __post_init__(self) -> None:
         _check_length("holes.max_diameter", self.max_diameter)
         _check_length("holes.max_perimeter", self.max_perimeter)
         if self.cap is not None:
             _check_choice("holes.cap", self.cap, get_args(Cap))
+        repeated = repeated_loop(self.bridges)
+        if repeated is not None:
+            raise OptionError(f"holes.bridges: {repeated}")
 
     @classmethod
     def from_dict(cls, values: Mapping[str, Any]) -> "HoleOptions":
         """Build from plain values; an unknown name raises TypeError."""
         rules = tuple(HoleRule.from_dict(rule) for rule in values.get("rules") or ())
-        return cls(**{**_with_ids(values), "rules": rules})
+        bridges = tuple((int(first), int(second)) for first, second in values.get("bridges") or ())
+        return cls(**{**_with_ids(values), "rules": rules, "bridges": bridges})
 
 
 def _with_ids(values: Mapping[str, Any]) -> dict[str, Any]:

@@ -8,6 +8,7 @@ import numpy as np
 
 from quadpatch.calibration.kept import KeptCalibrations
 from quadpatch.errors import EmptyMeshError
+from quadpatch.filling.bridge_proposals import propose_bridges
 from quadpatch.filling.islands import hosts_of
 from quadpatch.formats.marks import NUMBERED
 from quadpatch.formats.precision import check_precision
@@ -135,7 +136,8 @@ def inspect_file(source: Path, weld_tolerance: Tolerance = "auto") -> dict[str, 
     """Facts and holes of a file, JSON-ready; `chosen` says what the automatic rule would fill.
 
     The holes are those that a repair with the same tolerance finds. `lies_in` names the holes that a loop lies in as
-    the border of an island: where one of them is filled, the island is joined to the first that is.
+    the border of an island: where one of them is filled, the island is joined to the first that is. `bridges` are
+    pairs of loops that face each other, which a repair joins only where it is asked to.
     """
     check_weld_tolerance(weld_tolerance)
     scan, welded = read_surface(source, weld_tolerance)
@@ -160,6 +162,7 @@ def inspect_file(source: Path, weld_tolerance: Tolerance = "auto") -> dict[str, 
                 }
                 for hole, choice in zip(holes, choices, strict=True)
             ],
+            "bridges": [asdict(proposal) for proposal in propose_bridges(mesh, holes, hosts)],
         }
     )
     return facts

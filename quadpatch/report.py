@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from quadpatch.filling.bridges import Bridge
 from quadpatch.filling.fairing import Energy
 from quadpatch.formats.scan import Scan
 from quadpatch.mesh.holes import Hole
@@ -184,9 +185,14 @@ def _hole(result: HoleResult) -> dict[str, Any]:
         "new_vertices": result.n_new_vertices,
         "new_triangles": result.n_new_triangles,
         "measures": result.measures,
+        "bridge": None if result.bridge is None else _bridge(result.bridge),
     }
     # Many times faster than to turn millions of values one by one.
     return row if _is_plain(result) else json_ready(row)
+
+
+def _bridge(bridge: Bridge) -> dict[str, Any]:
+    return {"holes": [hole.id for hole in bridge.holes], "shape": bridge.shape, "gap": bridge.gap}
 
 
 @lru_cache

@@ -21,7 +21,16 @@ AUTO_DIAMETER_SHARE = 0.25
 # Vertices grow with the square of the rim; such a fill would take minutes and gigabytes.
 MAX_NEW_VERTICES = 200_000
 
-MODEL_FILLS_ONLY = "holes.cap and the actions smooth and flat of holes.rules go with the recipe default only"
+MODEL_FILLS_ONLY = (
+    "holes.cap, holes.bridges and the actions smooth and flat of holes.rules go with the recipe default only"
+)
+
+
+_NOT_MANIFOLD = "non_manifold_rim", "its rim touches faces of opposite direction, or three at one edge"
+_OTHER_NOT_MANIFOLD = (
+    "non_manifold_rim",
+    "the rim at the other end of its bridge touches such faces, or three at one edge",
+)
 
 
 class Hole(Protocol):
@@ -77,6 +86,8 @@ class HoleSelection(Protocol):
     def cap(self) -> Cap | None: ...
     @property
     def rules(self) -> Sequence[HoleRule]: ...
+    @property
+    def bridges(self) -> Sequence[Sequence[int]]: ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,12 +102,15 @@ class Choice:
         Why it stays open: a stable code, and a sentence for people.
     joined_to : int or None
         Id of the hole that it lies in, where it is the border of an island that is filled with that hole.
+    bridged_to: int or None
+        Id of the loop that a bridge joins it to.
     """
 
     action: HoleAction | None
     code: str | None = None
     reason: str | None = None
     joined_to: int | None = None
+    bridged_to: int | None = None
 
 
 def choose_holes(holes: Sequence[Hole], selection: HoleSelection, diagonal: float) -> list[Choice]:
@@ -112,8 +126,12 @@ def choose_holes(holes: Sequence[Hole], selection: HoleSelection, diagonal: floa
     # A look-up in a long list, once for every hole, takes minutes.
     chosen_ids = _id_set(selection.ids)
     rules = [(number, rule, _id_set(rule.ids)) for number, rule in enumerate(selection.rules, 1)]
+    bridged = _bridged(holes, selection)
     choices = []
     for hole in holes:
+        if hole.id in bridged:
+            choices.append(bridged[hole.id])
+            continue
         number, rule = next(((n, rule) for n, rule, ids in rules if _meets(hole, rule, ids, selection)), (0, None))
         is_listed = chosen_ids is None or hole.id in chosen_ids
         skipped = next(_reasons_to_skip(hole, selection, rule, number, is_listed), None)
@@ -122,8 +140,21 @@ def choose_holes(holes: Sequence[Hole], selection: HoleSelection, diagonal: floa
     return choices
 
 
+def _bridged(holes: Sequence[Hole], selection: HoleSelection) -> dict[int, Choice]:
+    """Say of the loops of all bridges what becomes of them, by id: no other option is about these."""
+    if not selection.bridges:
+        return {}
+    by_id, found = {hole.id: hole for hole in holes}, {}
+    for pair in selection.bridges:
+        is_possible = all(by_id[i].is_manifold for i in pair)
+        for hole_id, other_id in (pair, pair[::-1]):
+            bad = _NOT_MANIFOLD if not by_id[hole_id].is_manifold else _OTHER_NOT_MANIFOLD
+            found[hole_id] = Choice("model", bridged_to=other_id) if is_possible else Choice(None, *bad)
+    return found
+
+
 def join_islands(hosts: Sequence[Sequence[int]], choices: Sequence[Choice]) -> list[Choice]:
-    """Join each island to the narrowest hole around it that is filled.
+    """Join each island to the narrowest hole around it that is filled; loops of bridges take no part.
 
     Parameters
     ----------
@@ -132,24 +163,37 @@ def join_islands(hosts: Sequence[Sequence[int]], choices: Sequence[Choice]) -> l
     choices : sequence of Choice
         One for each hole, by its own selection; their position is the id.
     """
-    actions = {i: choice.action for i, choice in enumerate(choices) if choice.action is not None}
+    actions = {i: c.action for i, c in enumerate(choices) if c.action is not None and c.bridged_to is None}
     narrowest = [next((i for i in ids if i in actions), None) for ids in hosts]
     return [
-        choice if host is None else Choice(actions[host], joined_to=host)
+        choice if host is None or choice.bridged_to is not None else Choice(actions[host], joined_to=host)
         for host, choice in zip(narrowest, choices, strict=True)
     ]
 
 
 def unknown_hole(holes: Sequence[Hole], selection: HoleSelection) -> str | None:
     """Say in a sentence which explicit id names no hole; None where all do."""
-    named = {i for ids in (selection.ids, *(rule.ids for rule in selection.rules)) for i in ids or ()}
+    lists = (selection.ids, *(rule.ids for rule in selection.rules), *selection.bridges)
+    named = {i for ids in lists for i in ids or ()}
     unknown = sorted(named - {hole.id for hole in holes})
     return f"no hole has the id {unknown[0]}; this mesh has {len(holes)} holes, counted from 0" if unknown else None
 
 
+def repeated_loop(bridges: Sequence[Sequence[int]]) -> str | None:
+    """Say in a sentence which loop several ends of bridges name; None where each names another."""
+    ends = [i for pair in bridges for i in pair]
+    repeated = sorted({i for i in ends if ends.count(i) > 1})
+    return (
+        f"a bridge joins two loops, and a loop has one bridge at most: {repeated[0]} is named twice"
+        if repeated
+        else None
+    )
+
+
 def names_fills(selection: HoleSelection) -> bool:
     """Whether some holes are to be closed in another way than by the model; see `MODEL_FILLS_ONLY`."""
-    return selection.cap is not None or any(rule.action in ("smooth", "flat") for rule in selection.rules)
+    is_other = any(rule.action in ("smooth", "flat") for rule in selection.rules)
+    return selection.cap is not None or bool(selection.bridges) or is_other
 
 
 def expected_vertices(hole: Hole) -> int:
@@ -195,7 +239,7 @@ def _reasons_to_skip(
     """Yield what keeps a hole open, each with its code and a sentence: the first one counts."""
     is_left_out = rule is None and not _is_asked_for(hole, selection)
     if not hole.is_manifold:
-        yield "non_manifold_rim", "its rim touches faces of opposite direction, or three at one edge"
+        yield _NOT_MANIFOLD
     if not is_listed:
         yield "not_chosen", "not among the chosen ids"
     if selection.all_but_largest and hole.id == 0:

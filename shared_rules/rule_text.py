@@ -1,4 +1,7 @@
-"""Rules for holes as text: `max_diameter=5:flat`, `kind=open_end,max_diameter=30:flat`, `id=3,id=4:skip`, `smooth`."""
+"""Rules for holes as text: `max_diameter=5:flat`, `kind=open_end,max_diameter=30:flat`, `id=3,id=4:skip`, `smooth`.
+
+Bridges as text: `3:17`.
+"""
 
 from typing import Any
 
@@ -35,6 +38,20 @@ def read_rule(text: str) -> dict[str, Any]:
                 f"{condition.strip()!r} is no condition of a rule; write it like max_diameter=5 or kind=slit or id=3"
             ) from error
     return values
+
+
+def read_bridge(text: str) -> tuple[int, int]:
+    """Read the ids of two loops with a colon between them.
+
+    Raises
+    ------
+    RuleTextError
+        If the text is anything else.
+    """
+    ids = [part.strip() for part in text.split(":")]
+    if len(ids) != 2 or not all(part.isascii() and part.isdigit() for part in ids):
+        raise RuleTextError(f"{text!r} is no bridge; write the ids of two loops, like 3:17")
+    return int(ids[0]), int(ids[1])
 
 
 def _add(values: dict[str, Any], name: str, value: str) -> None:

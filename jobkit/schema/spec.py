@@ -7,7 +7,7 @@ from pydantic import Field, model_validator
 from jobkit.schema.base import TEXT_PATTERN, WHOLE, MeshId, Request
 from jobkit.schema.methods import SELF, AutoMethod, DictionaryMethod, Method
 from jobkit.schema.tasks import Denoising, Encoding, Restoring
-from shared_rules.hole_selection import Cap, HoleKind, RuleAction
+from shared_rules.hole_selection import Cap, HoleKind, RuleAction, repeated_loop
 from shared_rules.option_words import OutputFormat
 from shared_rules.tasks import FILL, Task
 
@@ -56,6 +56,10 @@ class HoleRule(Request):
     )
 
 
+# Two different loops; which ones there are is for the mesh to say.
+Bridge = Annotated[list[HoleId], Field(min_length=2, max_length=2)]
+
+
 class HoleSelection(Request):
     """Which holes to fill, and how.
 
@@ -92,6 +96,20 @@ class HoleSelection(Request):
         description="The first rule whose conditions a hole meets says what is done with it.",
         examples=[[{"kind": "open_end", "action": "flat"}, {"max_diameter": 5.0, "action": "smooth"}]],
     )
+    bridges: list[Bridge] = Field(
+        default_factory=list,
+        max_length=1000,
+        description="Pairs of loops, by their ids, that a strip of surface joins across the gap between them, whatever "
+        "else is said of these loops; each loop is named once. The mesh's facts propose pairs (`bridges`).",
+        examples=[[[3, 17]]],
+    )
+
+    @model_validator(mode="after")
+    def _each_loop_has_one_bridge(self) -> Self:
+        repeated = repeated_loop(self.bridges)
+        if repeated is not None:
+            raise ValueError(repeated)
+        return self
 
 
 Tolerance = Annotated[float, Field(ge=0, le=1e12)] | Literal["auto"]
@@ -151,7 +169,7 @@ class RepairSpec(Request):
         default="auto",
         description="How far apart boundary vertices are taken for one, in mesh units: 0 joins equal positions alone, "
         "`auto` what rounding in the file accounts for. Ids of holes are those found with `auto`, so that `holes.ids` "
-        "is refused with any other tolerance.",
+        "and `holes.bridges` are refused with any other tolerance.",
         examples=["auto", 0.001],
     )
     output: Output = Field(default_factory=Output, description="What is handed back.")
@@ -170,6 +188,8 @@ class RepairSpec(Request):
     def _ids_need_the_known_holes(self) -> Self:
         if self.weld_tolerance != "auto" and self.holes.ids is not None:
             raise ValueError("holes.ids names holes found with the weld_tolerance auto: drop one of the two")
+        if self.weld_tolerance != "auto" and self.holes.bridges:
+            raise ValueError("holes.bridges names loops found with the weld_tolerance auto: drop one of the two")
         return self
 
 
@@ -197,7 +217,11 @@ _LATER_FIELDS = {"task", "restore", "denoise", "encode"}
 def identity_of(spec: JobSpec) -> str:
     """Return the JSON text by which two requests for the same thing are known as such.
 
-    It is what versions wrote that knew no task but `fill`: a request that is repeated across an upgrade stays the same.
+    It is what versions wrote that knew no task but `fill`, and no bridges: a request that is repeated across an upgrade
+    stays the same.
     """
     is_fill = all(getattr(spec, name) == JobSpec.model_fields[name].default for name in _LATER_FIELDS)
-    return spec.model_dump_json(exclude=_LATER_FIELDS if is_fill else None)
+    left_out: dict[str, Any] = dict.fromkeys(_LATER_FIELDS, True) if is_fill else {}
+    if not spec.holes.bridges:
+        left_out["holes"] = {"bridges"}
+    return spec.model_dump_json(exclude=left_out)

@@ -32,7 +32,7 @@ from quadpatch.options import DictionaryOptions, HoleOptions, HoleRule, NetworkO
 from shared_rules.competition import outcome
 from shared_rules.hole_selection import Cap
 from shared_rules.option_words import Effort, Recipe
-from shared_rules.rule_text import RuleTextError, read_rule
+from shared_rules.rule_text import RuleTextError, read_bridge, read_rule
 
 if TYPE_CHECKING:
     from quadpatch.repair import RepairedFile
@@ -92,6 +92,13 @@ def fill(  # noqa: PLR0913, PLR0917  one argument per flag
             "Repeat for more; the first that fits counts.",
         ),
     ] = None,
+    bridge: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="ID:ID",
+            help="Join these two loops by a strip of surface, as across a cut: 3:17. Repeat for more; see `holes`.",
+        ),
+    ] = None,
     patch_length: PatchLength = None,
     resolution: Resolution = None,
     overlap: Overlap = None,
@@ -121,6 +128,7 @@ def fill(  # noqa: PLR0913, PLR0917  one argument per flag
                 include_borders,
                 cap,
                 tuple(_rule(text) for text in rule or ()),
+                tuple(_bridge(text) for text in bridge or ()),
             ),
             PatchOptions(patch_length, resolution, overlap, preset),
             seed,
@@ -155,6 +163,14 @@ def _rule(text: str) -> HoleRule:
     """Read one `--rule`; what is no rule raises OptionError."""
     try:
         return HoleRule.from_dict(read_rule(text))
+    except RuleTextError as error:
+        raise OptionError(str(error)) from error
+
+
+def _bridge(text: str) -> tuple[int, int]:
+    """Read one `--bridge`; what is no bridge raises OptionError."""
+    try:
+        return read_bridge(text)
     except RuleTextError as error:
         raise OptionError(str(error)) from error
 

@@ -46,8 +46,18 @@ def holes(
         table.add_row(str(row["id"]), str(row["edges"]), *numbers, row["kind"], _centre(row), fate)
     console = Console()
     console.print(table, width=min(console.width, MAX_TABLE_WIDTH))
+    for proposal in facts["bridges"]:
+        say(_proposal(proposal, unit))
     for warning in facts["warnings"]:
         say(f"Warning: {warning}")
+
+
+def _proposal(proposal: dict[str, Any], unit: str) -> str:
+    """Say which loops face each other, and how they are joined."""
+    first, second = proposal["holes"]
+    where = "all around" if proposal["shape"] == "ring" else "along a part of their rims"
+    facing = f"Loops {first} and {second} face each other {where}, {proposal['gap']:.4g} {unit} apart"
+    return f"{facing}: --bridge {first}:{second} joins them; by default they are not joined."
 
 
 def _centre(row: dict[str, Any]) -> str:

@@ -5,11 +5,13 @@ between two rims. The rims are joined by a bridge that is walked there and back,
 that makes one loop of them.
 """
 
-from dataclasses import dataclass
+from collections.abc import Set
+from dataclasses import dataclass, field
 
 import numpy as np
 from scipy.spatial import cKDTree
 
+from quadpatch.filling.bridges import Bridge, Refusal
 from quadpatch.mesh.holes import Hole
 from quadpatch.mesh.loops import by_length, laid_out
 from quadpatch.mesh.normals import cross, length, normals_at
@@ -39,14 +41,22 @@ class JoinedRims:
         Whose loops these are.
     host_of : dict of int to int
         Id of the hole that each island was joined to, by the id of the island's own border.
+    bridges : dict of int to Bridge
+        By the id of the loop among `chosen` that the bridge starts from.
+    refused : dict of int to (str, str)
+        Loops that were to be joined by a bridge and can't be, by id: a stable code, and a sentence for people.
     """
 
     loops: list[IntArray]
     chosen: list[Hole]
     host_of: dict[int, int]
+    bridges: dict[int, Bridge] = field(default_factory=dict)
+    refused: dict[int, Refusal] = field(default_factory=dict)
 
 
-def join_islands(mesh: TriangleMesh, holes: list[Hole], chosen: list[Hole]) -> JoinedRims:
+def join_islands(
+    mesh: TriangleMesh, holes: list[Hole], chosen: list[Hole], bridged: Set[int] = frozenset()
+) -> JoinedRims:
     """Join the borders of islands to the rims of the holes that they lie in.
 
     Parameters
@@ -56,14 +66,17 @@ def join_islands(mesh: TriangleMesh, holes: list[Hole], chosen: list[Hole]) -> J
         All of the mesh.
     chosen : list of Hole
         Those that are to be filled.
+    bridged : set of int
+        Ids of loops that are joined otherwise.
     """
-    host_of = {island: hosts[0] for island, hosts in hosts_of(mesh, holes, chosen, most=1).items()}
+    found = hosts_of(mesh, holes, chosen, most=1)
+    host_of = {island: hosts[0] for island, hosts in found.items() if island not in bridged}
     islands: dict[int, list[IntArray]] = {}
     for island, host in host_of.items():
         islands.setdefault(host, []).append(holes[island].loop)
     # The quad mesh depends on the order of the vertices: how holes are numbered must not decide what the model makes.
     other_holes = sorted((hole for hole in chosen if hole.id not in host_of), key=lambda hole: -hole.perimeter)
-    loops = [_bridged(mesh.vertices, hole.loop, islands.get(hole.id, [])) for hole in other_holes]
+    loops = [loop_around(mesh.vertices, hole.loop, islands.get(hole.id, [])) for hole in other_holes]
     return JoinedRims(loops, other_holes, host_of)
 
 
@@ -88,7 +101,7 @@ def hosts_of(mesh: TriangleMesh, holes: list[Hole], hosts: list[Hole], most: int
     """
     if len(holes) < 2 or not hosts:
         return {}
-    centres = _centres(mesh.vertices, [hole.loop for hole in holes])
+    centres = loop_centres(mesh.vertices, [hole.loop for hole in holes])
     tree, diameters = cKDTree(centres), np.array([hole.diameter for hole in holes])
     ids = np.array([hole.id for hole in hosts])
     # Most holes have no other loop near them.
@@ -137,7 +150,7 @@ class _Sides:
         return cls(
             find_pieces(mesh, []).of_vertex[[hole.loop[0] for hole in holes]],
             means,
-            _vector_areas(mesh.vertices, [hole.loop for hole in holes], centres),
+            loop_vector_areas(mesh.vertices, [hole.loop for hole in holes], centres),
         )
 
     def may_lie_in(self, rim: int, islands: IntArray) -> BoolArray:
@@ -150,7 +163,7 @@ class _Sides:
         return np.asarray(agree & runs_rightly & (self.piece[islands] != self.piece[rim]))
 
 
-def _centres(vertices: Vertices, loops: list[IntArray]) -> FloatArray:
+def loop_centres(vertices: Vertices, loops: list[IntArray]) -> FloatArray:
     """Mean of the vertices of each loop, (n_loops, 3)."""
     points, centres = vertices[np.concatenate(loops)], np.zeros((len(loops), 3))
     for members, places in by_length(laid_out(loops)[0]):
@@ -158,7 +171,7 @@ def _centres(vertices: Vertices, loops: list[IntArray]) -> FloatArray:
     return centres
 
 
-def _vector_areas(vertices: Vertices, loops: list[IntArray], centres: FloatArray) -> FloatArray:
+def loop_vector_areas(vertices: Vertices, loops: list[IntArray], centres: FloatArray) -> FloatArray:
     """Vector area of each loop, twice: (n_loops, 3)."""
     points, areas = vertices[np.concatenate(loops)], np.zeros((len(loops), 3))
     for members, places in by_length(laid_out(loops)[0]):
@@ -194,8 +207,8 @@ def _has_odd_parity(polygon: FloatArray, points: FloatArray) -> BoolArray:
     return inside
 
 
-def _bridged(vertices: Vertices, rim: IntArray, islands: list[IntArray]) -> IntArray:
-    """Join a rim to islands by short bridges: (n_rim + n_islands + 2 per island,) int64.
+def loop_around(vertices: Vertices, rim: IntArray, islands: list[IntArray]) -> IntArray:
+    """Join a rim to islands by short edges: (n_rim + n_islands + 2 per island,) int64.
 
     The nearest island comes first, as in the algorithm of Prim: the bridge to another one may start at it, and would
     run through it otherwise.

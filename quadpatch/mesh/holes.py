@@ -24,11 +24,22 @@ class Selection:
         Hole id to a stable code and a sentence for people.
     actions : dict of int to str
         Id of each chosen hole to `model`, `smooth` or `flat`.
+    bridges : list of (int, int)
+        Ids of loops that are to be joined, which are not among the chosen ones.
+    gaps : dict of int to float
+        Widths of the gaps that fills of some chosen loops cross, in mesh units, by id.
     """
 
     chosen: list[Hole]
     skipped: dict[int, tuple[str, str]]
     actions: dict[int, HoleAction] = field(default_factory=dict)
+    bridges: list[tuple[int, int]] = field(default_factory=list)
+    gaps: dict[int, float] = field(default_factory=dict)
+
+    @property
+    def widths(self) -> list[float]:
+        """Widths of what the chosen loops' fills cross, in mesh units: diameters of holes, gaps of bridges."""
+        return [self.gaps.get(hole.id, hole.diameter) for hole in self.chosen]
 
 
 def select_holes(holes: list[Hole], options: HoleOptions, diagonal: float) -> Selection:
@@ -51,7 +62,8 @@ def select_holes(holes: list[Hole], options: HoleOptions, diagonal: float) -> Se
         raise OptionError(message)
     choices = list(zip(holes, choose_holes(holes, options, diagonal), strict=True))
     return Selection(
-        [hole for hole, choice in choices if choice.action],
+        [hole for hole, choice in choices if choice.action and choice.bridged_to is None],
         {hole.id: (choice.code, choice.reason) for hole, choice in choices if choice.code and choice.reason},
         {hole.id: choice.action for hole, choice in choices if choice.action},
+        [(first, second) for first, second in options.bridges if choices[first][1].action],
     )

@@ -12,15 +12,20 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.formats.output_files import write_whole
 from quadpatch.mesh.holes import Hole
 from quadpatch.preview.comparison import render_comparison
 from quadpatch.preview.hole_pictures import NumberedHole, draw_hole
 from quadpatch.preview.pair import Pair, filled_pair
+from quadpatch.preview.parts import part_of
 from quadpatch.preview.sheet import render_before_after
 from quadpatch.preview.thinning import MOST_TRIANGLES, thinned
+from quadpatch.preview.viewpoints import most_seen_from
 from quadpatch.progress import Progress, no_progress
+from quadpatch.recipes.result import Repair
 from quadpatch.repair import RepairedFile
 from quadpatch.stages import failure_of, peak_memory_mib
 from quadpatch.tasks.result import TaskResult
@@ -168,9 +173,24 @@ def _pair_around(filled: FilledMesh, holes: list[Hole]) -> Pair:
 
 
 def _close_up(pair: Pair, repaired: RepairedFile, hole: Hole, save: Callable[[str, bytes], None]) -> list[str]:
-    numbered = NumberedHole(hole.id, repaired.repair.filled.mesh.vertices[hole.loop])
+    numbered = _numbered(pair, repaired.repair, hole)
     failure = failure_of(lambda: save(f"hole_{hole.id}.png", draw_hole(pair, numbered)))
     return [] if failure is None else [f"there is no close-up of hole {hole.id}: {failure}"]
+
+
+def _numbered(pair: Pair, repair: Repair, hole: Hole) -> NumberedHole:
+    """Look up the rim of a hole; of a bridge both rims, and from where most of its strip shows."""
+    filled, bridge = repair.filled, repair.results[hole.id].bridge
+    vertices = filled.mesh.vertices
+    if bridge is None:
+        return NumberedHole(hole.id, vertices[hole.loop])
+    far_end = NumberedHole(bridge.holes[1].id, vertices[bridge.holes[1].loop])
+    own = np.flatnonzero(filled.triangle_hole == repair.chosen.index(hole)) + filled.n_measured_triangles
+    # A bridge that was refused has no strip.
+    strip = part_of(filled.mesh, own)
+    strip = strip.flipped() if pair.is_flipped else strip
+    towards = most_seen_from(pair.scene, strip) if len(own) else None
+    return NumberedHole(hole.id, vertices[hole.loop], far_end, towards)
 
 
 @contextmanager

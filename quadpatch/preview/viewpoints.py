@@ -44,6 +44,12 @@ def close_ups(scene: RayScene, holes: list[Part], like: Camera, most: int) -> li
     return [camera for camera, _ in views[:most]]
 
 
+def most_seen_from(scene: RayScene, part: Part) -> FloatArray:
+    """Find the direction (3,) from which most of the outside of a part shows; a unit vector to the viewer."""
+    directions = spread_directions(_N_DIRECTIONS)
+    return np.asarray(directions[np.argmax(visible_areas(scene, part, directions, _SURROUNDINGS * part.diagonal))])
+
+
 def _close_up(scene: RayScene, hole: Part, like: Camera) -> tuple[Camera, float]:
     """Look straight down on a filled hole, or from where most of it shows; with the share of its area that does."""
     clearance = _SURROUNDINGS * hole.diagonal

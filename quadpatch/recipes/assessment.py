@@ -55,7 +55,7 @@ def assess(
     size: float,
 ) -> list[HoleResult]:
     """Say of every hole what became of it, in the order of their ids; `size` is the object's diagonal."""
-    expected_errors = error_model.errors(filled, [hole.diameter for hole in selection.chosen]).tolist()
+    expected_errors = error_model.errors(filled, selection.widths).tolist()
     gaps, turns = filled.disagreement.tolist(), filled.rim_variation.tolist()
     closed = []
     for i, (hole, n_vertices, n_triangles) in enumerate(zip(selection.chosen, *count_new(filled), strict=True)):

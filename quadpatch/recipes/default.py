@@ -18,6 +18,8 @@ from quadpatch.calibration.error_model import PRIOR
 from quadpatch.calibration.kept import KeptCalibrations, array_digest, key_of
 from quadpatch.calibration.record import CalibrationRecord
 from quadpatch.errors import NoQuadsError
+from quadpatch.filling.bridged_rims import join_bridges
+from quadpatch.filling.bridges import make_bridges, ribs_of
 from quadpatch.filling.checked_fill import LoopsToFill, fill_checked, with_creases
 from quadpatch.filling.fairing import THIN_PLATE, Energy
 from quadpatch.filling.filled_mesh import FilledMesh
@@ -34,7 +36,7 @@ from quadpatch.recipes.assessment import assess
 from quadpatch.recipes.learned_detail import Calibration, complete
 from quadpatch.recipes.repair_region import Reach, RepairRegion, repair_region
 from quadpatch.recipes.result import Repair
-from quadpatch.recipes.verification import verified_results, without_faults
+from quadpatch.recipes.verification import verified_results, with_ribs, without_faults
 from quadpatch.stages import Stages
 from quadpatch.types import BoolArray, TriangleMesh, Triangles
 from shared_rules.hole_selection import HoleAction
@@ -96,15 +98,21 @@ def inpaint(  # noqa: PLR0913  what may be known of a scan beforehand goes by na
     with stages.stage("holes"):
         holes = find_holes(mesh, survey)
         selection = select_holes(holes, options.holes, diagonal(mesh))
-        rims = join_islands(mesh, holes, selection.chosen)
+        bridges, refused = make_bridges(mesh, holes, selection.bridges)
+        ribs = ribs_of(bridges)
+        surface = ribs.added_to(mesh)
+        bridged = {i for pair in selection.bridges for i in pair}
+        rims = join_islands(mesh, holes, selection.chosen, bridged)
+        rims = join_bridges(surface, holes, rims, bridges, refused)
         lengths = _with_lengths(options, mesh)
-        task = _Task(mesh, holes, selection, rims, edge_statistics(mesh), inpainter, lengths, obstacles, kept)
-        part = repair_region(mesh, rims.loops, task.reach(), obstacles, np.random.default_rng([options.seed, 1]))
+        task = _Task(surface, holes, selection, rims, edge_statistics(mesh), inpainter, lengths, obstacles, kept)
+        part = repair_region(surface, rims.loops, task.reach(), obstacles, np.random.default_rng([options.seed, 1]))
     repair = _repair(task, part, stages)
     if not part.holds(repair.filled):
-        part = RepairRegion.all_of(mesh, len(rims.loops))
+        part = RepairRegion.all_of(surface, len(rims.loops))
         repair = _repair(task, part, stages)
-    return replace(repair, filled=part.region.widened(repair.filled))
+    repair = replace(repair, filled=part.region.widened(repair.filled))
+    return with_ribs(repair, rims, ribs, obstacles) if len(ribs.triangles) else repair
 
 
 @dataclass(frozen=True)
@@ -151,9 +159,14 @@ class _Task:
         return LoopsToFill(self.rims.loops, _with_action(self.rims, self.selection, "flat"), border)
 
     @cached_property
+    def closed(self) -> Selection:
+        """What is filled and what is not, islands and the far ends of bridges among that."""
+        return _filled_ones(self.selection, self.rims)
+
+    @cached_property
     def diameters(self) -> list[float]:
-        """Diameters of the rims, in mesh units."""
-        return [hole.diameter for hole in self.rims.chosen]
+        """Diameters of the rims, and gaps of bridges, in mesh units."""
+        return self.closed.widths
 
     def typical_diameter(self) -> float | None:
         """Return the diameter of calibration holes, in mesh units; None where there is nothing to calibrate for."""
@@ -212,8 +225,7 @@ def _repair(task: _Task, part: RepairRegion, stages: Stages) -> Repair:
         completion, filled, faults = without_faults(completion, checked, obstacles)
         of_model = completion.error_model if completion else None
         error_model, size = of_model or found.error_model, diagonal(task.mesh)
-        closed = _filled_ones(task.selection, rims)
-        results = assess(task.holes, closed, checked.filled, completion, error_model, size)
+        results = assess(task.holes, task.closed, checked.filled, completion, error_model, size)
         results = verified_results(results, rims, checked, found.blend, faults, size)
     return Repair(filled, rims.chosen, results, found.blend, completion, warnings, found, calibration.is_reused)
 
@@ -224,9 +236,11 @@ def _with_action(rims: JoinedRims, selection: Selection, action: HoleAction) -> 
 
 
 def _filled_ones(selection: Selection, rims: JoinedRims) -> Selection:
-    """Count islands among the holes without a fill of their own."""
-    joined = dict.fromkeys(rims.host_of, ("joined", ""))
-    return Selection(rims.chosen, {**selection.skipped, **joined}, selection.actions)
+    """Count islands and the far ends of bridges among the holes without a fill of their own."""
+    far_ends = [bridge.holes[1].id for bridge in rims.bridges.values()]
+    joined = dict.fromkeys([*rims.host_of, *far_ends, *rims.refused], ("joined", ""))
+    gaps = {first: bridge.gap for first, bridge in rims.bridges.items()}
+    return replace(selection, chosen=rims.chosen, skipped={**selection.skipped, **joined}, gaps=gaps)
 
 
 def _share_of_calibration(task: _Task) -> float:

@@ -98,7 +98,7 @@ def inpaint_as_paper(
     with stages.stage("holes"):
         holes = find_holes(mesh)
         selection = select_holes(holes, options.holes, diagonal(mesh))
-        if any(action != "model" for action in selection.actions.values()):
+        if selection.bridges or any(action != "model" for action in selection.actions.values()):
             raise OptionError(MODEL_FILLS_ONLY)
     with stages.stage("fill"):
         filled = close_by_meshlab(mesh, [hole.loop for hole in selection.chosen])

@@ -11,6 +11,7 @@ import numpy as np
 from quadpatch.calibration.energy_selection import EnergyBlend
 from quadpatch.calibration.error_model import ErrorModel
 from quadpatch.calibration.record import CalibrationRecord
+from quadpatch.filling.bridges import Bridge
 from quadpatch.filling.fairing import Energy
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.mesh.holes import Hole
@@ -40,6 +41,8 @@ class HoleResult:
         fold or run through other surface. Empty where nothing was filled.
     energies : sequence of (Energy, float)
         Where the fill is `energies` or `creases`: which ones, each with its share.
+    bridge : Bridge or None
+        The one that joins this loop to another; its vertices and triangles count with the first of the two.
     """
 
     hole: Hole
@@ -53,6 +56,7 @@ class HoleResult:
     measures: dict[str, float] = field(default_factory=dict)
     fill: str = ""
     energies: Sequence[tuple[Energy, float]] = ()
+    bridge: Bridge | None = None
 
 
 @dataclass(frozen=True)

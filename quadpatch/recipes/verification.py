@@ -2,21 +2,26 @@
 
 from dataclasses import replace
 
+import numpy as np
+
 from quadpatch.calibration.energy_selection import EnergyBlend
+from quadpatch.filling.bridges import Bridge
 from quadpatch.filling.checked_fill import CREASED, CheckedFill
 from quadpatch.filling.displaced_fill import displace_without_faults
 from quadpatch.filling.fairing import Energy
-from quadpatch.filling.faults import Faults
+from quadpatch.filling.faults import Faults, find_faults
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.filling.islands import JoinedRims
+from quadpatch.filling.ribs import Ribs
 from quadpatch.mesh.holes import Hole
-from quadpatch.recipes.assessment import confidence
-from quadpatch.recipes.result import Completion, HoleResult
+from quadpatch.recipes.assessment import confidence, count_new
+from quadpatch.recipes.result import Completion, HoleResult, Repair
 from quadpatch.types import Triangles
 
 # Energies with a smaller share in a fill are not named.
 _LEAST_SHARE = 0.005
 
+_RIB_IN_THE_WAY = "crosses_surface", "the open end of the strip folds, or runs through other surface"
 _NO_PLANE_PATCH = "no_plane_patch", "in its plane the rim crosses itself, or encloses no area"
 
 
@@ -88,9 +93,21 @@ def verified_results(
                 measures={**result.measures, **counts[i]},
                 energies=energies_of(i, checked, blend),
             )
+    for hole_id, refusal in rims.refused.items():
+        verified[hole_id] = HoleResult(results[hole_id].hole, "refused", *refusal)
+    for first, bridge in rims.bridges.items():
+        verified[first] = replace(verified[first], bridge=bridge)
+    return _with_joined(verified, rims)
+
+
+def _with_joined(results: list[HoleResult], rims: JoinedRims) -> list[HoleResult]:
+    """Say of loops that are filled with others what became of those: of islands, and of the far ends of bridges."""
+    told = list(results)
     for island, host in rims.host_of.items():
-        verified[island] = _joined(results[island], verified[host])
-    return verified
+        told[island] = _joined(results[island], results[host])
+    for first, bridge in rims.bridges.items():
+        told[bridge.holes[1].id] = _at_far_end(bridge, results[first])
+    return told
 
 
 def energies_of(i: int, checked: CheckedFill, blend: EnergyBlend) -> list[tuple[Energy, float]]:
@@ -112,6 +129,35 @@ def _joined(island: HoleResult, host: HoleResult) -> HoleResult:
         return replace(island, verdict="refused", code=host.code, reason=why)
     why = f"an island in hole {host.hole.id}: the ring between its border and the rim of that hole is filled"
     return replace(island, verdict="filled_smooth", code="joined", reason=why)
+
+
+def with_ribs(repair: Repair, rims: JoinedRims, ribs: Ribs, obstacles: Triangles | None) -> Repair:
+    """Count ribs among what a repair of a whole mesh invented, and refuse the bridges that they spoil."""
+    at = {hole.id: position for position, hole in enumerate(rims.chosen)}
+    loop_of_bridge = np.array([at[first] for first in rims.bridges], np.int64)
+    filled = ribs.told_apart(repair.filled, loop_of_bridge)
+    faults = find_faults(filled, np.unique(loop_of_bridge[ribs.triangle_bridge]), obstacles)
+    filled = filled.without(np.flatnonzero(faults.is_wrong)) if faults.is_wrong.any() else filled
+    results, numbers, counts = list(repair.results), list(zip(*count_new(filled), strict=True)), _counts(faults)
+    for first, bridge in rims.bridges.items():
+        i, result = at[first], results[first]
+        if faults.is_wrong[i]:
+            results[first] = HoleResult(result.hole, "refused", *_RIB_IN_THE_WAY, bridge=bridge)
+        elif bridge.ribs and result.verdict != "refused":
+            measures = {**result.measures, **counts[i]}
+            n_vertices, n_triangles = numbers[i]
+            results[first] = replace(result, n_new_vertices=n_vertices, n_new_triangles=n_triangles, measures=measures)
+    return replace(repair, filled=filled, results=_with_joined(results, rims))
+
+
+def _at_far_end(bridge: Bridge, result: HoleResult) -> HoleResult:
+    """Say of the loop at the far end of a bridge what became of the strip, which counts with the other loop."""
+    first, second = bridge.holes
+    if result.verdict == "refused":
+        why = f"the bridge {first.id}:{second.id} was refused: {result.reason}"
+        return HoleResult(second, "refused", result.code, why, bridge=bridge)
+    why = f"joined by the bridge {first.id}:{second.id}, whose strip counts with loop {first.id}"
+    return HoleResult(second, result.verdict, "bridged", why, bridge=bridge)
 
 
 def with_named_faults(results: list[HoleResult], chosen: list[Hole], faults: Faults) -> list[HoleResult]:

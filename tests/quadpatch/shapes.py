@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from quadpatch.types import FloatArray, IntArray, TriangleMesh
+from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh
 
 
 def joined(*meshes: TriangleMesh) -> TriangleMesh:
@@ -83,6 +83,26 @@ def cylinder(n_around: int, n_along: int, radius: float = 1.0, length: float = 4
         else:
             triangles += [np.stack([here, beyond, there], 1), np.stack([here, after, beyond], 1)]
     return TriangleMesh(np.stack([radius * np.cos(angle), radius * np.sin(angle), z], 1), np.concatenate(triangles))
+
+
+def torus(n_around: int, n_tube: int, radius: float = 3.0) -> TriangleMesh:
+    """Build a torus around the z axis with a tube of radius 1, every second ring turned by half a step."""
+    around = np.arange(n_around) * 2 * np.pi / n_around
+    tube = np.arange(n_tube) * 2 * np.pi / n_tube
+    u, v = np.meshgrid(around, tube, indexing="ij")
+    u = u + (np.arange(n_tube) % 2) * np.pi / n_around
+    vertices = np.stack([(radius + np.cos(v)) * np.cos(u), (radius + np.cos(v)) * np.sin(u), np.sin(v)], axis=-1)
+    i, k = np.meshgrid(np.arange(n_around), np.arange(n_tube), indexing="ij")
+    a, b, c, d = ((i + p) % n_around * n_tube + (k + q) % n_tube for p, q in ((0, 0), (1, 0), (1, 1), (0, 1)))
+    odd = (k % 2 == 1)[..., None]
+    first = np.where(odd, np.stack([a, b, c], axis=-1), np.stack([a, b, d], axis=-1))
+    second = np.where(odd, np.stack([a, c, d], axis=-1), np.stack([b, c, d], axis=-1))
+    return TriangleMesh(vertices.reshape(-1, 3), np.concatenate([first.reshape(-1, 3), second.reshape(-1, 3)]))
+
+
+def without(mesh: TriangleMesh, gone: BoolArray) -> TriangleMesh:
+    """Remove every triangle with a corner among some vertices (n,); vertices stay."""
+    return TriangleMesh(mesh.vertices, mesh.triangles[~gone[mesh.triangles].any(axis=1)])
 
 
 def relief(n: int, width: float = 2.0, depth: float = 0.05, waves: int = 6) -> TriangleMesh:

@@ -1,0 +1,287 @@
+"""Bridges: strips of surface that join two boundary loops which face each other across a gap.
+
+Both rims become one loop that runs around the strip, so that the strip is triangulated, refined, faired and checked
+like every other fill. Where the rims face each other all around, as at a cut tube, an edge from one to the other is
+walked there and back, as to an island. Where outer borders of two pieces face each other along a part of them only, as
+at a torn sheet, a rib across the gap at either end of that stretch makes a hole of what lies between
+(`quadpatch.filling.ribs`).
+"""
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from quadpatch.filling.facing import Facing, Rim, look_across
+from quadpatch.filling.ribs import Rib, RibEnd, Ribs, make_rib
+from quadpatch.mesh.holes import Hole
+from quadpatch.mesh.normals import length
+from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Vertices
+from shared_rules.hole_selection import MAX_NEW_VERTICES
+
+BridgeShape = Literal["ring", "strip"]
+
+# Borders of which less than this share faces the other rim are joined along the stretch that does.
+WHOLE_SHARE = 0.6
+# Stretches of a rim that are apart by less than so many gaps are one.
+_MOST_PAUSE = 2.0
+# An edge at the end of a strip is at most so many times as long as the gap or an edge of the rim, and no rim edge that
+# a strip is extended by points across the gap more than this (cosine).
+_LONGEST_END = 1.5
+_MOST_ACROSS = 0.7
+# A strip is at most so many gaps longer at each end than what faces the other rim for sure.
+_MOST_EXTENSION = 2.0
+# A rib takes one edge at either end of a stretch of so many vertices, and a hole is left between the ribs.
+_LEAST_STRETCH = 4
+# The way from one rim to the other by an island between them is at most so many times as long as the straight one; the
+# island lies this near to the tangent planes of both, in lengths of that way, and faces as they do (cosine).
+_LONGEST_WAY = 1.5
+_MOST_HEIGHT = 0.35
+_LEAST_AGREEMENT = 0.5
+
+# Why two loops can't be joined: a stable code, and a sentence for people.
+Refusal = tuple[str, str]
+_TOUCHING = "bridge_touches", "the two rims share a vertex: a strip between them would be pinched there"
+_FLIPPED = (
+    "bridge_flipped",
+    "the two rims run the same way where they are nearest: the surface of one side is turned over against the other",
+)
+_APART = "bridge_apart", "the two rims face each other nowhere along three edges, or as far as the gap is wide"
+
+
+@dataclass(frozen=True)
+class Bridge:
+    """Two loops that are joined.
+
+    Attributes
+    ----------
+    holes : (Hole, Hole)
+        In the order that was asked for; the strip counts with the first.
+    loop : (n,) int64
+        Runs around the strip, with the surface on its left.
+    facing : Facing
+    ribs : list of Rib
+        At the ends of a strip; none where both loops are joined all around.
+    """
+
+    holes: tuple[Hole, Hole]
+    loop: IntArray
+    facing: Facing
+    ribs: list[Rib] = field(default_factory=list)
+
+    @property
+    def shape(self) -> BridgeShape:
+        """`ring`: both loops are closed by it; `strip`: a stretch of each is joined, and the rest stays open."""
+        return "strip" if self.ribs else "ring"
+
+    @property
+    def gap(self) -> float:
+        """Mean distance between the rims, in mesh units."""
+        return self.facing.gap
+
+    def has_between(self, points: Vertices, normals: FloatArray) -> bool:
+        """Whether a loop lies in the gap and faces as the rims do, by its points (n, 3) and its normals (n, 3)."""
+        ways = np.zeros(len(points))
+        for rim, sight in zip(self.facing.rims, self.facing.sights, strict=True):
+            if not sight.faces.any():
+                return False
+            seen = np.flatnonzero(sight.faces)
+            distance, at = cKDTree(rim.points[seen]).query(points)
+            at = seen[at]
+            height = np.abs(np.einsum("ij,ij->i", points - rim.points[at], rim.normals[at]))
+            agreement = np.einsum("ij,ij->i", normals, rim.normals[at]).mean()
+            if (height > _MOST_HEIGHT * sight.distance[at]).any() or agreement < _LEAST_AGREEMENT:
+                return False
+            ways += distance / sight.distance[at]
+        return bool((ways <= _LONGEST_WAY).all())
+
+
+def make_bridges(
+    mesh: TriangleMesh, holes: list[Hole], pairs: list[tuple[int, int]]
+) -> tuple[list[Bridge], dict[int, Refusal]]:
+    """Join pairs of loops of a mesh.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+    holes : list of Hole
+        All of the mesh, by id.
+    pairs : list of (int, int)
+        Ids of loops with manifold rims, each named once.
+
+    Returns
+    -------
+    bridges : list of Bridge
+    refused : dict of int to (str, str)
+        Loops that can't be joined, by id: a stable code and a sentence for people.
+    """
+    bridges, refused = list[Bridge](), dict[int, Refusal]()
+    next_vertex = len(mesh.vertices)
+    for first, second in pairs:
+        made = make_bridge(mesh, holes[first], holes[second], next_vertex)
+        if isinstance(made, Bridge):
+            bridges.append(made)
+            next_vertex += sum(len(rib.vertices) for rib in made.ribs)
+        else:
+            refused |= {first: made, second: made}
+    return bridges, refused
+
+
+def ribs_of(bridges: list[Bridge]) -> Ribs:
+    """Put the ribs of some bridges together, in their order."""
+    owned = [(number, rib) for number, bridge in enumerate(bridges) for rib in bridge.ribs]
+    owner = np.array([number for number, _ in owned], np.int64)
+    vertices = np.concatenate([np.zeros((0, 3)), *(rib.vertices for _, rib in owned)])
+    triangles = np.concatenate([np.zeros((0, 3), np.int64), *(rib.triangles for _, rib in owned)])
+    n_vertices, n_triangles = (
+        [len(rows) for rows in table]
+        for table in ([rib.vertices for _, rib in owned], [rib.triangles for _, rib in owned])
+    )
+    return Ribs(vertices, triangles, np.repeat(owner, n_vertices), np.repeat(owner, n_triangles))
+
+
+def make_bridge(mesh: TriangleMesh, first: Hole, second: Hole, next_vertex: int) -> Bridge | Refusal:
+    """Join two loops of a mesh, or say why they can't be joined.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+    first, second : Hole
+        With manifold rims.
+    next_vertex : int
+        Number of the first new vertex of its ribs.
+
+    Returns
+    -------
+    Bridge or (str, str)
+        A stable code and a sentence for people where there is no bridge.
+    """
+    if len(np.intersect1d(first.loop, second.loop)):
+        return _TOUCHING
+    facing = look_across(mesh, first.loop, second.loop)
+    if not facing.runs_opposite:
+        return _FLIPPED
+    n_vertices = _expected_vertices(facing)
+    if n_vertices > MAX_NEW_VERTICES:
+        dense = f"a strip as dense as its rims takes about {n_vertices} new vertices"
+        return "too_many_vertices", f"{dense}, over {MAX_NEW_VERTICES}"
+    if shape_of(facing, first, second) == "ring":
+        return Bridge((first, second), _ring(facing, first.loop, second.loop), facing)
+    stretches = _strip(facing, first.loop, second.loop)
+    if stretches is None:
+        return _APART
+    loop, ribs = _between_ribs(mesh, facing, (first.loop, second.loop), stretches, next_vertex)
+    return Bridge((first, second), loop, facing, ribs)
+
+
+def shape_of(facing: Facing, first: Hole, second: Hole) -> BridgeShape:
+    """Tell whether loops are joined all around: outer borders are where most of each faces the other, others always."""
+    is_part = facing.share < WHOLE_SHARE and (first.is_border or second.is_border)
+    return "strip" if is_part else "ring"
+
+
+def _expected_vertices(facing: Facing) -> int:
+    """Estimate the new vertices that a strip will have: equilateral triangles as large as the rims' edges."""
+    longer = max(rim.lengths[sight.faces].sum() for rim, sight in zip(facing.rims, facing.sights, strict=True))
+    edge = np.mean([rim.edge for rim in facing.rims])
+    return round(float(longer * facing.gap / (np.sqrt(0.75) * edge**2)))
+
+
+def _ring(facing: Facing, first: IntArray, second: IntArray) -> IntArray:
+    """Join two loops by an edge between the vertices that are nearest to each other: (n_first + n_second + 2,)."""
+    one, other, sight = *facing.rims, facing.sights[0]
+    distance = length(other.points[sight.nearest] - one.points)
+    i = int(np.where(sight.faces | ~sight.faces.any(), distance, np.inf).argmin())
+    j = int(sight.nearest[i])
+    return np.concatenate([first[: i + 1], np.roll(second, -j), second[j : j + 1], first[i:]])
+
+
+def _strip(facing: Facing, first: IntArray, second: IntArray) -> tuple[IntArray, IntArray] | None:
+    """Find the stretches of two loops that face each other, in the order of each; None where there are none."""
+    (one, other), (sight, back) = facing.rims, facing.sights
+    pause = _MOST_PAUSE * facing.gap
+    here = _longest_stretch(sight.faces, one, pause)
+    is_here = np.isin(np.arange(len(first)), here)
+    there = _longest_stretch(back.faces & is_here[back.nearest], other, pause)
+    is_there = np.isin(np.arange(len(second)), there)
+    here = _longest_stretch(is_here & sight.faces & is_there[sight.nearest], one, pause)
+    if not len(here) or not len(there):
+        return None
+    end, start = _extended(facing, int(here[-1]), int(there[0]), 1)
+    begin, stop = _extended(facing, int(here[0]), int(there[-1]), -1)
+    n_here, n_there = (end - begin) % len(first) + 1, (stop - start) % len(second) + 1
+    here, there = (begin + np.arange(n_here)) % len(first), (start + np.arange(n_there)) % len(second)
+    shorter = min(one.lengths[here].sum(), other.lengths[there].sum())
+    if min(n_here, n_there) < _LEAST_STRETCH or shorter < facing.gap:
+        return None
+    return here, there
+
+
+def _between_ribs(
+    mesh: TriangleMesh, facing: Facing, loops: tuple[IntArray, IntArray], stretches: tuple[IntArray, IntArray], n: int
+) -> tuple[IntArray, list[Rib]]:
+    """Lay a rib at either end of two stretches: the loop between them, and the ribs; n is the next new vertex."""
+    here, there = stretches
+    edge = float(np.mean([rim.edge for rim in facing.rims]))
+    ribs = list[Rib]()
+    for a, b, is_forward in ((here[::-1], there, True), (here, there[::-1], False)):
+        ends = [
+            RibEnd(int(loop[at[0]]), int(loop[at[1]]), rim.normals[at[:2]])
+            for loop, at, rim in zip(loops, (a, b), facing.rims, strict=True)
+        ]
+        ribs.append(make_rib(mesh.vertices, (ends[0], ends[1]), edge, n, is_forward=is_forward))
+        n += len(ribs[-1].vertices)
+    at_end, at_begin = (rib.inner[1:-1] for rib in ribs)
+    around = [loops[0][here[1:-1]], at_end, loops[1][there[1:-1]], at_begin[::-1]]
+    return np.concatenate(around), ribs
+
+
+def _longest_stretch(wanted: BoolArray, rim: Rim, pause: float) -> IntArray:
+    """Find the longest stretch of a loop whose vertices are wanted, pauses of a length aside: positions in order."""
+    n = len(wanted)
+    places = np.flatnonzero(wanted)
+    if not len(places):
+        return places
+    along = np.concatenate([[0.0], np.cumsum(rim.lengths)])
+    following = np.append(places[1:], places[0] + n)
+    ways = along[following % n] + along[-1] * (following // n) - along[places]
+    # A rim edge is no pause, however small the gap is.
+    breaks = np.flatnonzero((ways > pause) & (following - places > 1))
+    if not len(breaks):
+        return np.arange(places[0], places[0] + n) % n
+    starts, ends = following[breaks], np.append(places[breaks[1:]], places[breaks[0]] + n)
+    starts = np.where(starts >= n, starts - n, starts)
+    ends = starts + (ends - starts) % n
+    longest = int((along[ends % n] + along[-1] * (ends // n) - along[starts]).argmax())
+    return np.arange(starts[longest], ends[longest] + 1) % n
+
+
+def _extended(facing: Facing, i: int, j: int, step: int) -> tuple[int, int]:
+    """Move the end of a strip outwards, from positions i and j of both loops, as long as its end edge stays short.
+
+    The first loop is walked by steps of 1 or -1, the second one, which runs the other way, against them.
+    """
+    one, other = facing.rims
+    longest = _LONGEST_END * max(facing.gap, one.edge, other.edge)
+    room = _MOST_EXTENSION * max(facing.gap, one.edge, other.edge)
+    for _ in range(len(one.points) + len(other.points)):
+        steps = ((one, other, i, j, step), (other, one, j, i, -step))
+        ends = [_end_after(*each, longest) for each in steps]
+        best = int(np.argmin(ends))
+        way = steps[best][0].lengths[steps[best][2]]
+        if not np.isfinite(ends[best]) or way > room:
+            break
+        room -= way / 2
+        i, j = ((i + step) % len(one.points), j) if best == 0 else (i, (j - step) % len(other.points))
+    return i, j
+
+
+def _end_after(rim: Rim, other: Rim, at: int, across: int, step: int, longest: float) -> float:
+    """Length of the end edge once a strip goes one rim edge further; infinite where that would be no good end."""
+    following = rim.points[(at + step) % len(rim.points)]
+    edge, end = following - rim.points[at], other.points[across] - rim.points[at]
+    sizes = float(np.linalg.norm(edge) * np.linalg.norm(end))
+    new = float(np.linalg.norm(other.points[across] - following))
+    is_good = abs(float(edge @ end)) <= _MOST_ACROSS * sizes and new <= longest
+    return new if is_good else np.inf
