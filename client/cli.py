@@ -16,6 +16,7 @@ from client.options import (
     DEFAULT_URL,
     AgainOption,
     AllButLargestOption,
+    BridgeOption,
     CapOption,
     CloseupsOption,
     FormatOption,
@@ -97,6 +98,7 @@ def repair(  # noqa: PLR0913 - one parameter per option of the command line
     include_borders: IncludeBordersOption = False,
     cap: CapOption = None,
     rule: RuleOption = None,
+    bridge: BridgeOption = None,
     weld_tolerance: WeldToleranceOption = None,
     patch_length: Annotated[
         float | None,
@@ -145,7 +147,7 @@ def repair(  # noqa: PLR0913 - one parameter per option of the command line
         return Task(
             source=mesh,
             output=output,
-            holes=HoleChoice(max_diameter, max_perimeter, all_but_largest, hole, include_borders, cap, rule),
+            holes=HoleChoice(max_diameter, max_perimeter, all_but_largest, hole, include_borders, cap, rule, bridge),
             method=MethodChoice(
                 method, model, patch_length, resolution, overlap, recipe, fit_steps, fit_seconds, preset, effort
             ),
@@ -180,6 +182,7 @@ def holes(  # noqa: PLR0913 - one parameter per option of the command line
     include_borders: IncludeBordersOption = False,
     cap: CapOption = None,
     rule: RuleOption = None,
+    bridge: BridgeOption = None,
     url: UrlOption = DEFAULT_URL,
     api_key: KeyOption = None,
     as_json: JsonOption = False,
@@ -189,7 +192,7 @@ def holes(  # noqa: PLR0913 - one parameter per option of the command line
     from client.spec import make_spec  # noqa: PLC0415  loads the wire schema, which --help does without
 
     screen = Screen(quiet)
-    choice = HoleChoice(max_diameter, max_perimeter, all_but_largest, None, include_borders, cap, rule)
+    choice = HoleChoice(max_diameter, max_perimeter, all_but_largest, None, include_borders, cap, rule, bridge)
     with connected(screen, url, api_key) as client:
         with screen.transfer("uploading") as progress:
             uploaded = client.upload(mesh, progress)

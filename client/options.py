@@ -67,6 +67,15 @@ RuleOption = Annotated[
         rich_help_panel="Which holes",
     ),
 ]
+BridgeOption = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--bridge",
+        metavar="ID:ID",
+        help="Join these two loops by a strip of surface, as across a cut: 3:17. Repeat for more; see `holes`.",
+        rich_help_panel="Which holes",
+    ),
+]
 
 
 OUTPUT = "What comes back"
@@ -128,6 +137,7 @@ class HoleChoice:
     include_borders: bool = False
     cap: Literal["flat"] | None = None
     rules: list[str] | None = None
+    bridges: list[str] | None = None
 
 
 @dataclass(frozen=True)

@@ -3,15 +3,17 @@
 Tested in `tests/client/test_options.py`.
 """
 
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Callable, Sequence
+from typing import Any, TypeVar
 
 from pydantic import ValidationError
 
 from client.errors import UsageError
 from client.options import HoleChoice, MethodChoice
 from jobkit.schema import SELF, JobSpec, conflict_of
-from shared_rules.rule_text import RuleTextError, read_rule
+from shared_rules.rule_text import RuleTextError, read_bridge, read_rule
+
+Value = TypeVar("Value")
 
 
 def make_spec(mesh_id: str, holes: HoleChoice, method: MethodChoice, **rest: Any) -> JobSpec:
@@ -22,7 +24,7 @@ def make_spec(mesh_id: str, holes: HoleChoice, method: MethodChoice, **rest: Any
     UsageError
         If an option is out of its range, or does not go with the method or with another option.
     """
-    chosen = _given({**vars(holes), "rules": _rules(holes.rules)})
+    chosen = _given({**vars(holes), "rules": _rules(holes.rules), "bridges": _bridges(holes.bridges)})
     values = {"mesh_id": mesh_id, "holes": chosen, **_given({"method": _method(method)}), **_given(rest)}
     try:
         spec = JobSpec.model_validate(values)
@@ -68,7 +70,15 @@ def _given(values: dict[str, Any]) -> dict[str, Any]:
 
 
 def _rules(texts: Sequence[str] | None) -> list[dict[str, Any]]:
+    return _read(texts, read_rule)
+
+
+def _bridges(texts: Sequence[str] | None) -> list[list[int]]:
+    return [list(pair) for pair in _read(texts, read_bridge)]
+
+
+def _read(texts: Sequence[str] | None, read: Callable[[str], Value]) -> list[Value]:
     try:
-        return [read_rule(text) for text in texts or ()]
+        return [read(text) for text in texts or ()]
     except RuleTextError as error:
         raise UsageError(str(error)) from error

@@ -8,7 +8,7 @@ from rich.console import Console
 from rich.table import Table
 
 if TYPE_CHECKING:
-    from jobkit.schema import Job, MeshFacts, ModelList, ModelVersion, Plan, PlannedHole
+    from jobkit.schema import Job, MeshFacts, ModelList, ModelVersion, Plan, PlannedBridge, PlannedHole
 
 
 def print_holes(console: Console, facts: "MeshFacts", plan: "Plan") -> None:
@@ -34,12 +34,26 @@ def print_holes(console: Console, facts: "MeshFacts", plan: "Plan") -> None:
         )
     console.print(table)
     console.print(f"{plan.selected:,} of {len(plan.holes):,} would be filled")
+    for bridge in plan.bridges:
+        console.print(_bridge(bridge, unit))
 
 
 def _fate(hole: "PlannedHole") -> str:
+    if hole.bridged_to is not None:
+        return f"yes: bridge to loop {hole.bridged_to}"
     if hole.joined_to is not None:
         return f"yes: joined to hole {hole.joined_to}"
     return f"yes: {hole.action}" if hole.selected else f"no: {(hole.reason or 'by rule').replace('_', ' ')}"
+
+
+def _bridge(bridge: "PlannedBridge", unit: str) -> str:
+    """Say of two loops whether they face each other and whether they would be joined."""
+    first, second = bridge.holes
+    apart = "" if bridge.gap is None else f", {bridge.gap:.4g} {unit} apart"
+    facing = f"loops {first} and {second}" + (f" face each other{apart}" if bridge.is_proposed else "")
+    if bridge.selected:
+        return f"{facing}: they would be joined"
+    return f"{facing}: not joined" + ("" if not bridge.is_proposed else f"; --bridge {first}:{second} joins them")
 
 
 def print_models(console: Console, models: "ModelList") -> None:

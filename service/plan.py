@@ -8,13 +8,14 @@ from jobkit.schema import (
     Limits,
     MeshFacts,
     Plan,
+    PlannedBridge,
     PlannedHole,
     ResolvedModel,
     SmoothMethod,
 )
 from jobkit.settings import Settings
 from service.plan_summary import summary_of
-from shared_rules.hole_selection import choose_holes, join_islands, unknown_hole
+from shared_rules.hole_selection import Choice, choose_holes, join_islands, unknown_hole
 
 
 def make_plan(spec: JobSpec, facts: MeshFacts, model: ResolvedModel, settings: Settings) -> Plan:
@@ -38,6 +39,7 @@ def make_plan(spec: JobSpec, facts: MeshFacts, model: ResolvedModel, settings: S
             reason=choice.code,
             action=choice.action,
             joined_to=choice.joined_to,
+            bridged_to=choice.bridged_to,
         )
         for hole, choice in zip(facts.holes, choices, strict=True)
     ]
@@ -48,10 +50,29 @@ def make_plan(spec: JobSpec, facts: MeshFacts, model: ResolvedModel, settings: S
         summary=f"fill {n_selected} of {len(holes)} holes",
         model=model,
         holes=holes,
+        bridges=_bridges(spec.holes, facts, choices),
         selected=n_selected,
         limits=_limits(spec, settings),
         is_exact=spec.weld_tolerance == "auto",
     )
+
+
+def _bridges(selection: HoleSelection, facts: MeshFacts, choices: list[Choice]) -> list[PlannedBridge]:
+    """List the bridges that are asked for and, behind them, those that are proposed besides."""
+    proposed = {frozenset(pair.holes): pair for pair in facts.bridges}
+    asked = {frozenset(pair): pair for pair in selection.bridges}
+    planned = []
+    for ids in dict.fromkeys([*asked, *proposed]):
+        found = proposed.get(ids)
+        planned.append(
+            PlannedBridge(
+                holes=asked[ids] if found is None else found.holes,
+                selected=ids in asked and all(choices[i].bridged_to is not None for i in ids),
+                is_proposed=found is not None,
+                **({} if found is None else found.model_dump(include={"shape", "gap", "share"})),
+            )
+        )
+    return planned
 
 
 def plan_of_task(spec: JobSpec, model: ResolvedModel, settings: Settings) -> Plan:

@@ -3,6 +3,7 @@
 The service plans by it, on the hole list of an analysis; a repair chooses by it, on the holes of its mesh.
 """
 
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import inf, sqrt
@@ -181,13 +182,10 @@ def unknown_hole(holes: Sequence[Hole], selection: HoleSelection) -> str | None:
 
 def repeated_loop(bridges: Sequence[Sequence[int]]) -> str | None:
     """Say in a sentence which loop several ends of bridges name; None where each names another."""
-    ends = [i for pair in bridges for i in pair]
-    repeated = sorted({i for i in ends if ends.count(i) > 1})
-    return (
-        f"a bridge joins two loops, and a loop has one bridge at most: {repeated[0]} is named twice"
-        if repeated
-        else None
-    )
+    counts = Counter(i for pair in bridges for i in pair)
+    repeated = min((i for i, count in counts.items() if count > 1), default=None)
+    rule = "a bridge joins two loops, and a loop has one bridge at most"
+    return None if repeated is None else f"{rule}: loop {repeated} is named twice"
 
 
 def names_fills(selection: HoleSelection) -> bool:

@@ -17,11 +17,12 @@ from jobkit.schema.jobs import (
     JobPage,
     JobResult,
     Plan,
+    PlannedBridge,
     PlannedHole,
     ResultFile,
     ResultFormat,
 )
-from jobkit.schema.meshes import BoundingBox, EncodedFacts, Hole, Mesh, MeshFacts, MeshLinks, MeshProblem
+from jobkit.schema.meshes import BoundingBox, EncodedFacts, FacingLoops, Hole, Mesh, MeshFacts, MeshLinks, MeshProblem
 from jobkit.schema.methods import (
     DEFAULT_MODEL,
     DEFAULT_NETWORK,
@@ -126,6 +127,7 @@ __all__ = [
     "Event",
     "EventPage",
     "EventType",
+    "FacingLoops",
     "FieldError",
     "FileRole",
     "Fitting",
@@ -169,6 +171,7 @@ __all__ = [
     "OutputFormat",
     "PatchOptions",
     "Plan",
+    "PlannedBridge",
     "PlannedHole",
     "Preset",
     "Problem",

@@ -194,6 +194,29 @@ class PlannedHole(Hole):
         description="Id of the hole that it lies in as the border of an island: the ring between the two is filled.",
         examples=[0],
     )
+    bridged_to: int | None = Field(
+        default=None, description="Id of the loop that the job would join it to by a bridge.", examples=[17]
+    )
+
+
+class PlannedBridge(Response):
+    """Two loops that a bridge would join, proposed or asked for."""
+
+    holes: list[int] = Field(min_length=2, max_length=2, description="Their ids.", examples=[[3, 17]])
+    selected: bool = Field(description="Whether the job would join them: whether it is asked to, and both rims allow.")
+    is_proposed: bool = Field(description="Whether the analysis found that they face each other.")
+    shape: Literal["ring", "strip"] | None = Field(
+        default=None, description="As in the mesh's facts; null where it was not proposed."
+    )
+    gap: float | None = Field(
+        default=None, ge=0, description="Mean distance between the rims, in mesh units; null like `shape`."
+    )
+    share: float | None = Field(
+        default=None,
+        ge=0,
+        le=1,
+        description="Of the rim that faces the other one, where it is smaller; null like that.",
+    )
 
 
 class Plan(Response):
@@ -205,6 +228,11 @@ class Plan(Response):
     model: ResolvedModel = Field(description="The model version it would be pinned to.")
     holes: list[PlannedHole] = Field(
         description="All holes of the mesh, widest first; empty where the task is not `fill`."
+    )
+    bridges: list[PlannedBridge] = Field(
+        default_factory=list,
+        description="Pairs of loops that face each other, and those that the job is asked to join. A proposal is not "
+        "carried out unless `holes.bridges` names it.",
     )
     is_exact: bool = Field(
         default=True,

@@ -1,6 +1,6 @@
 """Meshes and their holes as clients see them. Lengths are in mesh units; `unit` names them where the file does."""
 
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
@@ -67,6 +67,20 @@ class Hole(Response):
         return values
 
 
+class FacingLoops(Response):
+    """Two loops that face each other across a gap. A job joins them only where its `holes.bridges` names them."""
+
+    holes: list[int] = Field(min_length=2, max_length=2, description="Their ids, the wider first.", examples=[[3, 17]])
+    shape: Literal["ring", "strip"] = Field(
+        description="`ring`: they face each other all around; `strip`: two outer borders do along a part of them.",
+        examples=["ring"],
+    )
+    gap: float = Field(ge=0, description="Mean distance between the rims, in mesh units.", examples=[0.8])
+    share: float = Field(
+        ge=0, le=1, description="Of the rim that faces the other one, where it is smaller.", examples=[0.97]
+    )
+
+
 class EncodedFacts(Response):
     """What the header of a `.qpz` file says."""
 
@@ -99,6 +113,9 @@ class MeshFacts(Response):
         default=None, ge=0, description="Mean length of an edge, in mesh units.", examples=[0.02]
     )
     encoded: EncodedFacts | None = Field(default=None, description="What a `.qpz` file says of itself; else null.")
+    bridges: list[FacingLoops] = Field(
+        default_factory=list, description="Proposals: pairs of loops that `holes.bridges` of a job could join."
+    )
     holes: list[Hole] = Field(description="Boundary loops, widest first.")
     warnings: list[str] = Field(
         default_factory=list, description="What the file holds more than once, or the wrong way round, for people."

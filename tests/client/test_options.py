@@ -151,3 +151,10 @@ def test_options_that_exclude_each_other_are_told_before_anything_is_sent(holes:
 def test_a_rule_that_can_not_be_read_is_a_usage_error(rule: str) -> None:
     with pytest.raises(UsageError):
         make_spec(MESH_ID, HoleChoice(rules=[rule]), MethodChoice())
+
+
+def test_bridges_are_read_and_what_is_none_is_a_usage_error() -> None:
+    assert make_spec(MESH_ID, HoleChoice(bridges=["3:17", "0:4"]), MethodChoice()).holes.bridges == [[3, 17], [0, 4]]
+    for texts, message in ((["3"], "like 3:17"), (["3:3"], "named twice"), (["3:4", "4:5"], "named twice")):
+        with pytest.raises(UsageError, match=message):
+            make_spec(MESH_ID, HoleChoice(bridges=texts), MethodChoice())

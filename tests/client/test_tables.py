@@ -29,21 +29,32 @@ def test_every_hole_says_whether_it_would_be_filled_and_why_not() -> None:
         {**HOLE, "id": 0, "selected": True, "action": "model"},
         {**HOLE, "id": 1, "selected": False, "reason": "too_wide"},
         {**HOLE, "id": 2, "selected": False, "joined_to": 0},
+        {**HOLE, "id": 3, "selected": True, "action": "model", "bridged_to": 4},
+    ]
+    bridges = [
+        {"holes": [3, 4], "selected": True, "is_proposed": False},
+        {"holes": [0, 1], "selected": False, "is_proposed": True, "shape": "ring", "gap": 0.25, "share": 0.9},
     ]
     model = {"requested": "smooth", "kind": "none"}
     limits = {"time_s": 60, "memory_mb": 1024}
-    plan = Plan.model_validate({"mesh_id": "0" * 64, "model": model, "holes": holes, "selected": 1, "limits": limits})
+    values = {"holes": holes, "bridges": bridges, "selected": 1, "limits": limits}
+    plan = Plan.model_validate({"mesh_id": "0" * 64, "model": model, **values})
     console, text = printed()
     print_holes(console, FACTS, plan)
     lines = [line.rstrip() for line in text.getvalue().splitlines()]
-    assert lines[0] == "1,000 vertices, 1,998 triangles, 3 holes; lengths in mesh units"
-    assert [line.split("hole  ")[1].split("  ")[-1] for line in lines[2:5]] == [
+    assert lines[0] == "1,000 vertices, 1,998 triangles, 4 holes; lengths in mesh units"
+    assert [line.split("hole  ")[1].split("  ")[-1] for line in lines[2:6]] == [
         "yes: model",
         "no: too wide",
         "yes: joined to hole 0",
+        "yes: bridge to loop 4",
     ]
-    assert all("1 2.5 -3" in line for line in lines[2:5])
-    assert lines[5] == "1 of 3 would be filled"
+    assert all("1 2.5 -3" in line for line in lines[2:6])
+    assert lines[6:] == [
+        "1 of 4 would be filled",
+        "loops 3 and 4: they would be joined",
+        "loops 0 and 1 face each other, 0.25 mesh units apart: not joined; --bridge 0:1 joins them",
+    ]
 
 
 def test_a_job_shows_its_error_or_else_its_stage() -> None:

@@ -19,6 +19,7 @@ from quadpatch.recipes.result import HoleResult
 from quadpatch.repair import inspect_file
 from quadpatch.types import TriangleMesh
 from service.plan import make_plan
+from tests.quadpatch.filling.gaps import cut_torus
 from tests.quadpatch.shapes import flipped, joined, moved, open_grid, plate_with_window, write_ply
 from worker.facts import mesh_facts
 
@@ -112,3 +113,26 @@ def test_the_border_of_an_island_in_two_holes_lies_in_the_narrower_one_first(tmp
     diameters = [[round(holes[i]["diameter"]) for i in hole["lies_in"]] for hole in holes if hole["lies_in"]]
     assert diameters == [[14], [6, 14]]
     assert np.all([hole["kind"] == "border" for hole in holes if hole["lies_in"]])
+
+
+def test_a_plan_lists_bridges_that_are_proposed_and_joins_those_that_are_asked_for(tmp_path: Path) -> None:
+    gap = cut_torus(n_around=90)
+    asked, other = gap.pairs
+    for pairs in ((), (asked[::-1],), ((asked[0], other[0]),)):
+        options = HoleOptions(bridges=pairs, include_borders=False)
+        plan = plan_of(gap.mesh, options, tmp_path, {"method": "smooth"})
+        assert {tuple(bridge.holes) for bridge in plan.bridges if bridge.is_proposed} == {asked, other}
+        assert [set(bridge.holes) for bridge in plan.bridges if bridge.selected] == [set(pair) for pair in pairs]
+        for bridge in plan.bridges:
+            assert (bridge.gap is not None) == (bridge.share is not None) == bridge.is_proposed
+        assert [(hole.id, hole.bridged_to) for hole in plan.holes if hole.bridged_to is not None] == sorted(
+            [*pairs, *(pair[::-1] for pair in pairs)]
+        )
+        results = inpaint(gap.mesh, None, RepairOptions(options)).results
+        assert [hole.selected for hole in plan.holes] == [result.verdict != "skipped" for result in results]
+
+
+def test_facts_of_earlier_versions_have_no_proposals(tmp_path: Path) -> None:
+    facts = inspect_file(write_ply(tmp_path / "scan.ply", cut_torus(n_around=90).mesh))
+    assert len(mesh_facts(facts).bridges) == 2
+    assert mesh_facts({name: value for name, value in facts.items() if name != "bridges"}).bridges == []

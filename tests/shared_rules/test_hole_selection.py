@@ -45,6 +45,9 @@ RULES = st.lists(
     ),
     max_size=3,
 ).map(tuple)
+BRIDGES = st.permutations(range(8)).flatmap(
+    lambda ids: st.integers(0, 3).map(lambda n: tuple((ids[2 * i], ids[2 * i + 1]) for i in range(n)))
+)
 OPTIONS = st.builds(
     HoleOptions,
     MAYBE_LENGTHS,
@@ -54,6 +57,7 @@ OPTIONS = st.builds(
     st.booleans(),
     st.sampled_from([None, *get_args(Cap)]),
     RULES,
+    BRIDGES,
 )
 
 
@@ -132,3 +136,22 @@ def test_an_island_is_joined_to_the_first_of_its_hosts_that_is_filled(
     joined = join_islands(hosts, [Choice("flat"), Choice(None, "border", "outer border")])
     assert [choice.joined_to for choice in joined] == joined_to
     assert [choice.action for choice in joined] == ["flat", None if joined_to[1] is None else "flat"]
+
+
+@given(measures=HOLES, options=OPTIONS)
+def test_loops_of_bridges_are_joined_whatever_else_is_said_of_them(
+    measures: list[dict[str, Any]], options: HoleOptions
+) -> None:
+    holes = [method.Hole(i, np.zeros(4, np.int64), planarity=0.0, **m) for i, m in enumerate(with_all_ids(measures))]
+    choices = join_islands([[0]] * 8, choose_holes(holes, options, 10.0))
+    ends = {i for pair in options.bridges for i in pair}
+    for first, second in options.bridges:
+        is_possible = holes[first].is_manifold and holes[second].is_manifold
+        for i, other in ((first, second), (second, first)):
+            if is_possible:
+                assert choices[i] == Choice("model", bridged_to=other)
+            else:
+                assert choices[i].bridged_to is None
+                assert choices[i].code in {"non_manifold_rim", None}
+    assert all(choice.bridged_to is None for i, choice in enumerate(choices) if i not in ends)
+    assert all(choice.joined_to not in ends for choice in choices if choice.joined_to is not None)

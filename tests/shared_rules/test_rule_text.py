@@ -1,7 +1,7 @@
 import pytest
 
 from quadpatch.options import HoleRule
-from shared_rules.rule_text import RuleTextError, read_rule
+from shared_rules.rule_text import RuleTextError, read_bridge, read_rule
 
 
 @pytest.mark.parametrize(
@@ -22,3 +22,14 @@ def test_a_rule_is_read(text: str, rule: HoleRule) -> None:
 def test_what_is_no_rule_is_refused_with_an_example(text: str) -> None:
     with pytest.raises(RuleTextError, match="write it like max_diameter=5"):
         read_rule(text)
+
+
+@pytest.mark.parametrize(("text", "pair"), [("3:17", (3, 17)), (" 0 : 1 ", (0, 1))])
+def test_a_bridge_is_read(text: str, pair: tuple[int, int]) -> None:
+    assert read_bridge(text) == pair
+
+
+@pytest.mark.parametrize("text", ["", "3", "3:", "3:4:5", "-1:2", "a:b", "1.5:2", "\u0663:4"])
+def test_what_is_no_bridge_is_refused_with_an_example(text: str) -> None:
+    with pytest.raises(RuleTextError, match="like 3:17"):
+        read_bridge(text)

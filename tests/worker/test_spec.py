@@ -63,7 +63,7 @@ def test_every_option_of_a_job_reaches_the_method() -> None:
         },
         holes={
             **{"max_diameter": 9.0, "max_perimeter": 30.0, "all_but_largest": True, "ids": [4, 1]},
-            **{"include_borders": True, "cap": "flat"},
+            **{"include_borders": True, "cap": "flat", "bridges": [[3, 17]]},
             "rules": [
                 {"action": "skip", "ids": [4]},
                 {"action": "flat", "kind": "open_end", "min_diameter": 1.0, "max_diameter": 2.0, "max_perimeter": 3.0},
@@ -73,7 +73,7 @@ def test_every_option_of_a_job_reaches_the_method() -> None:
     )
     rules = (HoleRule("skip", (4,)), HoleRule("flat", None, "open_end", 1.0, 2.0, 3.0))
     assert RepairOptions.from_dict(method_options(job, LIMITS.time_s)) == RepairOptions(
-        HoleOptions(9.0, 30.0, True, (4, 1), True, "flat", rules), PatchOptions(2.5, 16, 3), 7
+        HoleOptions(9.0, 30.0, True, (4, 1), True, "flat", rules, ((3, 17),)), PatchOptions(2.5, 16, 3), 7
     )
     by_paper = spec(method={"method": "dictionary", "model": "self", "recipe": "paper"})
     assert RepairOptions.from_dict(method_options(by_paper, LIMITS.time_s)) == RepairOptions(recipe="paper")

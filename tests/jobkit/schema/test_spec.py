@@ -82,6 +82,17 @@ def test_what_is_not_in_the_contract_is_refused(change: dict[str, Any]) -> None:
         JobSpec.model_validate(MESH | change)
 
 
+def test_bridges_are_pairs_of_loops_each_named_once() -> None:
+    pairs = [[3, 17], [0, 4]]
+    assert JobSpec.model_validate(MESH | {"holes": {"bridges": pairs}}).holes.bridges == pairs
+    wrong: list[Any] = [[[3, 3]], [[3, 17], [17, 4]], [[3]], [[3, 4, 5]], [[-1, 2]], [["3", 4]], [3, 4], "3:4", None]
+    for bridges in wrong:
+        with pytest.raises(ValidationError):
+            JobSpec.model_validate(MESH | {"holes": {"bridges": bridges}})
+    with pytest.raises(ValidationError, match="drop one of the two"):
+        JobSpec.model_validate(MESH | {"holes": {"bridges": pairs}, "weld_tolerance": 0.5})
+
+
 def test_ids_of_holes_go_with_the_tolerance_that_they_were_found_with() -> None:
     ids = {"ids": [0, 2]}
     assert JobSpec.model_validate(MESH | {"holes": ids, "weld_tolerance": "auto"}).holes.ids == [0, 2]

@@ -128,6 +128,15 @@ def test_the_identity_of_a_fill_is_what_it_was_before_there_were_tasks() -> None
         "mesh_name",
     ]
     assert identity_of(JobSpec.model_validate(MESH | {"task": "fill", "seed": 3})) == text
+    assert "bridges" not in json.loads(text)["holes"]
+
+
+def test_bridges_are_part_of_the_identity_where_there_are_any() -> None:
+    plain, *bridged = (
+        identity_of(JobSpec.model_validate(MESH | {"holes": {"bridges": pairs}})) for pairs in ([], [[0, 1]], [[1, 0]])
+    )
+    assert identity_of(JobSpec.model_validate(MESH)) == plain
+    assert len({plain, *bridged}) == 3
 
 
 def test_other_tasks_have_an_identity_of_their_own() -> None:

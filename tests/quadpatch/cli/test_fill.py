@@ -17,6 +17,7 @@ from quadpatch.cli.app import app
 from quadpatch.cli.fill import summary
 from quadpatch.formats.reading import read_scan
 from quadpatch.preview import drawing
+from tests.quadpatch.filling.gaps import halves
 from tests.quadpatch.shapes import bumpy_plate, punched, sphere, write_ply
 from tests.waiting import GUARD_S
 
@@ -189,6 +190,7 @@ def test_flags_about_patches_reach_them(scan_file: Path, tmp_path: Path) -> None
             "include_borders": False,
             "cap": None,
             "rules": [],
+            "bridges": [],
         },
         "patches": {"length": 0.5, "resolution": 18, "overlap": 1, "preset": None},
         "weld_tolerance": "auto",
@@ -266,6 +268,10 @@ def test_holes_are_listed_for_people(scan_file: Path) -> None:
         (["fill", "SCAN", "-o", "out.ply", "--rule", "max_diameter=wide:flat"], "invalid_option"),
         (["fill", "SCAN", "-o", "out.ply", "--rule", "colour=red:flat"], "invalid_option"),
         (["fill", "SCAN", "-o", "out.ply", "--rule", "kind=window:flat"], "invalid_option"),
+        (["fill", "SCAN", "-o", "out.ply", "--bridge", "1"], "invalid_option"),
+        (["fill", "SCAN", "-o", "out.ply", "--bridge", "1:99"], "invalid_option"),
+        (["fill", "SCAN", "-o", "out.ply", "--bridge", "1:2", "--bridge", "2:3"], "invalid_option"),
+        (["fill", "SCAN", "-o", "out.ply", "--bridge", "1:2", "--recipe", "paper"], "invalid_option"),
         (["fill", "SCAN", "-o", "out.ply", "--patch-length", "inf"], "invalid_option"),
         (["fill", "SCAN", "-o", "out.ply", "--resolution", "4"], "invalid_option"),
         (["fill", "SCAN", "-o", "out.ply", "--weld-tolerance", "near"], "invalid_option"),
@@ -361,3 +367,24 @@ def test_the_module_runs_as_a_process(scan_file: Path, tmp_path: Path) -> None:
     assert done.returncode == 0, done.stderr
     assert done.stdout == ""
     assert read_scan(tmp_path / "out.stl").format == "stl"
+
+
+def test_a_cut_is_listed_and_closed_only_when_asked_for(tmp_path: Path) -> None:
+    gap = halves(0.4, 4)
+    scan, report = write_ply(tmp_path / "cut.ply", gap.mesh), tmp_path / "report.json"
+    facts = json.loads(run("holes", scan, "--json").stdout)
+    assert [(row["holes"], row["shape"]) for row in facts["bridges"]] == [([0, 1], "ring")]
+    assert "--bridge 0:1 joins them; by default they are not joined" in " ".join(run("holes", scan).stderr.split())
+    plain: list[str | Path] = ["fill", scan, "-o", tmp_path / "out.ply", "--model", "smooth", "--report", report]
+    assert run(*plain).exit_code == 0
+    assert verdicts(report) == ["skipped"] * 2
+    result = run(*plain, "--bridge", "1:0", "--closeups", tmp_path / "closeups")
+    assert result.exit_code == 0, result.output
+    rows = json.loads(report.read_text())["holes"]
+    assert [row["verdict"] for row in rows] == ["filled_smooth"] * 2
+    assert [row["code"] for row in rows] == ["bridged", "geometry"]
+    assert rows[0]["bridge"] == rows[1]["bridge"]
+    assert (rows[0]["bridge"]["holes"], rows[0]["bridge"]["shape"]) == ([1, 0], "ring")
+    assert rows[0]["bridge"]["gap"] == pytest.approx(0.45, abs=0.05)
+    assert "joined by the bridge 1:0" in " ".join(result.stderr.split())
+    assert [path.name for path in (tmp_path / "closeups").iterdir()] == ["hole_1.png"]

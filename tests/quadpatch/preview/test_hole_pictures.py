@@ -5,10 +5,13 @@ import pytest
 from PIL import Image
 
 from quadpatch.mesh.holes import find_holes
+from quadpatch.options import HoleOptions, RepairOptions
 from quadpatch.preview.hole_pictures import NumberedHole, draw_hole, mean_normal
 from quadpatch.preview.pair import TINT, Pair, filled_pair
 from quadpatch.preview.shading import BACK
+from quadpatch.recipes.default import inpaint
 from quadpatch.types import FloatArray, TriangleMesh
+from tests.quadpatch.filling.gaps import halves
 from tests.quadpatch.preview.test_sheet import share_of_hue
 from tests.quadpatch.shapes import cylinder, punched, sphere
 
@@ -107,3 +110,18 @@ def test_punched_holes_of_a_ball_face_outwards() -> None:
     for hole in holes:
         rim = mesh.vertices[hole.loop]
         assert mean_normal(rim) @ rim.mean(axis=0) > 0
+
+
+def test_a_bridge_shows_both_its_numbers_and_rims_and_its_strip(tmp_path: Path) -> None:
+    gap = halves(0.4, 4)
+    repair = inpaint(gap.mesh, None, RepairOptions(HoleOptions(bridges=((0, 1),))))
+    filled, holes = repair.filled, find_holes(gap.mesh)
+    pair = filled_pair(filled.mesh, filled.invented_triangles)
+    rims = [gap.mesh.vertices[hole.loop] for hole in holes]
+    joined = NumberedHole(0, rims[0], NumberedHole(1, rims[1]), np.array([1.0, 0.0, 0.0]))
+    assert (joined.title, joined.number) == ("bridge 0:1", "0:1")
+    (tmp_path / "bridge.png").write_bytes(draw_hole(pair, joined))
+    whole = picture(tmp_path / "bridge.png")
+    before, after = whole[:, : whole.shape[1] // 2], whole[:, whole.shape[1] // 2 :]
+    assert share_of_hue(before, TINT) == 0
+    assert share_of_hue(after, TINT) > 0.02

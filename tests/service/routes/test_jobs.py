@@ -92,6 +92,7 @@ CONFLICTS: list[dict[str, Any]] = [
     PAPER | {"holes": {"cap": "flat"}},
     PAPER | {"holes": {"rules": [{"action": "skip", "ids": [1]}, {"action": "smooth", "max_diameter": 5.0}]}},
     PAPER | {"holes": {"rules": [{"action": "flat", "kind": "open_end"}]}},
+    PAPER | {"holes": {"bridges": [[0, 1]]}},
     {"method": SMOOTH, "weld_tolerance": 0.5, "holes": {"rules": [{"action": "skip", "ids": [1]}]}},
 ]
 
@@ -110,7 +111,7 @@ def test_options_that_exclude_each_other_are_refused_wherever_a_job_is_made(
     ]
     for answer in answers:
         assert (answer.status_code, answer.json()["code"]) == (422, "options_conflict")
-        assert answer.json()["detail"].startswith(("holes.cap and the actions", "ids of holes.rules"))
+        assert answer.json()["detail"].startswith(("holes.cap, holes.bridges and the actions", "ids of"))
     assert [job["id"] for job in client.get("/v1/jobs").json()["items"]] == [first]
 
 
@@ -138,12 +139,19 @@ def test_a_network_can_be_fitted_to_the_mesh_and_one_that_is_taken_as_it_is_can_
 def test_a_hole_that_is_not_there_is_refused_once_the_holes_are_known(
     client: TestClient, mesh_id: str, analyse: Callable[[str], None]
 ) -> None:
-    spec = {"mesh_id": mesh_id, "method": SMOOTH, "holes": {"ids": [0, 7]}}
-    assert client.post("/v1/jobs", json=spec).status_code == 202
+    specs = [{"mesh_id": mesh_id, "method": SMOOTH, "holes": h} for h in ({"ids": [0, 7]}, {"bridges": [[0, 7]]})]
+    assert {client.post("/v1/jobs", json=spec).status_code for spec in specs} == {202}
     analyse(mesh_id)
-    answer = client.post("/v1/jobs", json=spec)
-    assert (answer.status_code, answer.json()["code"]) == (409, "unknown_hole")
-    assert "id 7" in answer.json()["detail"]
+    for spec in specs:
+        answer = client.post("/v1/jobs", json=spec)
+        assert (answer.status_code, answer.json()["code"]) == (409, "unknown_hole")
+        assert "id 7" in answer.json()["detail"]
+
+
+def test_a_loop_in_two_bridges_is_refused(client: TestClient, mesh_id: str) -> None:
+    answer = client.post("/v1/jobs", json={"mesh_id": mesh_id, "holes": {"bridges": [[0, 1], [1, 2]]}})
+    assert (answer.status_code, answer.json()["code"]) == (422, "invalid_request")
+    assert "loop 1 is named twice" in answer.text
 
 
 def test_a_dry_run_says_what_would_happen_and_does_nothing(
