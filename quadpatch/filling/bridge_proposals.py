@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
-from quadpatch.filling.bridges import BridgeShape, shape_of
+from quadpatch.filling.bridges import BridgeShape, shape_of, touch
 from quadpatch.filling.facing import Facing, look_from
 from quadpatch.filling.islands import loop_centres, loop_vector_areas
 from quadpatch.mesh.holes import Hole
@@ -30,7 +30,7 @@ _MOST_OFFSET = 1.0
 _OPPOSITE = -0.5
 # Of borders that are joined along a part: least share of one rim, and widest gap in lengths of that part.
 STRIP_SHARE = 0.15
-STRIP_GAP = 0.2
+STRIP_GAP = 0.15
 # Mean cosine between the normals across the gap, at least.
 LEAST_AGREEMENT = 0.5
 # Borders that are compared with each other, the widest, and pairs of loops that are looked at in all.
@@ -84,6 +84,8 @@ def propose_bridges(
     found = []
     for i, j in pairs:
         first, second = eligible[i], eligible[j]
+        if touch(first, second):
+            continue
         points = mesh.vertices[first.loop], mesh.vertices[second.loop]
         facing = look_from(points, (normals.of_hole[first.id], normals.of_hole[second.id]))
         shape = shape_of(facing, first, second)

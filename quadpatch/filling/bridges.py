@@ -22,6 +22,9 @@ from shared_rules.hole_selection import MAX_NEW_VERTICES
 
 BridgeShape = Literal["ring", "strip"]
 
+# The fill of a strip is as unsure as that of a hole so many times as wide as the gap: a strip is held at two sides, a
+# disc all around. On bands taken out of scans, expected errors come out right by this (`benchmarks/bridges.py`).
+WIDTH_OF_STRIP = 2.0
 # Borders of which less than this share faces the other rim are joined along the stretch that does.
 WHOLE_SHARE = 0.6
 # Stretches of a rim that are apart by less than so many gaps are one.
@@ -79,6 +82,11 @@ class Bridge:
     def gap(self) -> float:
         """Mean distance between the rims, in mesh units."""
         return self.facing.gap
+
+    @property
+    def width(self) -> float:
+        """Diameter of the holes whose fills are as unsure as the strip, in mesh units."""
+        return WIDTH_OF_STRIP * self.gap
 
     def has_between(self, points: Vertices, normals: FloatArray) -> bool:
         """Whether a loop lies in the gap and faces as the rims do, by its points (n, 3) and its normals (n, 3)."""
@@ -157,7 +165,7 @@ def make_bridge(mesh: TriangleMesh, first: Hole, second: Hole, next_vertex: int)
     Bridge or (str, str)
         A stable code and a sentence for people where there is no bridge.
     """
-    if len(np.intersect1d(first.loop, second.loop)):
+    if touch(first, second):
         return _TOUCHING
     facing = look_across(mesh, first.loop, second.loop)
     if not facing.runs_opposite:
@@ -173,6 +181,11 @@ def make_bridge(mesh: TriangleMesh, first: Hole, second: Hole, next_vertex: int)
         return _APART
     loop, ribs = _between_ribs(mesh, facing, (first.loop, second.loop), stretches, next_vertex)
     return Bridge((first, second), loop, facing, ribs)
+
+
+def touch(first: Hole, second: Hole) -> bool:
+    """Whether two loops share a vertex."""
+    return len(np.intersect1d(first.loop, second.loop)) > 0
 
 
 def shape_of(facing: Facing, first: Hole, second: Hole) -> BridgeShape:

@@ -98,20 +98,22 @@ class Sight:
 
     Attributes
     ----------
-    distance : (n,) float64
-        To the other rim, in mesh units.
     nearest : (n,) int64
-        The vertex there.
+        The vertex of the other rim that is nearest, if possible where that runs the other way.
+    distance : (n,) float64
+        To the other rim there, in mesh units.
     faces : (n,) bool
         Whether both rims face each other there.
-    along, normals : (n,) float64
-        Cosines between the directions of both rims, and between the normals of their surfaces.
+    along : (n,) float64
+        Cosine between the directions of both rims at the vertex that is nearest wherever that runs.
+    normals : (n,) float64
+        Cosine between the normals of both surfaces.
     share : float
         Of the rim that faces the other one.
     """
 
-    distance: FloatArray
     nearest: IntArray
+    distance: FloatArray
     faces: BoolArray
     along: FloatArray
     normals: FloatArray
@@ -173,20 +175,24 @@ def look_from(points: tuple[Vertices, Vertices], normals: tuple[FloatArray, Floa
     """Look from each of two closed loops at the other, by their points (n, 3) and the normals (n, 3) there."""
     width = min(float(np.quantile(cKDTree(b).query(a)[0], _NEAR_SHARE)) for a, b in (points, points[::-1]))
     one, other = (Rim.of(p, n, width) for p, n in zip(points, normals, strict=True))
-    return Facing((one, other), (_sight(one, other), _sight(other, one)))
+    return Facing((one, other), (_sight(one, other, width), _sight(other, one, width)))
 
 
-def _sight(rim: Rim, other: Rim) -> Sight:
-    nearest = np.asarray(cKDTree(other.points).query(rim.points)[1], np.int64)
+def _sight(rim: Rim, other: Rim, width: float) -> Sight:
+    closest = np.asarray(cKDTree(other.points).query(rim.points)[1], np.int64)
+    along = np.einsum("ij,ij->i", rim.tangents, other.tangents[closest])
+    # Of a thin tube the wall that is closest may be the one opposite: what runs the other way counts as nearer.
+    towards, wanted = (np.hstack([one.points, s * width * one.tangents]) for one, s in ((other, 1.0), (rim, -1.0)))
+    nearest = np.asarray(cKDTree(towards).query(wanted)[1], np.int64)
     way, distance = _way_to(rim.points, other.points, nearest)
-    along = np.einsum("ij,ij->i", rim.tangents, other.tangents[nearest])
     ahead = np.einsum("ij,ij->i", rim.outward, way)
     met = -np.einsum("ij,ij->i", other.outward[nearest], way)
     # Of rims that all but touch, the way between them points anywhere.
     least = np.where(distance < _TOUCHING * min(rim.edge, other.edge), -np.inf, _LEAST_COSINE * distance)
-    faces = (along < -_LEAST_COSINE) & (ahead >= least) & (met >= least)
+    runs_back = np.einsum("ij,ij->i", rim.tangents, other.tangents[nearest]) < -_LEAST_COSINE
+    faces = runs_back & (ahead >= least) & (met >= least)
     normals = np.einsum("ij,ij->i", rim.normals, other.normals[nearest])
-    return Sight(distance, nearest, faces, along, normals, float(rim.lengths[faces].sum() / rim.perimeter))
+    return Sight(nearest, distance, faces, along, normals, float(rim.lengths[faces].sum() / rim.perimeter))
 
 
 def _way_to(points: Vertices, rim: Vertices, nearest: IntArray) -> tuple[FloatArray, FloatArray]:

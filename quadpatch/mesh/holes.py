@@ -26,20 +26,20 @@ class Selection:
         Id of each chosen hole to `model`, `smooth` or `flat`.
     bridges : list of (int, int)
         Ids of loops that are to be joined, which are not among the chosen ones.
-    gaps : dict of int to float
-        Widths of the gaps that fills of some chosen loops cross, in mesh units, by id.
+    bridge_widths : dict of int to float
+        Widths of bridges, in mesh units, by the id of the chosen loop that each starts from.
     """
 
     chosen: list[Hole]
     skipped: dict[int, tuple[str, str]]
     actions: dict[int, HoleAction] = field(default_factory=dict)
     bridges: list[tuple[int, int]] = field(default_factory=list)
-    gaps: dict[int, float] = field(default_factory=dict)
+    bridge_widths: dict[int, float] = field(default_factory=dict)
 
     @property
     def widths(self) -> list[float]:
-        """Widths of what the chosen loops' fills cross, in mesh units: diameters of holes, gaps of bridges."""
-        return [self.gaps.get(hole.id, hole.diameter) for hole in self.chosen]
+        """Widths of the chosen ones, in mesh units: diameters of holes, or those of bridges."""
+        return [self.bridge_widths.get(hole.id, hole.diameter) for hole in self.chosen]
 
 
 def select_holes(holes: list[Hole], options: HoleOptions, diagonal: float) -> Selection:

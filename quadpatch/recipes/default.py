@@ -165,7 +165,7 @@ class _Task:
 
     @cached_property
     def diameters(self) -> list[float]:
-        """Diameters of the rims, and gaps of bridges, in mesh units."""
+        """Diameters of the rims, or widths of bridges, in mesh units."""
         return self.closed.widths
 
     def typical_diameter(self) -> float | None:
@@ -239,8 +239,8 @@ def _filled_ones(selection: Selection, rims: JoinedRims) -> Selection:
     """Count islands and the far ends of bridges among the holes without a fill of their own."""
     far_ends = [bridge.holes[1].id for bridge in rims.bridges.values()]
     joined = dict.fromkeys([*rims.host_of, *far_ends, *rims.refused], ("joined", ""))
-    gaps = {first: bridge.gap for first, bridge in rims.bridges.items()}
-    return replace(selection, chosen=rims.chosen, skipped={**selection.skipped, **joined}, gaps=gaps)
+    widths = {first: bridge.width for first, bridge in rims.bridges.items()}
+    return replace(selection, chosen=rims.chosen, skipped={**selection.skipped, **joined}, bridge_widths=widths)
 
 
 def _share_of_calibration(task: _Task) -> float:
