@@ -32,7 +32,7 @@ _MOST_PAUSE = 2.0
 # An edge at the end of a strip is at most so many times as long as the gap or an edge of the rim, and no rim edge that
 # a strip is extended by points across the gap more than this (cosine).
 _LONGEST_END = 1.5
-_MOST_ACROSS = 0.7
+_MOST_ACROSS = 0.8
 # A strip is at most so many gaps longer at each end than what faces the other rim for sure.
 _MOST_EXTENSION = 2.0
 # A rib takes one edge at either end of a stretch of so many vertices, and a hole is left between the ribs.

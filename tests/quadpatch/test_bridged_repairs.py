@@ -87,10 +87,10 @@ def test_a_torn_sheet_becomes_one_piece_with_one_border() -> None:
     bridge = repair.results[1].bridge
     assert bridge is not None
     assert (bridge.shape, [hole.id for hole in bridge.holes]) == ("strip", [1, 0])
-    # The new border goes on along y = 1 and y = -1, where the old one runs, but for an edge.
+    # The new border goes on along y = 1 and y = -1, where the old one runs.
     new = border.loop[border.loop >= repair.filled.n_measured_vertices]
     assert len(new) > 0
-    assert np.abs(np.abs(repair.filled.mesh.vertices[new, 1]) - 1).max() < 0.05
+    assert np.abs(np.abs(repair.filled.mesh.vertices[new, 1]) - 1).max() < 0.002
 
 
 @pytest.mark.parametrize("seed", [1, 2, 3])
