@@ -7,7 +7,7 @@ from quadpatch.filling.islands import JoinedRims, loop_around, loop_centres, loo
 from quadpatch.mesh.holes import Hole
 from quadpatch.mesh.normals import normals_at
 from quadpatch.mesh.pieces import find_pieces
-from quadpatch.types import TriangleMesh
+from quadpatch.types import FloatArray, TriangleMesh
 
 
 def join_bridges(
@@ -28,8 +28,10 @@ def join_bridges(
     """
     ends = {hole.id for bridge in bridges for hole in bridge.holes}
     host_of, loops = dict(rims.host_of), list(rims.loops)
+    boxes = np.array([(hole.low, hole.high) for hole in holes]) if bridges else np.zeros((0, 2, 3))
     for bridge in bridges:
-        islands = [hole for hole in _loops_between(mesh, holes, bridge) if hole.id not in ends | host_of.keys()]
+        near = [holes[i] for i in _near(mesh, boxes, bridge)]
+        islands = [hole for hole in _loops_between(mesh, near, bridge) if hole.id not in ends | host_of.keys()]
         host_of |= {hole.id: bridge.holes[0].id for hole in islands}
         loops.append(loop_around(mesh.vertices, bridge.loop, [hole.loop for hole in islands]))
     firsts = [bridge.holes[0] for bridge in bridges]
@@ -37,17 +39,20 @@ def join_bridges(
     return JoinedRims(loops, [*rims.chosen, *firsts], host_of, by_first, refused)
 
 
-def _loops_between(mesh: TriangleMesh, holes: list[Hole], bridge: Bridge) -> list[Hole]:
-    """Find the borders of loose pieces that lie in the gap of a bridge."""
-    low, high = (bound(mesh.vertices[bridge.loop], axis=0) for bound in (np.min, np.max))
-    low, high = low - bridge.gap, high + bridge.gap
-    near = [hole for hole in holes if hole.is_manifold and (hole.low >= low).all() and (hole.high <= high).all()]
-    if not near:
-        return []
+def _near(mesh: TriangleMesh, boxes: FloatArray, bridge: Bridge) -> list[int]:
+    """Find the loops whose boxes (n, 2, 3) lie in the box around a bridge, its own among them."""
+    points = mesh.vertices[bridge.loop]
+    low, high = points.min(axis=0) - bridge.gap, points.max(axis=0) + bridge.gap
+    inside = (boxes[:, 0] >= low).all(axis=1) & (boxes[:, 1] <= high).all(axis=1)
+    return np.flatnonzero(inside).tolist()
+
+
+def _loops_between(mesh: TriangleMesh, near: list[Hole], bridge: Bridge) -> list[Hole]:
+    """Find the borders of loose pieces that lie in the gap of a bridge, among some loops."""
     piece = find_pieces(mesh, []).of_vertex
     own = [piece[hole.loop[0]] for hole in bridge.holes]
     found = []
-    for hole in (hole for hole in near if piece[hole.loop[0]] not in own):
+    for hole in (hole for hole in near if hole.is_manifold and piece[hole.loop[0]] not in own):
         normals = normals_at(mesh.vertices, mesh.triangles, hole.loop)
         area = loop_vector_areas(mesh.vertices, [hole.loop], loop_centres(mesh.vertices, [hole.loop]))[0]
         # The border of an island runs counter-clockwise around its surface.

@@ -97,11 +97,12 @@ class Bridge:
             seen = np.flatnonzero(sight.faces)
             distance, at = cKDTree(rim.points[seen]).query(points)
             at = seen[at]
+            across = np.maximum(sight.distance[at], np.finfo(np.float64).tiny)
             height = np.abs(np.einsum("ij,ij->i", points - rim.points[at], rim.normals[at]))
             agreement = np.einsum("ij,ij->i", normals, rim.normals[at]).mean()
-            if (height > _MOST_HEIGHT * sight.distance[at]).any() or agreement < _LEAST_AGREEMENT:
+            if (height > _MOST_HEIGHT * across).any() or agreement < _LEAST_AGREEMENT:
                 return False
-            ways += distance / sight.distance[at]
+            ways += distance / across
         return bool((ways <= _LONGEST_WAY).all())
 
 

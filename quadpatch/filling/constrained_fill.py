@@ -196,7 +196,7 @@ class _OneHole:
         first, second = np.triu_indices(len(loop), 2)
         points = self._near.vertices[loop]
         size = np.linalg.norm(points[second] - points[first], axis=1)
-        # The first vertex and the last are joined by a rim edge; a bridge comes back to its vertices.
+        # The first vertex and the last are joined by a rim edge; one that is walked twice comes back to its vertices.
         is_chord = (size > 0) & (second - first < len(loop) - 1)
         first, second, size = (rows[is_chord] for rows in (first, second, size))
         start, chord = points[first], points[second] - points[first]

@@ -123,7 +123,7 @@ def _runs_through_rim(loop: RimLoop, rim: Vertices, chords: IntArray) -> BoolArr
     share = np.where(passes, side / np.where(passes, side - other_side, 1.0), 0.0)
     along, above = (at + share * (np.roll(at, -1, axis=1) - at) for at in (along, above))
     passes &= (along > 0) & (along < size) & (np.abs(above) < _REACH * size)
-    # The edges at its ends touch a chord; those of their twins at a bridge do as well.
+    # The edges at its ends touch a chord; those of their twins do as well, where an edge is walked twice.
     ends = loop.vertices[chords]
     is_end = (loop.vertices[None] == ends[:, :1]) | (loop.vertices[None] == ends[:, 1:])
     return np.asarray((passes & ~is_end & ~np.roll(is_end, -1, axis=1)).any(axis=1))

@@ -1,7 +1,7 @@
 """Islands: loose pieces of surface that lie in a hole.
 
 An island that faces the way of the surface around its hole belongs to that surface: what is missing is the ring
-between two rims. The rims are joined by a bridge that is walked there and back, as is usual for polygons with holes:
+between two rims. The rims are joined by an edge that is walked there and back, as is usual for polygons with holes:
 that makes one loop of them.
 """
 
@@ -35,8 +35,8 @@ class JoinedRims:
     Attributes
     ----------
     loops : list of (n_loop,) int64
-        One for each chosen hole that is no island, longest rim first; a bridge is walked twice, so its vertices come
-        twice.
+        One for each chosen hole that is no island, longest rim first, and behind them those around bridges; an edge to
+        an island, or across the gap of a bridge, is walked twice, so its vertices come twice.
     chosen : list of Hole
         Whose loops these are.
     host_of : dict of int to int
@@ -210,7 +210,7 @@ def _has_odd_parity(polygon: FloatArray, points: FloatArray) -> BoolArray:
 def loop_around(vertices: Vertices, rim: IntArray, islands: list[IntArray]) -> IntArray:
     """Join a rim to islands by short edges: (n_rim + n_islands + 2 per island,) int64.
 
-    The nearest island comes first, as in the algorithm of Prim: the bridge to another one may start at it, and would
+    The nearest island comes first, as in the algorithm of Prim: the edge to another one may start at it, and would
     run through it otherwise.
     """
     if not islands:
@@ -226,13 +226,13 @@ def loop_around(vertices: Vertices, rim: IntArray, islands: list[IntArray]) -> I
         joined = islands[owner[at]]
         j = at - int(starts[owner[at]])
         waiting &= owner != owner[at]
-        i = _bridge_head(vertices, loop, members[at])
+        i = _nearest_free(vertices, loop, members[at])
         loop = np.concatenate([loop[: i + 1], np.roll(joined, -j), joined[j : j + 1], loop[i:]])
     return loop
 
 
-def _bridge_head(vertices: Vertices, loop: IntArray, other: int) -> int:
-    """Find the position in a loop next to a vertex, where no other bridge begins: the order of two would be open."""
+def _nearest_free(vertices: Vertices, loop: IntArray, other: int) -> int:
+    """Find the position in a loop next to a vertex, where no other edge begins: the order of two would be open."""
     distance = length(vertices[loop] - vertices[other])
     _, position, count = np.unique(loop, return_inverse=True, return_counts=True)
     free = count[position] == 1

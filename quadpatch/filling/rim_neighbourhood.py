@@ -213,16 +213,16 @@ def _without_flat_corners(loop: IntArray, flat: set[Corner], taken: list[Corner]
 def _rim_normals(vertices: FloatArray, adjacent_triangles: Triangles, loops: list[IntArray]) -> FloatArray:
     """Look up the unit normals (n, 3) of the faces at the edges of loops that are laid end to end.
 
-    A bridge lies between its neighbours'.
+    That of an edge that joins two rims lies between its neighbours'.
     """
     _, following = laid_out(loops)
     start = np.concatenate([np.zeros(0, np.int64), *loops])
     at = edges_found(adjacent_triangles, start, start[following], len(vertices))
     normals = triangle_normals(vertices, adjacent_triangles)[at // 3]
-    bridges = np.flatnonzero(at < 0)
-    if len(bridges):
-        normals[bridges] = 0.0
+    joining = np.flatnonzero(at < 0)
+    if len(joining):
+        normals[joining] = 0.0
         before = np.empty_like(following)
         before[following] = np.arange(len(following))
-        normals[bridges] = unit(normals[before[bridges]] + normals[following[bridges]])
+        normals[joining] = unit(normals[before[joining]] + normals[following[joining]])
     return normals

@@ -93,8 +93,8 @@ def _triangulate(
 ) -> list[Triangles | None]:
     """Triangulate every loop for itself."""
     # Without islands, which are few, no loop passes a vertex twice.
-    bridges = [_bridges(loop) for loop in loops if len(set(loop.tolist())) < len(loop)]
-    forbidden = forbidden.with_edges(np.concatenate(bridges)) if bridges else forbidden
+    joining = [_joining_edges(loop) for loop in loops if len(set(loop.tolist())) < len(loop)]
+    forbidden = forbidden.with_edges(np.concatenate(joining)) if joining else forbidden
     rims = [RimLoop(loop, normals) for loop, normals in zip(loops, rim_normals, strict=True)]
     parts = [divide(rim, vertices, MAX_TABLE_SIZE, forbidden.edges.contains) for rim in rims]
     flat = [part for of_loop in parts for part in of_loop]
@@ -103,8 +103,8 @@ def _triangulate(
     return [_joined(p) for p in pieces]
 
 
-def _bridges(loop: IntArray) -> IntArray:
-    """Edges (k, 2) that no chord of a loop may repeat: its bridges to islands, and those from a vertex to itself."""
+def _joining_edges(loop: IntArray) -> IntArray:
+    """Edges (k, 2) that no chord of a loop may repeat: those that join its rims, and those from a vertex to itself."""
     twice = np.unique(loop, return_counts=True)
     ends = twice[0][twice[1] > 1]
     edges = np.stack([loop, np.roll(loop, -1)], axis=1)

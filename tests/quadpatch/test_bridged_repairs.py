@@ -102,6 +102,19 @@ def test_rims_with_missing_triangles_are_joined_without_faults(seed: int) -> Non
     assert repair.results[1].code == "bridged"
 
 
+@pytest.mark.parametrize("n_upper", [40, 41])
+@pytest.mark.parametrize("width", [0.05, 1e-3, 1e-8])
+def test_gaps_narrower_than_an_edge_are_closed_by_the_rims_alone_or_refused(width: float, n_upper: int) -> None:
+    gap = cut_tube(width, n_upper)
+    repair = bridged(gap.mesh, *gap.pairs)
+    result = repair.results[gap.pairs[0][0]]
+    if width < 1e-6:
+        assert result.verdict == "refused"
+    else:
+        assert (result.verdict, result.n_new_vertices) == ("filled_smooth", 0)
+        assert len(find_holes(repair.filled.mesh)) == 2
+
+
 def test_rims_with_noise_on_them_are_joined() -> None:
     gap = halves(0.4)
     noise = np.random.default_rng(0).normal(scale=0.01, size=gap.mesh.vertices.shape)

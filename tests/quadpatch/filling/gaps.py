@@ -84,7 +84,7 @@ def cut_tube(width: float = 0.5, n_upper: int = 40) -> Gap:
         np.concatenate([lower.vertices, shifted]),
         np.concatenate([lower.triangles, upper.triangles + len(lower.vertices)]),
     )
-    inner = [hole.id for hole in find_holes(mesh) if top - 0.01 < hole.centre[2] < top + width + 0.01]
+    inner = [hole.id for hole in find_holes(mesh) if abs(hole.centre[2] - top) < width + 0.1]
     return Gap(mesh, ((inner[0], inner[1]),), width, to_tube)
 
 

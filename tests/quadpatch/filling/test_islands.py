@@ -94,7 +94,7 @@ def edges_of(loop: IntArray) -> set[tuple[int, int]]:
     return set(zip(loop.tolist(), np.roll(loop, -1).tolist(), strict=True))
 
 
-def test_the_joined_loop_passes_both_rims_once_and_the_shortest_bridge_to_and_fro() -> None:
+def test_the_joined_loop_passes_both_rims_once_and_the_shortest_edge_to_and_fro() -> None:
     mesh = joined(PLATE, moved(ISLAND, (3.0, 0.2, 0)))
     holes = find_holes(mesh)
     rims = joins(mesh)
@@ -103,9 +103,9 @@ def test_the_joined_loop_passes_both_rims_once_and_the_shortest_bridge_to_and_fr
     window, island = inner_hole(mesh).loop, holes[island_id].loop
     edges = edges_of(loop)
     assert len(edges) == len(loop)
-    bridge = edges - edges_of(window) - edges_of(island)
-    assert edges - bridge == edges_of(window) | edges_of(island)
-    (start, end), back = sorted(bridge)
+    joining = edges - edges_of(window) - edges_of(island)
+    assert edges - joining == edges_of(window) | edges_of(island)
+    (start, end), back = sorted(joining)
     assert back == (end, start)
     between = np.linalg.norm(mesh.vertices[window][:, None] - mesh.vertices[island][None], axis=2)
     assert np.linalg.norm(mesh.vertices[start] - mesh.vertices[end]) == between.min()

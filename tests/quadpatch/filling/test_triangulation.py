@@ -202,7 +202,7 @@ def ring(n: int) -> tuple[FloatArray, IntArray]:
 
 
 @pytest.mark.parametrize("n", [3, 4, 10, 63, 64, 150, 400])
-def test_a_ring_with_a_bridge_is_closed_once_and_the_bridge_is_an_edge_like_any_other(n: int) -> None:
+def test_a_ring_whose_rims_an_edge_joins_is_closed_once_and_that_is_an_edge_like_any_other(n: int) -> None:
     points, loop = ring(n)
     (found,) = triangulate_loops([loop], points, [np.tile(UP, (len(loop), 1))], NOTHING)
     assert found is not None
