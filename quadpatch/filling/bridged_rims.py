@@ -1,4 +1,7 @@
-"""Rims that bridges join, put among those of the holes: with the islands that lie in the gaps."""
+"""Rims that bridges join, put among those of the holes: with the islands that lie in the gaps.
+
+Tested in `tests/quadpatch/filling/test_bridges.py`.
+"""
 
 import numpy as np
 

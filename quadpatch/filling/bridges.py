@@ -13,11 +13,12 @@ from typing import Literal
 import numpy as np
 from scipy.spatial import cKDTree
 
-from quadpatch.filling.facing import Facing, Rim, look_across
+from quadpatch.filling.facing import Facing, look_across
+from quadpatch.filling.facing_stretches import facing_stretches
 from quadpatch.filling.ribs import Rib, RibEnd, Ribs, make_rib
 from quadpatch.mesh.holes import Hole
 from quadpatch.mesh.normals import length
-from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Vertices
+from quadpatch.types import FloatArray, IntArray, TriangleMesh, Vertices
 from shared_rules.hole_selection import MAX_NEW_VERTICES
 
 BridgeShape = Literal["ring", "strip"]
@@ -27,16 +28,6 @@ BridgeShape = Literal["ring", "strip"]
 WIDTH_OF_STRIP = 2.0
 # Borders of which less than this share faces the other rim are joined along the stretch that does.
 WHOLE_SHARE = 0.6
-# Stretches of a rim that are apart by less than so many gaps are one.
-_MOST_PAUSE = 2.0
-# An edge at the end of a strip is at most so many times as long as the gap or an edge of the rim, and no rim edge that
-# a strip is extended by points across the gap more than this (cosine).
-_LONGEST_END = 1.5
-_MOST_ACROSS = 0.8
-# A strip is at most so many gaps longer at each end than what faces the other rim for sure.
-_MOST_EXTENSION = 2.0
-# A rib takes one edge at either end of a stretch of so many vertices, and a hole is left between the ribs.
-_LEAST_STRETCH = 4
 # The way from one rim to the other by an island between them is at most so many times as long as the straight one; the
 # island lies this near to the tangent planes of both, in lengths of that way, and faces as they do (cosine).
 _LONGEST_WAY = 1.5
@@ -133,7 +124,8 @@ def make_bridges(
             bridges.append(made)
             next_vertex += sum(len(rib.vertices) for rib in made.ribs)
         else:
-            refused |= {first: made, second: made}
+            code, reason = made
+            refused |= dict.fromkeys((first, second), (code, f"no bridge {first}:{second}: {reason}"))
     return bridges, refused
 
 
@@ -177,7 +169,7 @@ def make_bridge(mesh: TriangleMesh, first: Hole, second: Hole, next_vertex: int)
         return "too_many_vertices", f"{dense}, over {MAX_NEW_VERTICES}"
     if shape_of(facing, first, second) == "ring":
         return Bridge((first, second), _ring(facing, first.loop, second.loop), facing)
-    stretches = _strip(facing, first.loop, second.loop)
+    stretches = facing_stretches(facing)
     if stretches is None:
         return _APART
     loop, ribs = _between_ribs(mesh, facing, (first.loop, second.loop), stretches, next_vertex)
@@ -211,27 +203,6 @@ def _ring(facing: Facing, first: IntArray, second: IntArray) -> IntArray:
     return np.concatenate([first[: i + 1], np.roll(second, -j), second[j : j + 1], first[i:]])
 
 
-def _strip(facing: Facing, first: IntArray, second: IntArray) -> tuple[IntArray, IntArray] | None:
-    """Find the stretches of two loops that face each other, in the order of each; None where there are none."""
-    (one, other), (sight, back) = facing.rims, facing.sights
-    pause = _MOST_PAUSE * facing.gap
-    here = _longest_stretch(sight.faces, one, pause)
-    is_here = np.isin(np.arange(len(first)), here)
-    there = _longest_stretch(back.faces & is_here[back.nearest], other, pause)
-    is_there = np.isin(np.arange(len(second)), there)
-    here = _longest_stretch(is_here & sight.faces & is_there[sight.nearest], one, pause)
-    if not len(here) or not len(there):
-        return None
-    end, start = _extended(facing, int(here[-1]), int(there[0]), 1)
-    begin, stop = _extended(facing, int(here[0]), int(there[-1]), -1)
-    n_here, n_there = (end - begin) % len(first) + 1, (stop - start) % len(second) + 1
-    here, there = (begin + np.arange(n_here)) % len(first), (start + np.arange(n_there)) % len(second)
-    shorter = min(one.lengths[here].sum(), other.lengths[there].sum())
-    if min(n_here, n_there) < _LEAST_STRETCH or shorter < facing.gap:
-        return None
-    return here, there
-
-
 def _between_ribs(
     mesh: TriangleMesh, facing: Facing, loops: tuple[IntArray, IntArray], stretches: tuple[IntArray, IntArray], n: int
 ) -> tuple[IntArray, list[Rib]]:
@@ -249,53 +220,3 @@ def _between_ribs(
     at_end, at_begin = (rib.inner[1:-1] for rib in ribs)
     around = [loops[0][here[1:-1]], at_end, loops[1][there[1:-1]], at_begin[::-1]]
     return np.concatenate(around), ribs
-
-
-def _longest_stretch(wanted: BoolArray, rim: Rim, pause: float) -> IntArray:
-    """Find the longest stretch of a loop whose vertices are wanted, pauses of a length aside: positions in order."""
-    n = len(wanted)
-    places = np.flatnonzero(wanted)
-    if not len(places):
-        return places
-    along = np.concatenate([[0.0], np.cumsum(rim.lengths)])
-    following = np.append(places[1:], places[0] + n)
-    ways = along[following % n] + along[-1] * (following // n) - along[places]
-    # A rim edge is no pause, however small the gap is.
-    breaks = np.flatnonzero((ways > pause) & (following - places > 1))
-    if not len(breaks):
-        return np.arange(places[0], places[0] + n) % n
-    starts, ends = following[breaks], np.append(places[breaks[1:]], places[breaks[0]] + n)
-    starts = np.where(starts >= n, starts - n, starts)
-    ends = starts + (ends - starts) % n
-    longest = int((along[ends % n] + along[-1] * (ends // n) - along[starts]).argmax())
-    return np.arange(starts[longest], ends[longest] + 1) % n
-
-
-def _extended(facing: Facing, i: int, j: int, step: int) -> tuple[int, int]:
-    """Move the end of a strip outwards, from positions i and j of both loops, as long as its end edge stays short.
-
-    The first loop is walked by steps of 1 or -1, the second one, which runs the other way, against them.
-    """
-    one, other = facing.rims
-    longest = _LONGEST_END * max(facing.gap, one.edge, other.edge)
-    room = _MOST_EXTENSION * max(facing.gap, one.edge, other.edge)
-    for _ in range(len(one.points) + len(other.points)):
-        steps = ((one, other, i, j, step), (other, one, j, i, -step))
-        ends = [_end_after(*each, longest) for each in steps]
-        best = int(np.argmin(ends))
-        way = steps[best][0].lengths[steps[best][2]]
-        if not np.isfinite(ends[best]) or way > room:
-            break
-        room -= way / 2
-        i, j = ((i + step) % len(one.points), j) if best == 0 else (i, (j - step) % len(other.points))
-    return i, j
-
-
-def _end_after(rim: Rim, other: Rim, at: int, across: int, step: int, longest: float) -> float:
-    """Length of the end edge once a strip goes one rim edge further; infinite where that would be no good end."""
-    following = rim.points[(at + step) % len(rim.points)]
-    edge, end = following - rim.points[at], other.points[across] - rim.points[at]
-    sizes = float(np.linalg.norm(edge) * np.linalg.norm(end))
-    new = float(np.linalg.norm(other.points[across] - following))
-    is_good = abs(float(edge @ end)) <= _MOST_ACROSS * sizes and new <= longest
-    return new if is_good else np.inf
