@@ -15,7 +15,7 @@ from scipy.spatial import cKDTree
 
 from quadpatch.filling.facing import Facing, look_across
 from quadpatch.filling.facing_stretches import facing_stretches
-from quadpatch.filling.ribs import Rib, RibEnd, Ribs, make_rib
+from quadpatch.filling.ribs import Rib, Ribs, RibSide, make_clear_rib
 from quadpatch.mesh.holes import Hole
 from quadpatch.mesh.normals import length
 from quadpatch.types import FloatArray, IntArray, TriangleMesh, Vertices
@@ -209,14 +209,19 @@ def _between_ribs(
     """Lay a rib at either end of two stretches: the loop between them, and the ribs; n is the next new vertex."""
     here, there = stretches
     edge = float(np.mean([rim.edge for rim in facing.rims]))
-    ribs = list[Rib]()
+    ribs, cuts = list[Rib](), list[tuple[int, int]]()
     for a, b, is_forward in ((here[::-1], there, True), (here, there[::-1], False)):
-        ends = [
-            RibEnd(int(loop[at[0]]), int(loop[at[1]]), rim.normals[at[:2]])
-            for loop, at, rim in zip(loops, (a, b), facing.rims, strict=True)
-        ]
-        ribs.append(make_rib(mesh.vertices, (ends[0], ends[1]), edge, n, is_forward=is_forward))
-        n += len(ribs[-1].vertices)
-    at_end, at_begin = (rib.inner[1:-1] for rib in ribs)
-    around = [loops[0][here[1:-1]], at_end, loops[1][there[1:-1]], at_begin[::-1]]
+        one, other = (
+            RibSide(loop[at], rim.normals[at]) for loop, at, rim in zip(loops, (a, b), facing.rims, strict=True)
+        )
+        rib, places = make_clear_rib(mesh, (one, other), edge, n, is_forward=is_forward)
+        ribs.append(rib)
+        cuts.append(places)
+        n += len(rib.vertices)
+    # From the rim edge that one rib takes to the one that the other takes.
+    (at_end, at_start), (at_begin, at_stop) = cuts
+    here = here[at_begin + 1 : len(here) - 1 - at_end]
+    there = there[at_start + 1 : len(there) - 1 - at_stop]
+    end, begin = (rib.inner[1:-1] for rib in ribs)
+    around = [loops[0][here], end, loops[1][there], begin[::-1]]
     return np.concatenate(around), ribs

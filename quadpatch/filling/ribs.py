@@ -6,11 +6,22 @@ filled like any other. Until then a rib counts as measured.
 """
 
 from dataclasses import dataclass, replace
+from itertools import product
 
 import numpy as np
 
 from quadpatch.filling.filled_mesh import FilledMesh
+from quadpatch.mesh.intersections import crossing_pairs, touching_boxes
+from quadpatch.mesh.normals import triangle_normals
+from quadpatch.mesh.topology import compacted
 from quadpatch.types import FloatArray, IntArray, TriangleMesh, Triangles, Vertices
+
+# Rim edges that are tried on either side, from the open end inwards, and the least cosine between the normals of a rib
+# and those of its rims.
+_PLACES = 8
+_LEAST_FACING = 0.3
+# Least angle between a rib and the rim behind it, in radians.
+_LEAST_ROOM = 0.35
 
 
 @dataclass(frozen=True)
@@ -70,11 +81,35 @@ class RibEnd:
         Vertices of the rim edge that it joins: the one at the open end of the strip, the one inside.
     normals : (2, 3) float64
         Of the surface at both.
+    beyond : int
+        The vertex of the rim that follows the inner one.
     """
 
     outer: int
     inner: int
     normals: FloatArray
+    beyond: int = -1
+
+
+@dataclass(frozen=True)
+class RibSide:
+    """Where a rib may begin or end on one of the rims.
+
+    Attributes
+    ----------
+    vertices : (n,) int64
+        Of the rim, from the open end of the strip inwards.
+    normals : (n, 3) float64
+        Of the surface there.
+    """
+
+    vertices: IntArray
+    normals: FloatArray
+
+    def end(self, position: int) -> RibEnd:
+        """Take the rim edge at a position."""
+        outer, inner, beyond = self.vertices[position : position + 3].tolist()
+        return RibEnd(outer, inner, self.normals[position : position + 2], beyond)
 
 
 @dataclass(frozen=True)
@@ -93,6 +128,67 @@ class Rib:
     vertices: Vertices
     triangles: Triangles
     inner: IntArray
+
+
+def make_clear_rib(
+    mesh: TriangleMesh, sides: tuple[RibSide, RibSide], edge: float, n_vertices: int, *, is_forward: bool
+) -> tuple[Rib, tuple[int, int]]:
+    """Lay a rib as near to the open end of a strip as it neither runs through surface nor folds.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+    sides : pair of RibSide
+    edge, n_vertices, is_forward
+        See `make_rib`.
+
+    Returns
+    -------
+    rib : Rib
+        That at the open end, where none is clear.
+    places : (int, int)
+        Positions of its outer vertices on both sides.
+    """
+    first, second = sides
+    counts = [range(min(len(side.vertices) // 2, _PLACES)) for side in sides]
+    surroundings = _surroundings(mesh, np.concatenate([side.vertices[: _PLACES + 1] for side in sides]))
+    for i, j in sorted(product(*counts), key=lambda place: (sum(place), abs(place[0] - place[1]))):
+        ends = first.end(i), second.end(j)
+        tried = make_rib(mesh.vertices, ends, edge, len(mesh.vertices), is_forward=is_forward)
+        if _is_clear(mesh, tried, surroundings, ends):
+            return make_rib(mesh.vertices, ends, edge, n_vertices, is_forward=is_forward), (i, j)
+    return make_rib(mesh.vertices, (first.end(0), second.end(0)), edge, n_vertices, is_forward=is_forward), (0, 0)
+
+
+def _surroundings(mesh: TriangleMesh, vertices: IntArray) -> Triangles:
+    """Triangles (n, 3) of a mesh in the box around some of its vertices, made wider by its own size."""
+    low, high = mesh.vertices[vertices].min(axis=0), mesh.vertices[vertices].max(axis=0)
+    margin = np.linalg.norm(high - low)
+    return mesh.triangles[touching_boxes((low - margin)[None], (high + margin)[None], mesh)]
+
+
+def _is_clear(mesh: TriangleMesh, rib: Rib, surroundings: Triangles, ends: tuple[RibEnd, RibEnd]) -> bool:
+    """Whether a rib, whose new vertices follow those of the mesh, runs through nothing and leaves room for the fill."""
+    points = np.concatenate([mesh.vertices, rib.vertices])
+    facing = triangle_normals(points, rib.triangles) @ np.concatenate([end.normals for end in ends]).mean(axis=0)
+    following = points[rib.inner[1]], points[rib.inner[-2]]
+    rooms = [_room(points, end, at) for end, at in zip(ends, following, strict=True)]
+    if (facing < _LEAST_FACING).any() or min(rooms) < _LEAST_ROOM:
+        return False
+    used, local = compacted(np.concatenate([rib.triangles, surroundings]), len(points))
+    pairs = crossing_pairs(TriangleMesh(points[used], local), len(rib.triangles))
+    return not (pairs < len(rib.triangles)).any()
+
+
+def _room(points: Vertices, end: RibEnd, following: FloatArray) -> float:
+    """Angle at the inner vertex, seen along the normal, that a rib leaves between itself and the rim; in radians."""
+    normal, here = end.normals[1], points[end.inner]
+    x = points[end.outer] - here
+    x = x - (x @ normal) * normal
+    y = np.cross(normal, x)
+    of_rib, of_rim = (float(np.arctan2(way @ y, way @ x)) for way in (following - here, points[end.beyond] - here))
+    # The rib turns one way or the other from its own edge; the rim follows behind it.
+    return (of_rim if of_rib >= 0 else -of_rim) % (2 * np.pi) - abs(of_rib)
 
 
 def make_rib(points: Vertices, ends: tuple[RibEnd, RibEnd], edge: float, n_vertices: int, *, is_forward: bool) -> Rib:

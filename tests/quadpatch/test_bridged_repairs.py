@@ -172,14 +172,16 @@ def test_what_stands_in_the_gap_and_can_not_be_joined_is_not_run_through() -> No
         assert one.fill == "constrained"
 
 
-def test_an_open_end_of_the_strip_that_runs_through_surface_is_refused() -> None:
+@pytest.mark.parametrize(("side", "is_refused"), [(0.2, False), (1.3, True)])
+def test_an_open_end_of_the_strip_goes_round_what_is_in_its_way_or_is_refused(side: float, is_refused: bool) -> None:
     gap = torn_sheet()
-    wall = open_grid(9, 0.2).vertices @ np.array([[0, 1.0, 0], [0, 0, 1.0], [1.0, 0, 0]])
+    wall = open_grid(9, side).vertices @ np.array([[0, 1.0, 0], [0, 0, 1.0], [1.0, 0, 0]])
     place = gap.mesh.vertices[np.abs(gap.mesh.vertices - [0.1, 1.0, 0.05]).sum(axis=1).argmin()]
     mesh = joined(gap.mesh, moved(TriangleMesh(wall, open_grid(9).triangles), (0.13, float(place[1]), 0.05)))
     repair = bridged(mesh, (0, 1))
-    assert [(repair.results[i].verdict, repair.results[i].code) for i in (0, 1)] == [("refused", "crosses_surface")] * 2
-    assert len(repair.filled.triangle_hole) == 0
+    codes = ["crosses_surface"] * 2 if is_refused else ["geometry", "bridged"]
+    assert [result.code for result in repair.results[:2]] == codes
+    assert (len(repair.filled.triangle_hole) == 0) == is_refused
 
 
 def test_rims_that_touch_are_refused() -> None:

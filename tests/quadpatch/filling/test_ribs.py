@@ -2,12 +2,13 @@ import numpy as np
 import pytest
 
 from quadpatch.filling.filled_mesh import FilledMesh
-from quadpatch.filling.ribs import RibEnd, Ribs, make_rib
+from quadpatch.filling.ribs import RibEnd, Ribs, RibSide, make_clear_rib, make_rib
 from quadpatch.mesh.boundary import boundary_loops
+from quadpatch.mesh.intersections import crossing_pairs
 from quadpatch.mesh.normals import triangle_normals
 from quadpatch.types import FloatArray, TriangleMesh
 from tests.quadpatch.filling.fills import assert_keeps
-from tests.quadpatch.shapes import is_oriented_manifold
+from tests.quadpatch.shapes import is_oriented_manifold, joined, moved, open_grid
 
 UP = np.array([[0.0, 0.0, 1.0]] * 2)
 # Two squares, side by side, z up, with a gap of 1 between them: x from 0 to 1 and from 2 to 3.
@@ -75,3 +76,48 @@ def test_ribs_count_as_invented_once_they_are_told_apart_and_go_where_there_is_n
         assert_keeps(told, SQUARES)
         assert len(told.triangle_hole) == n_kept
         assert len(told.vertex_hole) == (len(rib.vertices) if n_kept else 0)
+
+
+def sides_of_a_gap(*others: TriangleMesh) -> tuple[TriangleMesh, tuple[RibSide, RibSide]]:
+    """Two squares of 9 x 9 vertices with a gap from x = 4 to x = 6, whose open end is at y = 4; and other surface."""
+    mesh = joined(open_grid(9), moved(open_grid(9), (10.0, 0.0, 0.0)), *others)
+    sides = []
+    for x in (4.0, 6.0):
+        rim = np.flatnonzero((mesh.vertices[:162, 0] == x) & (np.abs(mesh.vertices[:162, 1]) <= 4))
+        rim = rim[np.argsort(-mesh.vertices[rim, 1])]
+        sides.append(RibSide(rim, np.repeat(UP[:1], len(rim), axis=0)))
+    return mesh, (sides[0], sides[1])
+
+
+def test_a_rib_lies_at_the_open_end_where_nothing_is_in_its_way() -> None:
+    mesh, sides = sides_of_a_gap()
+    rib, places = make_clear_rib(mesh, sides, 1.0, len(mesh.vertices), is_forward=True)
+    assert places == (0, 0)
+    assert sorted(rib.vertices.tolist()) == [[5.0, 3.0, 0.0], [5.0, 4.0, 0.0]]
+
+
+@pytest.mark.parametrize("is_upright", [True, False])
+def test_a_rib_goes_round_what_stands_at_the_open_end(is_upright: bool) -> None:
+    """A wall that the rib would run through, or a scrap of surface that it would lie on."""
+    flat = moved(open_grid(3, 0.8), (5.0, 3.5, 0.0))
+    upright = TriangleMesh(
+        (flat.vertices - [5.0, 0, 0]) @ np.array([[0, 0, 1.0], [0, 1, 0], [1, 0, 0]]), flat.triangles
+    )
+    other = moved(upright, (5.2, 0.0, 0.1)) if is_upright else flat
+    mesh, sides = sides_of_a_gap(other)
+    rib, places = make_clear_rib(mesh, sides, 1.0, len(mesh.vertices), is_forward=True)
+    assert min(places) >= 1
+    assert max(places) <= 2
+    whole = TriangleMesh(np.concatenate([mesh.vertices, rib.vertices]), np.concatenate([rib.triangles, mesh.triangles]))
+    assert not (crossing_pairs(whole) < len(rib.triangles)).any()
+
+
+def test_a_rib_leaves_room_between_itself_and_a_tooth_of_the_rim() -> None:
+    mesh, (left, right) = sides_of_a_gap()
+    vertices = mesh.vertices.copy()
+    # The third vertex of the left rim leans over into the gap, almost onto the rib at the open end.
+    vertices[left.vertices[2]] = (5.6, 2.95, 0.0)
+    _, places = make_clear_rib(
+        TriangleMesh(vertices, mesh.triangles), (left, right), 1.0, len(vertices), is_forward=True
+    )
+    assert places[0] > 0
