@@ -184,7 +184,9 @@ class _Task:
     def calibration_key(self, kept: KeptCalibrations, diameter: float, part: RepairRegion) -> str:
         """Hash all that calibration in a part of this scan depends on."""
         scan = kept.scan or self._digest()
-        return key_of(scan, self.options.weld_tolerance, diameter, self.options.seed, part.digest())
+        # Ribs count as measured: calibration holes may be cut next to them.
+        strips = [f"{bridge.holes[0].id}:{bridge.holes[1].id}" for bridge in self.rims.bridges.values() if bridge.ribs]
+        return key_of(scan, self.options.weld_tolerance, diameter, self.options.seed, part.digest(), *strips)
 
     def _digest(self) -> str:
         """Hash the scan."""

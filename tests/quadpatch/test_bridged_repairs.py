@@ -5,6 +5,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from quadpatch.calibration.kept import KeptCalibrations
 from quadpatch.errors import OptionError
 from quadpatch.filling.faults import find_faults
 from quadpatch.mesh.holes import find_holes
@@ -243,3 +244,13 @@ def test_without_bridges_a_repair_is_the_same_to_the_bit() -> None:
 def test_ids_that_can_not_be_meant_are_refused(bridges: tuple[tuple[int, int], ...], message: str) -> None:
     with pytest.raises(OptionError, match=message):
         inpaint(halves(0.4, 3).mesh, None, RepairOptions(HoleOptions(bridges=bridges)))
+
+
+def test_what_calibration_found_is_taken_again_for_the_same_strips_alone() -> None:
+    gap, kept = torn_sheet(), KeptCalibrations("a scan")
+    joined_to_each_other = RepairOptions(HoleOptions(bridges=((0, 1),)))
+    first, again = (inpaint(gap.mesh, None, joined_to_each_other, kept=kept) for _ in range(2))
+    assert again.filled.mesh.vertices.tobytes() == first.filled.mesh.vertices.tobytes()
+    assert (first.is_calibration_reused, again.is_calibration_reused) == (False, True)
+    turned = inpaint(gap.mesh, None, RepairOptions(HoleOptions(bridges=((1, 0),))), kept=kept)
+    assert not turned.is_calibration_reused
