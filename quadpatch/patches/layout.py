@@ -115,8 +115,13 @@ def pick_patches(patches: Patches, which: BoolArray) -> Patches:
 
 def together(one: Sampled, other: Sampled) -> Sampled:
     """Put two sets of patches of one length and resolution behind each other."""
-    a, b = one.patches, other.patches
-    patches = Patches(
+    patches = joined_patches(one.patches, other.patches)
+    return Sampled(patches, np.concatenate([one.base_heights, other.base_heights]))
+
+
+def joined_patches(a: Patches, b: Patches) -> Patches:
+    """Put two sets of patches of one length and resolution behind each other, without base surfaces."""
+    return Patches(
         np.concatenate([a.origins, b.origins]),
         np.concatenate([a.frames, b.frames]),
         a.length,
@@ -125,4 +130,3 @@ def together(one: Sampled, other: Sampled) -> Sampled:
         np.concatenate([a.seen, b.seen]),
         np.concatenate([a.triangle, b.triangle]),
     )
-    return Sampled(patches, np.concatenate([one.base_heights, other.base_heights]))

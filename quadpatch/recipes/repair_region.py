@@ -7,10 +7,10 @@ of it. Where these places take up most of a scan, the whole of it is looked at.
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from quadpatch.calibration.calibration_set import MARGIN_EDGES, MAX_HOLES
 from quadpatch.calibration.kept import array_digest
+from quadpatch.calibration.sites import pick_sites
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.filling.region import Region, region_around
 from quadpatch.mesh.loops import laid_out
@@ -26,8 +26,6 @@ _RINGS = 8.0
 _ROOM = 1.5
 # Patches of a hole reach one patch length beyond it, and what smooths the surface below them about as far again.
 _PATCHES = 2.0
-# Places that are tried for each one that is looked for.
-_TRIES = 30
 
 
 @dataclass(frozen=True)
@@ -134,24 +132,10 @@ def repair_region(
     sizes = np.linalg.norm(high - low, axis=1)
     around = _RINGS * reach.edges.mean + (0.0 if reach.coarse_edge else _PATCHES * reach.patch_length)
     room = _ROOM * (reach.diameter / 2 + MARGIN_EDGES * reach.edges.mean) + around
-    sites = _sites(mesh, rim, room, MAX_HOLES, rng)
+    sites = pick_sites(mesh, rim, room, MAX_HOLES, rng)
     if len(sites) < MAX_HOLES:
         return RepairRegion.all_of(mesh, len(loops))
     centres, radii = (low + high) / 2, (0.5 + _BULGE) * sizes + around
     part = RepairRegion(Region.all_of(mesh), centres, radii, sites, room)
     region = part.cut_out(reach, 0.0, obstacles)
     return replace(part, region=region) if region.mesh is not mesh else RepairRegion.all_of(mesh, len(loops))
-
-
-def _sites(mesh: TriangleMesh, rim: IntArray, room: float, most: int, rng: np.random.Generator) -> Vertices:
-    """Pick places (k, 3) on the surface that keep clear of rims and of each other."""
-    corners = mesh.triangles[rng.integers(len(mesh.triangles), size=_TRIES * most), 0]
-    candidates = mesh.vertices[corners]
-    candidates = candidates[cKDTree(mesh.vertices[rim]).query(candidates)[0] > room]
-    taken = np.zeros((0, 3))
-    for place in candidates:
-        if (np.linalg.norm(taken - place, axis=1) > 2 * room).all():
-            taken = np.concatenate([taken, place[np.newaxis]])
-        if len(taken) == most:
-            break
-    return taken
