@@ -1,6 +1,7 @@
 """Attributes of invented vertices and triangles, taken from the measured ones around the hole.
 
-Continuous attributes (colours, texture coordinates, qualities) are extended harmonically from the rim; labels (flags,
+Continuous attributes (colours, texture coordinates, qualities) are extended harmonically from the rim, unless the fill
+brings colours of its own; labels (flags,
 materials, texture numbers) are those of the nearest rim vertex or rim triangle; normals are those of the new surface.
 """
 
@@ -48,6 +49,28 @@ def extend_over_vertices(fill: Fill, values: FloatArray) -> FloatArray:
     result = np.zeros((n_new, values.shape[1]))
     result[used[~measured] - n_measured] = np.nan_to_num(extended[~measured])
     return result
+
+
+def extend_colours(fill: Fill, colours: FloatArray, top: float) -> FloatArray:
+    """Extend colours of measured vertices over the new ones, or take those that the fill brings.
+
+    Parameters
+    ----------
+    fill : Fill
+    colours : (n_measured, c) float64
+        Red, green, blue, and what else stands behind them; NaN where a vertex has none.
+    top : float
+        Full intensity.
+
+    Returns
+    -------
+    (n_new, c) float64
+    """
+    extended = extend_over_vertices(fill, colours)
+    if fill.vertex_colours is not None:
+        brought = fill.vertex_colours * (top / 255.0)
+        extended[:, :3] = np.where(np.isfinite(brought), brought, extended[:, :3])
+    return extended
 
 
 def rim_vertices(fill: Fill, n_measured: int) -> IntArray:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from quadpatch.formats.attributes import extend_over_vertices, joined_vertices, triangle_normals, vertex_normals
+from quadpatch.formats.attributes import extend_colours, joined_vertices, triangle_normals, vertex_normals
 from quadpatch.formats.moved_normals import moved_vertex_normals
 from quadpatch.formats.scan import Fill, Moved, Scan, VertexAttributes
 from quadpatch.formats.texture import extend_over_corners
@@ -79,7 +79,7 @@ def merge_scene(scan: Scan, fill: Fill) -> MergedScene:
     attributes = VertexAttributes() if scan.source is None else scan.source.vertex_attributes(scan)
     colours, normals, texture = attributes.colours, attributes.normals, attributes.texture
     if colours is not None:
-        extended = extend_over_vertices(fill, colours)
+        extended = extend_colours(fill, colours, 255.0)
         # Vertices without a colour among coloured ones are white.
         colours = np.nan_to_num(np.concatenate([colours, extended]), nan=255.0).clip(0, 255)
     if normals is not None:

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from quadpatch.formats.attributes import extend_over_vertices, nearest_rim_triangle, normals_at
+from quadpatch.formats.attributes import extend_colours, nearest_rim_triangle, normals_at
 from quadpatch.formats.moved_normals import normals_of_groups
 from quadpatch.formats.obj_statements import NORMAL, VERTEX, split_statements
 from quadpatch.formats.scan import Fill, Moved, Scan, VertexAttributes
@@ -60,17 +60,23 @@ class ObjSource:
 
     def vertex_attributes(self, scan: Scan) -> VertexAttributes:
         """Colours, normals of the first corner that names each vertex, and texture coordinates."""
-        colours = None
-        if self.colours is not None:
-            # Fractions of 1, or whole numbers up to 255.
-            scale = 255.0 if np.nanmax(self.colours) <= 1 else 1.0
-            colours = np.concatenate([self.colours * scale, np.full((len(self.colours), 1), 255.0)], axis=1)
         texture = self._texture_of_corners() if len(self.texture) else None
         normals = None
         if (self.corner_normal >= 0).any():
             first = self._first_normal(scan, len(scan.vertices))
             normals = np.where(first[:, np.newaxis] >= 0, self.normals[first], 0.0)
-        return VertexAttributes(colours, normals, texture)
+        return VertexAttributes(self.vertex_colours(scan), normals, texture)
+
+    def vertex_colours(self, scan: Scan) -> FloatArray | None:
+        """Colours behind the coordinates."""
+        if self.colours is None:
+            return None
+        scaled = self.colours * (255.0 / self._top_colour())
+        return np.concatenate([scaled, np.full((len(scaled), 1), 255.0)], axis=1)
+
+    def _top_colour(self) -> float:
+        """Full intensity: colours are fractions of 1, or whole numbers up to 255."""
+        return 1.0 if self.colours is None or np.nanmax(self.colours) <= 1 else 255.0
 
     def _texture_of_corners(self) -> FloatArray:
         has = self.corner_texture >= 0
@@ -141,7 +147,7 @@ class ObjSource:
     def _vertex_lines(self, fill: Fill, line_end: str) -> str:
         if self.colours is None:
             return to_lines("v", fill.vertices, line_end)
-        colours = np.round(extend_over_vertices(fill, self.colours), 6)
+        colours = np.round(extend_colours(fill, self.colours, self._top_colour()), 6)
         return to_lines("v", np.concatenate([fill.vertices, colours], axis=1), line_end)
 
     def _texture(self, scan: Scan, fill: Fill, line_end: str) -> tuple[str, IntArray]:

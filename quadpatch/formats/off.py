@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from quadpatch.errors import EmptyMeshError, FormatError, ReadError
-from quadpatch.formats.attributes import extend_over_vertices, nearest_rim_triangle, vertex_normals
+from quadpatch.formats.attributes import extend_colours, extend_over_vertices, nearest_rim_triangle, vertex_normals
 from quadpatch.formats.limits import ReadLimits, check_indices, check_triangles, check_vertices
 from quadpatch.formats.lines import Lines, split_lines
 from quadpatch.formats.moved_normals import moved_vertex_normals
@@ -26,6 +26,8 @@ from quadpatch.types import FloatArray, IntArray
 _KEYWORD = re.compile(rb"(ST)?(C)?(N)?(4)?(n)?OFF(?![^\s])[ \t]*(BINARY)?")
 _COUNTS = re.compile(rb"(?<![^\s])[0-9]+([ \t]+)[0-9]+")
 _LINE_END = re.compile(rb"\r\n|\n|\r")
+# Numbers of a colour: with or without alpha.
+_COLOUR_WIDTHS = (3, 4)
 
 
 @dataclass(frozen=True)
@@ -99,6 +101,9 @@ class OffSource:
 
     def _vertex_lines(self, scan: Scan, fill: Fill, line_end: str) -> str:
         extras = extend_over_vertices(fill, self.extras)
+        if self._colours().shape[1] in _COLOUR_WIDTHS:
+            last = self.extras.shape[1] - self.n_texture
+            extras[:, self.n_normal : last] = extend_colours(fill, self._colours(), self._top_colour())
         if self.n_normal:
             extras[:, : self.n_normal] = vertex_normals(scan, fill)
         # Colours were written as whole numbers in some files, and as fractions in others.
@@ -123,19 +128,26 @@ class OffSource:
         words = self.face_lines.text(face).decode("latin-1").split()
         return "".join(f" {word}" for word in words[1 + int(float(words[0])) :])
 
+    def _colours(self) -> FloatArray:
+        """Columns (n, k) between normals and texture coordinates: colours where they are three or four."""
+        return self.extras[:, self.n_normal : self.extras.shape[1] - self.n_texture]
+
+    def _top_colour(self) -> float:
+        """Full intensity: colours are fractions of 1, or whole numbers up to 255."""
+        return 1.0 if self._colours().max(initial=0.0) <= 1 else 255.0
+
     def vertex_attributes(self, scan: Scan) -> VertexAttributes:
         """Colours, normals and texture coordinates of the vertices."""
-        stop = self.extras.shape[1] - self.n_texture
-        colours = self.extras[:, self.n_normal : stop]
-        found = None
-        if colours.shape[1] in (3, 4):
-            # Fractions of 1, or whole numbers up to 255.
-            scale = 255.0 if colours.max(initial=0.0) <= 1 else 1.0
-            opaque = np.full((len(colours), 1), 255.0 / scale)
-            found = np.concatenate([colours, opaque], axis=1)[:, :4] * scale
         normals = self.extras[:, :3] if self.n_normal else None
-        texture = self.extras[:, stop:][scan.triangles] if self.n_texture else None
-        return VertexAttributes(found, normals, texture)
+        texture = self.extras[:, -self.n_texture :][scan.triangles] if self.n_texture else None
+        return VertexAttributes(self.vertex_colours(scan), normals, texture)
+
+    def vertex_colours(self, scan: Scan) -> FloatArray | None:
+        """Colours of the vertices."""
+        colours, top = self._colours(), self._top_colour()
+        if colours.shape[1] not in _COLOUR_WIDTHS:
+            return None
+        return np.concatenate([colours, np.full((len(colours), 1), top)], axis=1)[:, :4] * (255.0 / top)
 
 
 def read_off(data: bytes, limits: ReadLimits) -> Scan:

@@ -44,6 +44,9 @@ class Source(Protocol):
     def move(self, scan: "Scan", moved: "Moved") -> bytes:
         """Hand the file back with some vertices at other positions."""
 
+    def vertex_colours(self, scan: "Scan") -> FloatArray | None:
+        """Say what colours the vertices have: those of `vertex_attributes` alone."""
+
     def vertex_attributes(self, scan: "Scan") -> VertexAttributes:
         """Say how the surface looks, for writing it in another format."""
 
@@ -91,6 +94,8 @@ class Fill:
         Hole id and confidence 0..1 of every new vertex.
     triangle_hole_id, triangle_confidence : (l,) int64, (l,) float64
         The same of every new triangle.
+    vertex_colours : (k, 3) float64 or None
+        Red, green, blue of every new vertex, 0..255; NaN where it gets those that its rim extends, None where all do.
     """
 
     vertices: Vertices
@@ -99,6 +104,7 @@ class Fill:
     vertex_confidence: FloatArray
     triangle_hole_id: IntArray
     triangle_confidence: FloatArray
+    vertex_colours: FloatArray | None = None
 
 
 @dataclass(frozen=True)

@@ -64,6 +64,9 @@ class BinaryStl:
         facets["vertices"][corner_moved] = moved.vertices.reshape(-1, 3, 3)[corner_moved]
         return self.data[:HEADER_SIZE] + facets.tobytes() + self.data[HEADER_SIZE + facets.nbytes :]
 
+    def vertex_colours(self, scan: Scan) -> None:
+        """None; see `vertex_attributes`."""
+
     def vertex_attributes(self, scan: Scan) -> VertexAttributes:
         """Nothing: the colour conventions of STL differ from program to program."""
         return VertexAttributes()
@@ -100,6 +103,9 @@ class AsciiStl:
             before, after = np.concatenate([stored, before]), np.concatenate([fresh, after])
             rows = np.concatenate([is_moved.reshape(-1, 3).any(axis=1), rows])
         return replace_numbers(self.data, spans, before, after, rows)
+
+    def vertex_colours(self, scan: Scan) -> None:
+        """None: ascii STL knows no colours."""
 
     def vertex_attributes(self, scan: Scan) -> VertexAttributes:
         """Nothing: ascii STL knows no colours."""

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from quadpatch.formats.attributes import extend_over_vertices, nearest_rim_triangle
+from quadpatch.formats.attributes import extend_colours, nearest_rim_triangle
 from quadpatch.formats.gltf.container import GltfFile, dump_gltf
 from quadpatch.formats.gltf.moved_scene import move_in_gltf
 from quadpatch.formats.gltf.primitive import Corners, Store, build_primitive
@@ -76,16 +76,20 @@ class GltfSource:
 
     def vertex_attributes(self, scan: Scan) -> VertexAttributes:
         """Colours, normals in the scene, and texture coordinates with v upwards."""
-        colours = self._gather(scan, "COLOR_0", 4)
         texture = self._gather(scan, "TEXCOORD_0", 2)
         normals = self.scene_normals(scan)
         if texture is not None:
             texture = texture * np.array([1.0, -1.0]) + np.array([0.0, 1.0])
         return VertexAttributes(
-            None if colours is None else colours * 255.0,
+            self.vertex_colours(scan),
             None if normals is None else np.nan_to_num(normals),
             None if texture is None else texture[scan.triangles],
         )
+
+    def vertex_colours(self, scan: Scan) -> FloatArray | None:
+        """Colours of the vertices."""
+        colours = self._gather(scan, "COLOR_0", 4)
+        return None if colours is None else colours * 255.0
 
     def scene_normals(self, scan: Scan) -> FloatArray | None:
         """Return the normals (n, 3) in the scene, NaN where a primitive lacks them; None where all do."""
@@ -141,7 +145,7 @@ class GltfSource:
         """Attributes of all vertices and new corners that the new primitives draw on."""
         colours = self._gather(scan, "COLOR_0", 4)
         if colours is not None:
-            colours = np.concatenate([colours, extend_over_vertices(fill, colours)])
+            colours = np.concatenate([colours, extend_colours(fill, colours, 1.0)])
         texture = self._gather(scan, "TEXCOORD_0", 2)
         extended = None
         if texture is not None:

@@ -9,6 +9,7 @@ import numpy as np
 
 from quadpatch.errors import FormatError
 from quadpatch.formats.attributes import (
+    extend_colours,
     extend_over_vertices,
     nearest_rim_triangle,
     nearest_rim_vertex,
@@ -20,7 +21,7 @@ from quadpatch.formats.ply.encoding import Table
 from quadpatch.formats.ply.file import INDEX_NAMES, PlyFile
 from quadpatch.formats.ply.header import Property, value_range
 from quadpatch.formats.ply.rows import ListColumn, Rows, Values
-from quadpatch.formats.ply.vertex_attributes import wedge_texture
+from quadpatch.formats.ply.vertex_attributes import colour_columns, wedge_texture
 from quadpatch.formats.scan import Fill, Scan
 from quadpatch.formats.texture import extend_over_corners
 from quadpatch.types import FloatArray, IntArray
@@ -45,6 +46,7 @@ def new_vertex_rows(scan: Scan, file: PlyFile, fill: Fill) -> list[Table]:
     normals = vertex_normals(scan, fill)
     given |= {name: normals[:, axis] for axis, name in enumerate(_NORMALS)} | marks
     given |= _spread_columns(rows, fill, given)
+    given |= _colours(rows, fill)
     nearest = nearest_rim_vertex(scan, fill)
     columns = [_column(rows, index, given, nearest) for index in range(len(rows.columns))]
     return [Table(len(fill.vertices), tuple(columns), marks)]
@@ -60,6 +62,16 @@ def _spread_columns(rows: Rows, fill: Fill, given: dict[str, Values]) -> dict[st
         return {}
     columns = [to_float64(column) for name in names if (column := rows.scalar(name)) is not None]
     return dict(zip(names, extend_over_vertices(fill, np.stack(columns, axis=1)).T, strict=True))
+
+
+def _colours(rows: Rows, fill: Fill) -> dict[str, Values]:
+    """Columns of red, green and blue where the fill brings colours."""
+    found = colour_columns(rows)
+    if found is None or fill.vertex_colours is None:
+        return {}
+    names, top = found
+    table = np.stack([to_float64(column) for name in names if (column := rows.scalar(name)) is not None], axis=1)
+    return dict(zip(names, extend_colours(fill, table, top).T, strict=True))
 
 
 def _is_continuous(prop: Property) -> bool:

@@ -17,11 +17,11 @@ from quadpatch.formats.ply.file import INDEX_NAMES, PlyFile
 from quadpatch.formats.ply.header import Element, parse_header
 from quadpatch.formats.ply.moved_rows import move_in_ply
 from quadpatch.formats.ply.rows import Rows
-from quadpatch.formats.ply.vertex_attributes import ply_vertex_attributes
+from quadpatch.formats.ply.vertex_attributes import ply_vertex_attributes, ply_vertex_colours
 from quadpatch.formats.ply.writer import append_to_ply
 from quadpatch.formats.polygons import triangulate_polygons, triangulate_strips
 from quadpatch.formats.scan import Fill, Moved, Scan, VertexAttributes
-from quadpatch.types import IntArray, Triangles, Vertices
+from quadpatch.types import FloatArray, IntArray, Triangles, Vertices
 
 
 @dataclass(frozen=True)
@@ -37,6 +37,10 @@ class PlySource:
     def move(self, scan: Scan, moved: Moved) -> bytes:
         """Hand the file back with vertices at other positions."""
         return move_in_ply(scan, self.file, moved)
+
+    def vertex_colours(self, scan: Scan) -> FloatArray | None:
+        """Say what colours the file has."""
+        return ply_vertex_colours(self.file)
 
     def vertex_attributes(self, scan: Scan) -> VertexAttributes:
         """Say what colours, normals and texture coordinates the file has."""

@@ -36,6 +36,12 @@ def ply_vertex_attributes(scan: Scan, file: PlyFile) -> VertexAttributes:
     return VertexAttributes(_colours(rows), normals, texture)
 
 
+def ply_vertex_colours(file: PlyFile) -> FloatArray | None:
+    """Find the colours (n, 4) of the vertices alone, see `quadpatch.formats.scan.VertexAttributes`."""
+    rows = file.element("vertex")
+    return None if rows is None else _colours(rows)
+
+
 def _columns(rows: Rows, choices: tuple[tuple[str, ...], ...]) -> FloatArray | None:
     """Columns of the first choice of names that the element has in full."""
     for names in choices:
@@ -45,14 +51,23 @@ def _columns(rows: Rows, choices: tuple[tuple[str, ...], ...]) -> FloatArray | N
     return None
 
 
+def colour_columns(rows: Rows) -> tuple[tuple[str, ...], float] | None:
+    """Names of the columns of red, green and blue, and full intensity; None where the element has no colours."""
+    for names in _COLOURS:
+        columns = [column for name in names if (column := rows.scalar(name)) is not None]
+        if len(columns) == len(names):
+            # Integers fill the range of their type, fractions run to 1.
+            whole = columns[0].dtype.kind != "f"
+            return names, float(np.iinfo(columns[0].dtype).max) if whole else 1.0
+    return None
+
+
 def _colours(rows: Rows) -> FloatArray | None:
-    colours = _columns(rows, _COLOURS)
-    if colours is None:
+    found = colour_columns(rows)
+    colours = None if found is None else _columns(rows, (found[0],))
+    if found is None or colours is None:
         return None
-    alpha = _columns(rows, (("alpha",),))
-    column = next(column for name in ("red", "diffuse_red", "r") if (column := rows.scalar(name)) is not None)
-    # Integers fill the range of their type, fractions run to 1.
-    top = 1.0 if column.dtype.kind == "f" else float(np.iinfo(column.dtype).max)
+    alpha, top = _columns(rows, (("alpha",),)), found[1]
     opaque = np.full((len(colours), 1), top)
     return np.concatenate([colours, opaque if alpha is None else alpha], axis=1) * (255.0 / top)
 

@@ -58,15 +58,19 @@ class ThreemfSource:
         return self.models[origin.path].objects[origin.object_id]
 
     def vertex_attributes(self, scan: Scan) -> VertexAttributes:
+        """Colours alone."""
+        return VertexAttributes(self.vertex_colours(scan))
+
+    def vertex_colours(self, scan: Scan) -> FloatArray | None:
         """Colour that the first triangle gives each vertex, from colour groups and base materials."""
         if not any(model.colours for model in self.models.values()):
-            return VertexAttributes()
+            return None
         colours = np.full((len(scan.vertices), 4), np.nan)
         for number, part in enumerate(self.parts):
             table = colours[part.first : part.first + len(part.vertices)]
             groups = self.models[self.origins[number].path].colours
             _colour_vertices(self._entry(number), groups, table)
-        return VertexAttributes(None if np.isnan(colours).all() else colours)
+        return None if np.isnan(colours).all() else colours
 
     def move(self, scan: Scan, moved: Moved) -> bytes:
         """Hand the package back with vertices at other positions."""

@@ -1,5 +1,8 @@
 """Attributes of invented vertices and triangles."""
 
+from dataclasses import replace
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -10,7 +13,10 @@ from quadpatch.formats.attributes import (
     triangle_normals,
     vertex_normals,
 )
+from quadpatch.formats.reading import read_scan
 from quadpatch.formats.scan import Fill, Scan
+from quadpatch.formats.writing import write_scan
+from tests.quadpatch.formats.coloured_files import FILES, colours_of
 from tests.quadpatch.formats.fills import EMPTY, as_scan, cap_holes
 from tests.quadpatch.shapes import open_grid, punched, sphere
 
@@ -101,3 +107,27 @@ def test_labels_come_from_the_nearest_rim_vertex_and_triangle() -> None:
     best = np.linalg.norm(scan.vertices[rim][None] - fill.vertices[:, None], axis=2).min(axis=1)
     assert np.allclose(found, best)
     assert np.isin(scan.triangles[nearest_rim_triangle(scan, fill)], rim).any(axis=1).all()
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_colours_that_a_fill_brings_are_written_and_others_are_extended(name: str, tmp_path: Path) -> None:
+    mesh = punched(sphere(3), (0, 0, 1), (1, 0, 0), radius=0.4)
+    (tmp_path / name).write_bytes(FILES[name](mesh, 128 + 100 * mesh.vertices))
+    scan = read_scan(tmp_path / name)
+    fill = cap_holes(scan)
+    brought = np.random.default_rng(0).integers(0, 256, (len(fill.vertices), 3)).astype(np.float64)
+    brought[::5] = np.nan
+    found = {}
+    for colours in (None, brought):
+        path = tmp_path / f"out{'' if colours is None else 's'}{Path(name).suffix}"
+        write_scan(path, scan, replace(fill, vertex_colours=colours))
+        again = read_scan(path)
+        # A binary scene repeats the rim in front of the new vertices.
+        new = np.isin(again.vertices.astype("f4"), fill.vertices.astype("f4")).all(axis=1)
+        order = np.lexsort(again.vertices[new].T)
+        found[colours is None] = colours_of(again)[new][order]
+        assert np.abs(colours_of(again)[: len(scan.vertices)] - colours_of(scan)).max() == 0
+    expected = brought[np.lexsort(fill.vertices.astype("f4" if name.endswith("glb") else "f8").T)]
+    is_brought = np.isfinite(expected).all(axis=1)
+    assert np.abs(found[False] - expected)[is_brought].max() < 0.01
+    assert (found[False][~is_brought] == found[True][~is_brought]).all()

@@ -28,6 +28,9 @@ class Broken:
     def move(self, scan: Scan, moved: Moved) -> bytes:
         raise self.error
 
+    def vertex_colours(self, scan: Scan) -> None:
+        raise AssertionError
+
     def vertex_attributes(self, scan: Scan) -> VertexAttributes:
         raise self.error
 
