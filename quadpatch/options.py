@@ -7,7 +7,7 @@ from typing import Any, Literal, TypeVar, get_args
 
 from quadpatch.errors import OptionError
 from shared_rules.hole_selection import MODEL_FILLS_ONLY, Cap, HoleKind, RuleAction, names_fills, repeated_loop
-from shared_rules.option_words import Effort, Preset, Recipe
+from shared_rules.option_words import Colours, Effort, Preset, Recipe
 
 RESOLUTION_RANGE = (8, 128)
 OVERLAP_RANGE = (0, 8)
@@ -210,6 +210,9 @@ class RepairOptions:
         rounding in the file accounts for.
     effort : str
         How much the model `auto` tries: `fast`, `standard` or `best`.
+    colours : str
+        Of new vertices where measured ones have colours: `auto` carries their texture on where calibration says that
+        this is better, `harmonic` only spreads the colours of the rim.
     """
 
     holes: HoleOptions = field(default_factory=HoleOptions)
@@ -220,8 +223,10 @@ class RepairOptions:
     network: NetworkOptions = field(default_factory=NetworkOptions)
     weld_tolerance: float | Literal["auto"] = "auto"
     effort: Effort = "standard"
+    colours: Colours = "auto"
 
     def __post_init__(self) -> None:
+        _check_choice("colours", self.colours, get_args(Colours))
         check_weld_tolerance(self.weld_tolerance)
         _check_choice("recipe", self.recipe, get_args(Recipe))
         _check_choice("effort", self.effort, get_args(Effort))

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from quadpatch.calibration.kept import KeptCalibrations
+from quadpatch.coloured_fill import colour_fill
 from quadpatch.errors import EmptyMeshError
 from quadpatch.filling.bridge_proposals import propose_bridges
 from quadpatch.filling.islands import hosts_of
@@ -117,10 +118,12 @@ def repair_and_keep(  # noqa: PLR0913, PLR0917  the same arguments as every task
         named = written_as(output, scan)
         precision = check_precision(scan, named)
     repair = _inpaint(welded, inpainter, options, stages, kept)
+    coloured = colour_fill(scan, welded, repair.filled, named, options, stages)
     with stages.stage("write"):
-        losses = write_scan(output, scan, _fill(scan, welded, repair))
+        losses = write_scan(output, scan, replace(_fill(scan, welded, repair), vertex_colours=coloured.colours))
     warnings = [
         *repair.warnings,
+        *coloured.warnings,
         *describe_redundancy(welded.counts),
         *precision,
         *losses,
@@ -128,6 +131,7 @@ def repair_and_keep(  # noqa: PLR0913, PLR0917  the same arguments as every task
     ]
     repair = replace(repair, warnings=warnings)
     report = build_report(scan, welded, repair, options, card, stages)
+    report["colours"] = coloured.described()
     number_holes(report, scan.next_hole_id if named.suffix.lower() in NUMBERED else None)
     return RepairedFile(report, repair)
 

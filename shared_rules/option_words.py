@@ -13,3 +13,5 @@ Preset = Literal["type1", "type2"]
 RestorationBase = Literal["mesh", "poisson"]
 # Formats in which a mesh comes back.
 OutputFormat = Literal["ply", "stl", "obj", "off", "glb", "3mf"]
+# How new vertices get colours: carried on from the surroundings where that is better, or spread from the rim.
+Colours = Literal["auto", "harmonic"]

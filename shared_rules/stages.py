@@ -13,6 +13,7 @@ Stage = Literal[
     "inpaint",
     "reconstruct",
     "judge",
+    "colour",
     "write",
 ]
 STAGES: tuple[Stage, ...] = get_args(Stage)

@@ -31,7 +31,7 @@ from quadpatch.formats.output_files import check_folder, check_outputs, is_strea
 from quadpatch.options import DictionaryOptions, HoleOptions, HoleRule, NetworkOptions, PatchOptions, RepairOptions
 from shared_rules.competition import outcome
 from shared_rules.hole_selection import Cap
-from shared_rules.option_words import Effort, Recipe
+from shared_rules.option_words import Colours, Effort, Recipe
 from shared_rules.rule_text import RuleTextError, read_bridge, read_rule
 
 if TYPE_CHECKING:
@@ -114,6 +114,13 @@ def fill(  # noqa: PLR0913, PLR0917  one argument per flag
         float, typer.Option(help="Fit at most so long (self-network, effort best).")
     ] = FITTING.seconds,
     weld_tolerance: WeldTolerance = "auto",
+    colours: Annotated[
+        Colours,
+        typer.Option(
+            help="Colours of new vertices: the texture around a hole carried on where calibration finds that better, "
+            "or just spread from its rim."
+        ),
+    ] = "auto",
     seed: Seed = 0,
     quiet: Quiet = False,
 ) -> None:
@@ -137,6 +144,7 @@ def fill(  # noqa: PLR0913, PLR0917  one argument per flag
             NetworkOptions(fit_steps, fit_seconds),
             read_tolerance(weld_tolerance),
             effort,
+            colours,
         )
         if calibration and recipe == "paper":
             raise OptionError("--calibration goes with the recipe default: the paper calibrates nothing")

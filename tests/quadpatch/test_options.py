@@ -92,6 +92,7 @@ def test_what_can_not_be_meant_is_refused_with_a_code(values: dict[str, Any]) ->
         ({"weld_tolerance": -1}, "weld_tolerance must be auto, or finite and 0 or more; it is -1"),
         ({"seed": -1}, "seed must be a whole number of 0 or more; it is -1"),
         ({"colour": "red"}, "colour"),
+        ({"colours": "red"}, "colours must be one of auto, harmonic; it is 'red'"),
         ({"recipe": "ours"}, "recipe must be one of default, paper; it is 'ours'"),
         ({"dictionary": {"atoms": 9}}, r"dictionary\.atoms and dictionary\.nonzero go with the recipe paper only"),
         ({"network": {"steps": 0}}, r"network\.steps must be a whole number between 1 and 100000; it is 0"),

@@ -177,7 +177,7 @@ def test_every_flag_about_holes_chooses_them(
 
 def test_flags_about_patches_reach_them(scan_file: Path, tmp_path: Path) -> None:
     report = tmp_path / "out.json"
-    flags = ["--patch-length", "0.5", "--resolution", "18", "--overlap", "1", "--seed", "3"]
+    flags = ["--patch-length", "0.5", "--resolution", "18", "--overlap", "1", "--seed", "3", "--colours", "harmonic"]
     result = run("fill", scan_file, "-o", tmp_path / "out.ply", "--report", report, *flags)
     assert result.exit_code == 0, result.output
     content = json.loads(report.read_text())
@@ -194,6 +194,7 @@ def test_flags_about_patches_reach_them(scan_file: Path, tmp_path: Path) -> None
         },
         "patches": {"length": 0.5, "resolution": 18, "overlap": 1, "preset": None},
         "weld_tolerance": "auto",
+        "colours": "harmonic",
         "seed": 3,
         "recipe": "default",
         "dictionary": {"atoms": None, "nonzero": None},

@@ -1,0 +1,1 @@
+"""Colours of new vertices: the texture around a hole is carried on over its fill."""
