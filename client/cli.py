@@ -19,6 +19,7 @@ from client.options import (
     BridgeOption,
     CapOption,
     CloseupsOption,
+    ColoursOption,
     FormatOption,
     HoleChoice,
     HoleOption,
@@ -130,6 +131,7 @@ def repair(  # noqa: PLR0913 - one parameter per option of the command line
     seed: SeedOption = 0,
     label: LabelOption = None,
     format_: FormatOption = None,
+    colours: ColoursOption = None,
     report: ReportOption = None,
     preview: PreviewOption = None,
     closeups: CloseupsOption = None,
@@ -154,6 +156,7 @@ def repair(  # noqa: PLR0913 - one parameter per option of the command line
             rest={
                 "seed": seed,
                 "weld_tolerance": tolerance(weld_tolerance),
+                "colours": colours,
                 "label": label,
                 "output": {
                     "format": format_ or format_of(output),

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 import typer
 
-from shared_rules.option_words import Effort, OutputFormat, Preset, Recipe
+from shared_rules.option_words import Colours, Effort, OutputFormat, Preset, Recipe
 
 DEFAULT_URL = "http://127.0.0.1:8000"
 MethodName = Literal["auto", "dictionary", "cnn", "smooth"]
@@ -115,6 +115,14 @@ FormatOption = Annotated[
 ]
 OverwriteOption = Annotated[
     bool, typer.Option("--overwrite", help="Let OUTPUT take the place of MESH.", rich_help_panel=OUTPUT)
+]
+ColoursOption = Annotated[
+    Colours | None,
+    typer.Option(
+        help="Colours of new vertices: the texture around a hole carried on, or just spread from its rim.",
+        show_default="auto",
+        rich_help_panel=OUTPUT,
+    ),
 ]
 SeedOption = Annotated[int, typer.Option(help="Starts every random choice.")]
 LabelOption = Annotated[str | None, typer.Option(help="A name for the job, for people.")]

@@ -100,7 +100,7 @@ def method_options(spec: JobSpec, time_s: float) -> dict[str, Any]:
     patches = {} if isinstance(spec.method, SmoothMethod) else spec.method.patches.model_dump()
     recipe = "default" if isinstance(spec.method, SmoothMethod | AutoMethod) else spec.method.recipe
     options = {"holes": spec.holes.model_dump(), "patches": patches, "seed": spec.seed, "recipe": recipe}
-    options["weld_tolerance"] = spec.weld_tolerance
+    options |= {"weld_tolerance": spec.weld_tolerance, "colours": spec.colours}
     if isinstance(spec.method, AutoMethod):
         options["effort"] = spec.method.effort
     if fits_a_network(spec.method):

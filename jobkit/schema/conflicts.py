@@ -82,6 +82,7 @@ def _options_of_fill(spec: RepairSpec) -> str | None:
     given = {
         "holes": spec.holes != HoleSelection(),
         "weld_tolerance": spec.weld_tolerance != "auto",
+        "colours": spec.colours != "auto",
         "output.closeups": spec.output.closeups,
     }
     name = next((name for name, is_given in given.items() if is_given), None)

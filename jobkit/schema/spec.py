@@ -8,7 +8,7 @@ from jobkit.schema.base import TEXT_PATTERN, WHOLE, MeshId, Request
 from jobkit.schema.methods import SELF, AutoMethod, DictionaryMethod, Method
 from jobkit.schema.tasks import Denoising, Encoding, Restoring
 from shared_rules.hole_selection import Cap, HoleKind, RuleAction, repeated_loop
-from shared_rules.option_words import OutputFormat
+from shared_rules.option_words import Colours, OutputFormat
 from shared_rules.tasks import FILL, Task
 
 # `qpz` is what the task `encode` hands back and `decode` reads; it is a mesh that is no list of triangles.
@@ -172,6 +172,12 @@ class RepairSpec(Request):
         "and `holes.bridges` are refused with any other tolerance.",
         examples=["auto", 0.001],
     )
+    colours: Colours = Field(
+        default="auto",
+        description="Colours of new vertices, where the mesh has colours of vertices. `auto`: the texture around a "
+        "hole is carried on where calibration finds that better; `harmonic`: the colours of the rim are spread.",
+        examples=["auto"],
+    )
     output: Output = Field(default_factory=Output, description="What is handed back.")
     limits: Limits = Field(default_factory=Limits, description="Ceilings of one attempt.")
     seed: Seed = Field(default=0, description="Starts every random choice.", examples=[0])
@@ -210,18 +216,22 @@ class JobSpec(RepairSpec):
         return None if self.denoise is None else self.denoise.reference
 
 
-# Fields that came after the first release of the contract.
-_LATER_FIELDS = {"task", "restore", "denoise", "encode"}
+# Fields that came after the first release of the contract, in groups that came together.
+_LATER_FIELDS = ({"task", "restore", "denoise", "encode"}, {"colours"})
 
 
 def identity_of(spec: JobSpec) -> str:
     """Return the JSON text by which two requests for the same thing are known as such.
 
-    It is what versions wrote that knew no task but `fill`, and no bridges: a request that is repeated across an upgrade
-    stays the same.
+    It is what earlier versions wrote, which did not know all fields: a request that is repeated across an upgrade stays
+    the same.
     """
-    is_fill = all(getattr(spec, name) == JobSpec.model_fields[name].default for name in _LATER_FIELDS)
-    left_out: dict[str, Any] = dict.fromkeys(_LATER_FIELDS, True) if is_fill else {}
+
+    def is_default(name: str) -> bool:
+        return bool(getattr(spec, name) == JobSpec.model_fields[name].default)
+
+    unused = [group for group in _LATER_FIELDS if all(map(is_default, group))]
+    left_out: dict[str, Any] = {name: True for group in unused for name in group}
     if not spec.holes.bridges:
         left_out["holes"] = {"bridges"}
     return spec.model_dump_json(exclude=left_out)

@@ -115,6 +115,13 @@ def test_a_weld_tolerance_that_is_none_is_named(word: str) -> None:
         make_spec(MESH_ID, HoleChoice(), MethodChoice(), weld_tolerance=tolerance(word))
 
 
+def test_colours_reach_the_spec() -> None:
+    assert make_spec(MESH_ID, HoleChoice(), MethodChoice(), colours="harmonic").colours == "harmonic"
+    assert make_spec(MESH_ID, HoleChoice(), MethodChoice(), colours=None).colours == "auto"
+    with pytest.raises(UsageError, match="colours"):
+        make_spec(MESH_ID, HoleChoice(), MethodChoice(), colours="red")
+
+
 def test_an_option_out_of_its_range_is_named() -> None:
     with pytest.raises(UsageError, match="resolution"):
         make_spec(MESH_ID, HoleChoice(), MethodChoice(resolution=7))

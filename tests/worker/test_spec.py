@@ -85,6 +85,12 @@ def test_the_weld_tolerance_of_a_job_reaches_the_method() -> None:
         assert options.weld_tolerance == tolerance
 
 
+def test_the_colours_of_a_job_reach_the_method() -> None:
+    for colours in ("auto", "harmonic"):
+        options = RepairOptions.from_dict(method_options(spec(colours=colours), LIMITS.time_s))
+        assert options.colours == colours
+
+
 def test_how_long_to_fit_a_network_reaches_the_method() -> None:
     rest = {"fitting": {"steps": 30, "seconds": 45.0}, "patches": {"length": 2.0}}
     expected = RepairOptions(patches=PatchOptions(length=2.0), network=NetworkOptions(30, 45.0))

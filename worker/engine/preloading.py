@@ -13,6 +13,7 @@ import embreex.rtcore_scene
 import manifold3d
 import PIL.Image
 
+import quadpatch.colours.continuation
 import quadpatch.formats.gltf.encoder
 import quadpatch.formats.gltf.reader
 import quadpatch.formats.threemf.encoder

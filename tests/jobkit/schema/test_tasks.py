@@ -74,6 +74,7 @@ def test_what_is_not_in_the_contract_is_refused(change: dict[str, Any]) -> None:
         ("denoise", NAN, "restore holds options of the task restore"),
         ("denoise", {"holes": {"ids": [1]}}, "holes goes with the task fill"),
         ("encode", {"weld_tolerance": 0.1}, "weld_tolerance goes with the task fill"),
+        ("denoise", {"colours": "harmonic"}, "colours goes with the task fill"),
         ("decode", {"output": {"closeups": True}}, "output.closeups goes with the task fill"),
         ("restore", {"restore": None}, "the task restore needs restore.missing"),
         ("encode", {"encode": None}, "the task encode needs encode.max_error"),
@@ -137,6 +138,15 @@ def test_bridges_are_part_of_the_identity_where_there_are_any() -> None:
     )
     assert identity_of(JobSpec.model_validate(MESH)) == plain
     assert len({plain, *bridged}) == 3
+
+
+def test_the_identity_of_a_task_is_what_it_was_before_there_were_colours() -> None:
+    plain = spec("denoise")
+    assert "colours" not in json.loads(identity_of(plain))
+    assert "task" in json.loads(identity_of(plain))
+    asked = JobSpec.model_validate(MESH | {"colours": "harmonic"})
+    assert json.loads(identity_of(asked))["colours"] == "harmonic"
+    assert "task" not in json.loads(identity_of(asked))
 
 
 def test_other_tasks_have_an_identity_of_their_own() -> None:
