@@ -83,6 +83,9 @@ def paragraph(name: str, job: Job, report: Mapping[str, Any]) -> str:
     left_open = open_holes(report)
     if left_open:
         sentences.append(f"Left open: {left_open}.")
+    # A service of an earlier version says nothing of colours.
+    if report.get("colours"):
+        sentences.append(f"Colours of new vertices: {report['colours']['method']}.")
     sentences.append(f"The repair took {job.result.seconds:.1f} s ({stage_seconds(report)}).")
     return " ".join([*sentences, *_warnings(job.result.warnings)])
 

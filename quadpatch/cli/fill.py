@@ -191,6 +191,8 @@ def summary(report: dict[str, Any]) -> str:
     model = f"{base}, fitted to this mesh" if base else "the model"
     text = f"{n_holes(counts['found'])}: {counts['filled']} filled by {model}, {counts['filled_smooth']} by geometry"
     text += _reasons(report, "filled_smooth") + f", {open_holes} left open" + _reasons(report, "skipped", "refused")
+    if report["colours"]:
+        text += f"; colours: {report['colours']['method']}"
     competition = outcome(report["model"])
     return " ".join(filter(None, [f"{text}.", competition, closing_words(report)]))
 

@@ -58,6 +58,8 @@ def test_a_paragraph_tells_counts_reasons_and_seconds() -> None:
         "scan.ply has 1 hole: 1 filled smoothly. 1,200 vertices and 2,400 triangles were added; "
         "every measured vertex kept its bits. The repair took 1.2 s (read 0.3 s)."
     )
+    coloured = paragraph("scan.ply", job, {**report, "colours": {"method": "exemplars", "calibration": None}})
+    assert " Colours of new vertices: exemplars. The repair took" in coloured
 
 
 def test_a_paragraph_tells_which_model_was_best() -> None:

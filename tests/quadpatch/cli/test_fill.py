@@ -343,6 +343,7 @@ def test_the_summary_counts_reasons() -> None:
             {"verdict": "filled", "reason": None},
             {"verdict": "filled_smooth", "reason": "no gain"},
         ],
+        "colours": None,
         "warnings": ["beware"],
         "stages": [{"name": "read", "seconds": 1.25}, {"name": "fill", "seconds": 0.5}],
     }
@@ -360,6 +361,8 @@ def test_the_summary_counts_reasons() -> None:
     competed = {**report, "model": {"name": "auto", "shares": {"self": 1.0}, "trials": trials}}
     sentence = "Least error on calibration holes: a dictionary of this mesh, 12 % less than geometry alone."
     assert summary(competed) == expected.replace("1.8 s", f"{sentence} 1.8 s")
+    coloured = {**report, "colours": {"method": "exemplars", "calibration": None}}
+    assert "left open (2 × too wide; 1 × no way); colours: exemplars. " in summary(coloured)
 
 
 def test_the_module_runs_as_a_process(scan_file: Path, tmp_path: Path) -> None:
