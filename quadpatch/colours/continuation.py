@@ -26,6 +26,8 @@ _LENDING_BUDGET = 3e6
 # seconds at most on one core: so many multiplications.
 _SOURCES = (64, 512)
 _MATCHING_BUDGET = 3e10
+# With fewer sources than this, cells and sources of half the size are tried: what was measured is a narrow strip.
+_LEAST_FOUND = 32
 
 
 @dataclass(frozen=True)
@@ -107,12 +109,17 @@ def _coloured_part(filled: FilledMesh, colours: FloatArray) -> tuple[TriangleMes
 
 def _new_colours(
     surface: ColouredSurface, n_holes: int, truth: FloatArray, rng: np.random.Generator
-) -> tuple[FloatArray | None, Verdict]:
+) -> tuple[FloatArray | None, Verdict | None]:
     """Colour the first gaps (n, c) by what is learned from the others, whose truth is known; None for harmonic."""
     real, tried = (GapGraph.of_gaps(surface, *ends) for ends in ((0, n_holes), (n_holes, surface.n_gaps)))
-    radius = cell_radius(surface, real)
-    cells = divide(surface, real, radius)
-    matcher = _Matcher(surface, radius, len(cells.seeds), rng)
+    widest = cell_radius(surface, real)
+    for radius in (widest, widest / 2, widest / 4):
+        cells = divide(surface, real, radius)
+        matcher = _Matcher(surface, radius, len(cells.seeds), rng)
+        if matcher.n_sources >= _LEAST_FOUND:
+            break
+    else:
+        return None, None
     maker = matcher.detail_maker(tried, divide(surface, tried, radius))
     belief, verdict = calibrate(surface, maker, truth[tried.vertices])
     if not verdict.is_better:
@@ -132,6 +139,11 @@ class _Matcher:
     n_cells : int
         That exemplars are wanted for.
     rng : numpy.random.Generator
+
+    Attributes
+    ----------
+    n_sources : int
+        That were found.
     """
 
     def __init__(self, surface: ColouredSurface, radius: float, n_cells: int, rng: np.random.Generator) -> None:
@@ -139,6 +151,7 @@ class _Matcher:
         self._sampler = PatchSampler(surface, 2 * (radius + MARGIN * surface.edge_length))
         affordable = _MATCHING_BUDGET / (n_cells * cost_of_match(surface.colours.shape[1]))
         self._sources = self._sampler.sources(int(np.clip(affordable, *_SOURCES)), rng)
+        self.n_sources = len(self._sources)
 
     def detail_maker(self, graph: GapGraph, cells: Cells) -> DetailMaker:
         """Look for exemplars for the cells of some gaps."""

@@ -9,7 +9,7 @@ from quadpatch.types import BoolArray, IntArray, TriangleMesh
 
 # Disks are at most so wide, in mean edges; diameters that are tried, in diameters of the real holes.
 _WIDEST = 32.0
-_SIZES = (1.0, 0.7, 0.5)
+_SIZES = (1.0, 0.7, 0.5, 0.35)
 _ENOUGH = 16
 # A disk through a thin or crumpled part comes in pieces: smaller ones than this share of the largest are no holes.
 _LEAST_PIECE = 0.25

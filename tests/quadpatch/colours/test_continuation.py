@@ -3,8 +3,11 @@ import pytest
 
 from quadpatch.colours.continuation import NewColours, continue_colours
 from quadpatch.filling.filled_mesh import FilledMesh
-from quadpatch.types import FloatArray
+from quadpatch.options import HoleOptions, RepairOptions
+from quadpatch.recipes.default import inpaint
+from quadpatch.types import FloatArray, TriangleMesh
 from tests.quadpatch.colours.coloured import Coloured, even, grains, plate, stripes
+from tests.quadpatch.shapes import bumpy_plate
 
 
 @pytest.fixture(scope="module")
@@ -126,4 +129,24 @@ def test_without_room_for_calibration_colours_stay_harmonic() -> None:
 def test_a_mesh_without_fills_has_no_new_colours(filled: FilledMesh) -> None:
     nothing = filled.without(np.arange(len(filled.disagreement)))
     scan = coloured(nothing, grains(filled.mesh.vertices, np.random.default_rng(1), 0.06))
+    assert continued(scan) == NewColours(None)
+
+
+def test_on_narrow_strips_smaller_cells_find_sources() -> None:
+    """A gap as long as the sheet, between strips that no patch of its size fits on."""
+    sheet = bumpy_plate(120, 2.0)
+    middle = np.abs(sheet.vertices[sheet.triangles][:, :, 0].mean(axis=1))
+    torn = TriangleMesh(sheet.vertices, sheet.triangles[middle > 0.05])
+    filled = inpaint(torn, None, RepairOptions(HoleOptions(bridges=((0, 1),)))).filled
+    scan = coloured(filled, 128 + np.random.default_rng(1).normal(0, 25, (len(filled.mesh.vertices), 3)))
+    found = continued(scan)
+    assert found.verdict is not None
+    assert found.verdict.n_holes >= 12
+
+
+def test_without_room_for_any_source_colours_stay_harmonic(
+    granite: tuple[Coloured, FloatArray, NewColours], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("quadpatch.colours.patches._LEAST_MEASURED", 1.1)
+    scan, _, _ = granite
     assert continued(scan) == NewColours(None)
