@@ -23,7 +23,7 @@ MOST_BYTES = 1 << 16
 # Weights of one hole sum to 1 within this: they are rounded once for each energy.
 _ROUNDING = 1e-12
 _KEY = re.compile(r"[0-9a-f]{64}")
-_WEIGHTS = ("membrane", "plate", "variation")
+_WEIGHTS = ("membrane", "plate", "variation", "slope")
 _FIELDS = (
     *("energies", "log_error", "log_miss", "best", "belief"),
     *("error_model", "crease_share", "is_graded", "weights", "seconds"),

@@ -29,11 +29,15 @@ class Energy:
     """Weights of membrane (area), thin plate (curvature) and minimum variation (change of curvature).
 
     Without unit: lengths in them are mean edge lengths of the fill.
+
+    `slope` is how many times as steep as the measured surface the fill leaves the rim, before the energy levels it out.
+    A thin plate bulges too little over the middle of a hole; with 1.5 it bulges as much as scanned surfaces do.
     """
 
     membrane: float = 0.0
     plate: float = 0.0
     variation: float = 0.0
+    slope: float = 1.0
 
 
 THIN_PLATE = Energy(plate=1.0)
@@ -111,12 +115,12 @@ class FairingEquations:
         number[free] = self._n_fixed + self.order.position
         self._numbered = np.empty_like(vertices)
         self._numbered[number] = vertices
-        laplacian, area = _laplacian(self._numbered, number[triangles], uniform=uniform)
+        self._triangles, self._is_uniform = number[triangles], uniform
+        self._laplacian, area = _laplacian(self._numbered, self._triangles, uniform=uniform)
         unit = area[self._n_fixed :].mean() if unit_area is None else unit_area
-        self._step = sparse.csr_array(sparse.diags_array(unit / area) @ laplacian)
-        # Rows of free vertices only: those of the outermost ring have lost triangles at the cut.
-        self._rows = [sparse.csr_array(laplacian[self._n_fixed :])]
-        self._terms: dict[int, _Term] = {}
+        self._inverse_area = sparse.diags_array(unit / area)
+        self._powers: dict[float, _Powers] = {}
+        self._terms: dict[tuple[float, int], _Term] = {}
 
     def minimise(self, energy: Energy) -> Vertices:
         """Return the vertices (n, 3) of least energy, as `fair` does."""
@@ -124,7 +128,7 @@ class FairingEquations:
         if not self._free.any():
             return result
         weights = (energy.membrane, energy.plate, energy.variation)
-        terms = [(weight, self._term(power)) for power, weight in enumerate(weights) if weight]
+        terms = [(weight, self._term(energy.slope, power)) for power, weight in enumerate(weights) if weight]
         right = np.zeros((len(self._free) - self._n_fixed, 3))
         for weight, term in terms:
             right -= weight * term.fixed_part
@@ -135,18 +139,39 @@ class FairingEquations:
         result[self._free] = solution[self.order.position]
         return result
 
-    def _term(self, power: int) -> "_Term":
-        if power not in self._terms:
-            columns, n = sparse.csc_array(self._rows_of(power)), self._n_fixed
+    def _term(self, slope: float, power: int) -> "_Term":
+        if (slope, power) not in self._terms:
+            columns, n = sparse.csc_array(self._powers_of(slope).rows(power)), self._n_fixed
             fixed_part = np.asarray(columns[:, :n] @ self._numbered[:n])
-            self._terms[power] = _Term(self.order.upper_part(columns[:, n:]), fixed_part)
-        return self._terms[power]
+            self._terms[slope, power] = _Term(self.order.upper_part(columns[:, n:]), fixed_part)
+        return self._terms[slope, power]
 
-    def _rows_of(self, power: int) -> "sparse.csr_array[np.float64]":
-        """Rows of the free vertices of ``L``, ``L M^-1 L`` and ``L M^-1 L M^-1 L``."""
-        while len(self._rows) <= power:
-            self._rows.append(self._rows[-1] @ self._step)
-        return self._rows[power]
+    def _powers_of(self, slope: float) -> "_Powers":
+        if slope not in self._powers:
+            laplacian = self._laplacian
+            if slope != 1.0:
+                # At a rim, curvature is how the slopes on both sides differ; the measured one counts for more.
+                measured = self._triangles[(self._triangles < self._n_fixed).all(axis=1)]
+                of_measured = _laplacian(self._numbered, measured, uniform=self._is_uniform)[0]
+                laplacian = sparse.csr_array(laplacian + (slope - 1.0) * of_measured)
+            # Rows of free vertices only: those of the outermost ring have lost triangles at the cut.
+            rows = sparse.csr_array(laplacian[self._n_fixed :])
+            self._powers[slope] = _Powers([rows], sparse.csr_array(self._inverse_area @ laplacian))
+        return self._powers[slope]
+
+
+@dataclass(frozen=True)
+class _Powers:
+    """Rows of the free vertices of ``L``, ``L M^-1 L`` and ``L M^-1 L M^-1 L``, as far as they were asked for."""
+
+    known: list["sparse.csr_array[np.float64]"]
+    step: "sparse.csr_array[np.float64]"
+
+    def rows(self, power: int) -> "sparse.csr_array[np.float64]":
+        """Multiply as often as needed."""
+        while len(self.known) <= power:
+            self.known.append(self.known[-1] @ self.step)
+        return self.known[power]
 
 
 @dataclass(frozen=True)

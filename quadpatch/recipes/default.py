@@ -41,11 +41,15 @@ from quadpatch.stages import Stages
 from quadpatch.types import BoolArray, TriangleMesh, Triangles
 from shared_rules.hole_selection import HoleAction
 
-# From rough to smooth: a noisy or sharp-edged surface is continued best by the first, a smooth one by the last.
+# From rough to smooth: a noisy surface is continued best by the first, a rough one by the second, a smooth one by the
+# last.
 FAIRING_ENERGIES = (
     Energy(membrane=0.3, plate=1.0),
-    THIN_PLATE,
-    *(Energy(plate=1.0, variation=weight) for weight in (0.4, 2.0, 40.0)),
+    Energy(membrane=0.1, plate=1.0, slope=2.0),
+    Energy(plate=1.0, variation=0.4),
+    Energy(plate=1.0, variation=0.4, slope=1.5),
+    Energy(plate=1.0, variation=2.0, slope=1.5),
+    Energy(plate=1.0, variation=40.0),
 )
 
 # For surfaces on which calibration can't tell the energies apart.

@@ -124,7 +124,9 @@ def test_every_hole_is_measured_judged_and_explained(repaired: tuple[str, Path, 
             assert hole["measures"]["gap"] >= 0
         if hole["fill"] == "energies":
             assert sum(energy["share"] for energy in hole["energies"]) == pytest.approx(1.0, abs=0.03)
-            assert all(energy.keys() == {"membrane", "plate", "variation", "share"} for energy in hole["energies"])
+            assert all(
+                energy.keys() == {"membrane", "plate", "variation", "slope", "share"} for energy in hole["energies"]
+            )
         else:
             assert hole["energies"] is None
 

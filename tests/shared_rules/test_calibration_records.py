@@ -11,7 +11,10 @@ THIRD = 1 / 3
 
 
 def record(**changes: Any) -> dict[str, Any]:
-    energies = [{"membrane": 0.3, "plate": 1.0, "variation": 0.0}, {"membrane": 0.0, "plate": 1.0, "variation": 0.0}]
+    energies = [
+        {"membrane": 0.3, "plate": 1.0, "variation": 0.0, "slope": 1.0},
+        {"membrane": 0.0, "plate": 1.0, "variation": 0.0, "slope": 1.0},
+    ]
     return {
         "energies": energies,
         "log_error": [-7.123456789012345, -708.4],
@@ -40,9 +43,11 @@ def test_records_come_back_as_they_were_written() -> None:
 WRONG: dict[str, dict[str, Any]] = {
     "no energies": {"energies": []},
     "an energy with a name too many": {
-        "energies": [{"membrane": 0.0, "plate": 1.0, "variation": 0.0, "more": 0.0}] * 2
+        "energies": [{"membrane": 0.0, "plate": 1.0, "variation": 0.0, "slope": 1.0, "more": 0.0}] * 2
     },
-    "a negative weight of an energy": {"energies": [{"membrane": -1.0, "plate": 1.0, "variation": 0.0}] * 2},
+    "a negative weight of an energy": {
+        "energies": [{"membrane": -1.0, "plate": 1.0, "variation": 0.0, "slope": 1.0}] * 2
+    },
     "a number too few": {"log_error": [-7.0]},
     "a number that is a word": {"log_miss": ["0.0", 0.0]},
     "a whole number": {"log_miss": [0, 0.0]},
@@ -106,7 +111,7 @@ def test_what_holds_no_kept_calibrations_is_refused(name: str) -> None:
 
 
 def test_the_largest_records_fit_into_the_limit() -> None:
-    five = [{"membrane": THIRD, "plate": THIRD, "variation": THIRD}] * 5
+    five = [{"membrane": THIRD, "plate": THIRD, "variation": THIRD, "slope": THIRD}] * 5
     numbers, weights = [-THIRD * 1e-300] * 5, [[THIRD, THIRD, THIRD / 3, THIRD / 3, THIRD / 3]] * 24
     largest = record(energies=five, log_error=numbers, log_miss=numbers, weights=weights)
     records = {f"{i:064x}": largest for i in range(MOST_RECORDS)}

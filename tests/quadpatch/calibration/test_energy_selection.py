@@ -92,7 +92,7 @@ def test_energies_rank_on_graded_fills_as_on_uniform_ones() -> None:
     assert graded.argsort().tolist() == dense.argsort().tolist()
     # The others are out of the question.
     near = dense < 3 * dense.min()
-    assert near.sum() >= 3
+    assert near.sum() >= 2
     assert graded[near] / graded.min() == pytest.approx(dense[near] / dense.min(), rel=0.15)
 
 

@@ -10,7 +10,8 @@ from tests.quadpatch.shapes import bumpy_plate, cylinder, open_grid, random_rota
 VARIATION = Energy(variation=1.0)
 BLEND = Energy(plate=1.0, variation=20.0)
 MEMBRANE = Energy(membrane=1.0)
-ENERGIES = {"membrane": MEMBRANE, "plate": THIN_PLATE, "variation": VARIATION, "blend": BLEND}
+STEEP = Energy(membrane=0.1, plate=1.0, slope=2.0)
+ENERGIES = {"membrane": MEMBRANE, "plate": THIN_PLATE, "variation": VARIATION, "blend": BLEND, "steep": STEEP}
 
 
 def within(mesh: TriangleMesh, centre: tuple[float, float, float], radius: float) -> BoolArray:
@@ -170,7 +171,7 @@ def with_sliver(mesh: TriangleMesh, triangle: int, height: float) -> TriangleMes
 
 
 # In edges: how far a sliver at the rim may move a fill. Cotangents cut off one by one move it by 2.5 to 69,000.
-WORST = {"membrane": 0.1, "plate": 0.3, "variation": 2.2, "blend": 2.2}
+WORST = {"membrane": 0.1, "plate": 0.3, "variation": 2.2, "blend": 2.2, "steep": 0.5}
 
 
 @pytest.mark.parametrize("height", [0.0, 1e-17, 1e-12, 1e-9, 1e-6, 1e-4])
