@@ -28,7 +28,7 @@ def read_calibrations(path: Path | None) -> "KeptCalibrations | None":
         return None
     # Numerical libraries.
     from quadpatch.calibration.kept import KeptCalibrations  # noqa: PLC0415
-    from quadpatch.recipes.default import FAIRING_ENERGIES  # noqa: PLC0415
+    from quadpatch.recipes.default import CALIBRATED_ENERGIES  # noqa: PLC0415
 
     if is_stream(path):
         raise OptionError(f"{path} can't be read and replaced: --calibration names a file")
@@ -36,7 +36,7 @@ def read_calibrations(path: Path | None) -> "KeptCalibrations | None":
         return KeptCalibrations()
     try:
         with path.open("rb") as file:
-            return KeptCalibrations.read(file.read(MOST_BYTES + 1), FAIRING_ENERGIES)
+            return KeptCalibrations.read(file.read(MOST_BYTES + 1), CALIBRATED_ENERGIES)
     except RecordError as error:
         raise OptionError(f"{path} is no file of --calibration, and stays as it is: {error}") from error
 

@@ -57,6 +57,8 @@ DEFAULT_ENERGY = FAIRING_ENERGIES[2]
 # For surfaces without room for calibration: they are coarse for their holes, and a rim of few edges shows no curvature
 # to carry on.
 PRIOR_ENERGY = THIN_PLATE
+# All that a calibration may end with.
+CALIBRATED_ENERGIES = (*FAIRING_ENERGIES, PRIOR_ENERGY)
 
 # Calibration holes are at most so many mean edges wide: wider ones cost more and tell the same.
 WIDEST_CALIBRATION = 24.0

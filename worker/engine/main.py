@@ -15,7 +15,7 @@ from quadpatch.formats.output_files import write_whole
 from quadpatch.inpainters.proof import prove_model
 from quadpatch.options import RepairOptions
 from quadpatch.preview.drawing import add_close_up_archive, add_comparison, add_picture
-from quadpatch.recipes.default import FAIRING_ENERGIES
+from quadpatch.recipes.default import CALIBRATED_ENERGIES
 from quadpatch.repair import repair_and_keep
 from quadpatch.stages import failure_of
 from quadpatch.tasks.inspect import inspect_any
@@ -63,7 +63,7 @@ def _repair(folder: Path, request: EngineRequest, reporter: Reporter) -> None:
 def _kept_calibrations(folder: Path, scan: str) -> KeptCalibrations:
     """Read what earlier repairs kept; the worker has checked the file, and says what is wrong with it."""
     path = folder / CALIBRATION_NAME
-    return KeptCalibrations.read(path.read_bytes(), FAIRING_ENERGIES, scan) if path.exists() else KeptCalibrations(scan)
+    return KeptCalibrations.read(path.read_bytes(), CALIBRATED_ENERGIES, scan) if path.exists() else KeptCalibrations(scan)
 
 
 def _inspect(folder: Path, request: EngineRequest, reporter: Reporter) -> None:
