@@ -25,7 +25,7 @@ _ROUNDING = 1e-12
 _KEY = re.compile(r"[0-9a-f]{64}")
 _WEIGHTS = ("membrane", "plate", "variation", "slope")
 _FIELDS = (
-    *("energies", "log_error", "log_miss", "best", "belief"),
+    *("energies", "log_error", "log_miss", "best", "belief", "widest"),
     *("error_model", "crease_share", "is_graded", "weights", "seconds"),
 )
 
@@ -95,6 +95,7 @@ def _check_blend(fields: Mapping[str, Any]) -> int:
     for name in ("log_error", "log_miss"):
         _row(fields[name], len(energies))
     _number(fields["belief"], 0.0, 1.0)
+    _number(fields["widest"], 0.0)
     if type(best) is not int or not 0 <= best < len(energies):
         raise RecordError("best names no energy")
     return len(energies)

@@ -20,9 +20,10 @@ from quadpatch.filling.fill import ClosedMesh, close_holes, fair_holes
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.mesh.averages import mean_by
 from quadpatch.mesh.distance import distance_to_mesh
+from quadpatch.mesh.loop_diameter import loop_diameter
 from quadpatch.mesh.measures import used_vertices
 from quadpatch.progress import Fraction, no_fraction, part_of
-from quadpatch.types import FloatArray, IntArray, TriangleMesh
+from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh
 
 # Weights of fills fall with this power of their expected error: at 8, one that is 10 % worse counts half.
 SHARPNESS = 8.0
@@ -31,6 +32,8 @@ _LEAST_WEIGHT = 0.01
 _LOST = 2.0
 # Weighing that loses by more than a standard error takes no part either.
 _LEAST_BELIEF = 0.16
+# A hole is as wide as calibration holes if it is at most this many times as wide.
+AS_WIDE = 1.2
 # Smaller misses of a rim, in shares of the largest, are rounding.
 _LEAST_MISS = 1e-6
 
@@ -51,6 +54,9 @@ class EnergyBlend:
         Position of the energy that is best for all holes alike.
     belief : float
         Probability that weighing by each hole's own rim is better than that one: 0 to 1.
+    widest : float
+        Holes wider than this, in mesh units, are filled without energies that have a slope: how much a fill has to
+        bulge depends on its width, and calibration holes were narrower.
     """
 
     energies: Sequence[Energy]
@@ -58,6 +64,7 @@ class EnergyBlend:
     log_miss: FloatArray
     best: int = 0
     belief: float = 1.0
+    widest: float = 0.0
 
     @classmethod
     def of_one(cls, energy: Energy) -> "EnergyBlend":
@@ -69,8 +76,11 @@ class EnergyBlend:
         if len(self.energies) == 1 or not loops:
             fill = fair_holes(close_holes(mesh, loops), self.energies[0])
             return replace(fill, energy_weights=np.ones((len(loops), 1)))
-        misses = leave_one_ring_out(mesh, loops, self.energies, part_of(reach, 0.0, 0.5))
-        return self.fill_weighted(mesh, loops, self.weights(misses), part_of(reach, 0.5, 1.0))
+        is_wide = np.array([loop_diameter(mesh.vertices[loop]) for loop in loops]) > self.widest
+        misses = np.full((len(loops), len(self.energies)), np.nan)
+        if self.belief:
+            misses = leave_one_ring_out(mesh, loops, self.energies, part_of(reach, 0.0, 0.5))
+        return self.fill_weighted(mesh, loops, self.weights(misses, is_wide), part_of(reach, 0.5, 1.0))
 
     def fill_weighted(
         self, mesh: TriangleMesh, loops: list[IntArray], weights: FloatArray, reach: Fraction = no_fraction
@@ -87,20 +97,35 @@ class EnergyBlend:
         fills = _faired(closed, self.energies, no_fraction)
         return replace(fills[0] if len(fills) == 1 else _blended(fills, weights), energy_weights=weights)
 
-    def weights(self, misses: FloatArray) -> FloatArray:
+    def weights(self, misses: FloatArray, is_wide: BoolArray | None = None) -> FloatArray:
         """Turn misses (n_holes, n_energies), NaN where unknown, into weights of the fills: rows sum to 1.
 
-        They are the mean of both ways to choose, by the belief in each: a few dozen holes often can't tell.
+        They are the mean of both ways to choose, by the belief in each: a few dozen holes often can't tell. Wide holes
+        (n_holes,) are filled without energies that have a slope.
         """
+        if is_wide is None:
+            is_wide = np.zeros(len(misses), bool)
         largest = np.nanmax(misses, initial=0.0)
         log_miss = np.log(np.maximum(misses, _LEAST_MISS * largest + np.finfo(np.float64).tiny))
         own = log_miss - self.log_miss
         own = np.nan_to_num(own - own.mean(axis=1, keepdims=True))
-        expected = self.log_error + own
+        expected = np.where(is_wide[:, None] & ~_is_plain(self.energies), np.inf, self.log_error + own)
         weights = np.exp(-SHARPNESS * (expected - expected.min(axis=1, keepdims=True)))
         weights *= self.belief / weights.sum(axis=1, keepdims=True)
-        weights[:, self.best] += 1.0 - self.belief
+        best = np.where(is_wide, _best_plain(self.energies, self.log_error, self.best), self.best)
+        weights[np.arange(len(weights)), best] += 1.0 - self.belief
         return np.asarray(weights)
+
+
+def _is_plain(energies: Sequence[Energy]) -> BoolArray:
+    """Tell the energies (n_energies,) without a slope of their own; there is one."""
+    return np.array([energy.slope == 1.0 for energy in energies], bool)
+
+
+def _best_plain(energies: Sequence[Energy], errors: FloatArray, best: int) -> int:
+    """Find the one of these with the least error (n_energies,); the best of all energies where that is one of them."""
+    is_plain = _is_plain(energies)
+    return best if is_plain[best] else int(np.where(is_plain, errors, np.inf).argmin())
 
 
 def learn_energy_blend(
@@ -126,22 +151,43 @@ def learn_energy_blend(
     errors = np.array([error_per_hole(calibration, fill) for fill in fills])
     chosen = choose_energy(errors, calibration.diameter, energies, default)
     mean = errors.mean(axis=1)
-    kept = [i for i, energy in enumerate(energies) if mean[i] <= _LOST * mean.min() or energy is chosen]
+    best = energies.index(chosen)
+    wanted = {best, _best_plain(energies, mean, best)}
+    kept = [i for i in range(len(energies)) if mean[i] <= _LOST * mean.min() or i in wanted]
     energies, fills, errors = [energies[i] for i in kept], [fills[i] for i in kept], errors[kept]
     misses = leave_one_ring_out(calibration.opened, calibration.loops, energies, part_of(reach, 0.5, 1.0))
     best = energies.index(chosen)
     typical = np.nanmean(misses, axis=0) if np.isfinite(misses).any() else np.ones(len(energies))
     tiny = np.finfo(np.float64).tiny
-    blend = EnergyBlend(energies, np.log(errors.mean(axis=1) + tiny), np.log(typical + tiny))
+    blend = EnergyBlend(
+        energies,
+        np.log(errors.mean(axis=1) + tiny),
+        np.log(typical + tiny),
+        widest=float(AS_WIDE * calibration.diameter),
+    )
     blended = _blended(fills, blend.weights(misses))
     gains = errors[best] - error_per_hole(calibration, blended)
     rounding = ROUNDING * calibration.diameter
     belief = float(ndtr(gains.mean() / (gains.std() / np.sqrt(len(gains)) + rounding)))
     blend = replace(blend, best=best, belief=belief)
     if belief < _LEAST_BELIEF or errors[best].mean() <= rounding:
-        return EnergyBlend.of_one(energies[best]), replace(fills[best], energy_weights=np.ones((len(misses), 1)))
+        return _without_weighing(blend, fills)
     weights = blend.weights(misses)
     return blend, replace(_blended(fills, weights), energy_weights=weights)
+
+
+def _without_weighing(blend: EnergyBlend, fills: list[FilledMesh]) -> tuple[EnergyBlend, FilledMesh]:
+    """Fill all holes by the best energy, wide ones by the best without a slope."""
+    best, plain = blend.best, _best_plain(blend.energies, blend.log_error, blend.best)
+    n_holes = len(fills[best].disagreement)
+    if best == plain:
+        blend = EnergyBlend.of_one(blend.energies[best])
+        return blend, replace(fills[best], energy_weights=np.ones((n_holes, 1)))
+    both = [best, plain]
+    two = [blend.energies[i] for i in both]
+    blend = replace(blend, energies=two, log_error=blend.log_error[both], log_miss=blend.log_miss[both])
+    filled = replace(fills[best], energy_weights=np.tile([1.0, 0.0], (n_holes, 1)))
+    return replace(blend, best=0, belief=0.0), filled
 
 
 def _faired(closed: ClosedMesh, energies: Sequence[Energy], reach: Fraction) -> list[FilledMesh]:

@@ -13,7 +13,7 @@ import numpy as np
 
 from quadpatch.calibration.calibration_set import MAX_HOLES, CalibrationSet, cut_calibration_set, expect
 from quadpatch.calibration.crease_selection import calibrate_creases
-from quadpatch.calibration.energy_selection import EnergyBlend, learn_energy_blend
+from quadpatch.calibration.energy_selection import AS_WIDE, EnergyBlend, learn_energy_blend
 from quadpatch.calibration.error_model import PRIOR
 from quadpatch.calibration.kept import KeptCalibrations, array_digest, key_of
 from quadpatch.calibration.record import CalibrationRecord
@@ -54,11 +54,17 @@ FAIRING_ENERGIES = (
 
 # For surfaces on which calibration can't tell the energies apart.
 DEFAULT_ENERGY = FAIRING_ENERGIES[2]
+# For surfaces whose calibration holes are narrower than the real ones.
+PLAIN_ENERGIES = (
+    FAIRING_ENERGIES[0],
+    THIN_PLATE,
+    *(Energy(plate=1.0, variation=weight) for weight in (0.4, 2.0, 40.0)),
+)
 # For surfaces without room for calibration: they are coarse for their holes, and a rim of few edges shows no curvature
 # to carry on.
 PRIOR_ENERGY = THIN_PLATE
 # All that a calibration may end with.
-CALIBRATED_ENERGIES = (*FAIRING_ENERGIES, PRIOR_ENERGY)
+CALIBRATED_ENERGIES = (*FAIRING_ENERGIES, *PLAIN_ENERGIES, PRIOR_ENERGY)
 
 # Calibration holes are at most so many mean edges wide: wider ones cost more and tell the same.
 WIDEST_CALIBRATION = 24.0
@@ -176,8 +182,13 @@ class _Task:
 
     def typical_diameter(self) -> float | None:
         """Return the diameter of calibration holes, in mesh units; None where there is nothing to calibrate for."""
+        median = self.median_diameter()
+        return None if median is None else min(median, WIDEST_CALIBRATION * self.edges.mean)
+
+    def median_diameter(self) -> float | None:
+        """Return the median diameter of the holes that are not filled flat, in mesh units; None without any."""
         curved = np.array(self.diameters)[~self.wanted.flat]
-        return min(float(np.median(curved)), WIDEST_CALIBRATION * self.edges.mean) if len(curved) else None
+        return float(np.median(curved)) if len(curved) else None
 
     def reach(self) -> Reach:
         """Say how far around the holes this looks."""
@@ -192,7 +203,8 @@ class _Task:
         scan = kept.scan or self._digest()
         # Ribs count as measured: calibration holes may be cut next to them.
         strips = [f"{bridge.holes[0].id}:{bridge.holes[1].id}" for bridge in self.rims.bridges.values() if bridge.ribs]
-        return key_of(scan, self.options.weld_tolerance, diameter, self.options.seed, part.digest(), *strips)
+        median = self.median_diameter() or 0.0
+        return key_of(scan, self.options.weld_tolerance, diameter, median, self.options.seed, part.digest(), *strips)
 
     def _digest(self) -> str:
         """Hash the scan."""
@@ -283,7 +295,7 @@ def _calibrated(task: _Task, cut: Callable[[], CalibrationSet | None], reach: Fr
     """Learn from calibration holes how to fill, and how large an error to expect of that."""
     start, edge = time.perf_counter(), task.edges.mean
     holes = cut()
-    blend, filled = suitable_blend(holes, reach)
+    blend, filled = suitable_blend(holes, task.median_diameter(), reach)
     if holes is None or filled is None:
         return Calibration(task.diameters, edge, CalibrationRecord(blend, PRIOR, seconds=time.perf_counter() - start))
     creases = calibrate_creases(holes, blend, filled)
@@ -295,9 +307,13 @@ def _calibrated(task: _Task, cut: Callable[[], CalibrationSet | None], reach: Fr
 
 
 def suitable_blend(
-    holes: CalibrationSet | None, reach: Fraction = no_fraction
+    holes: CalibrationSet | None, diameter: float | None = None, reach: Fraction = no_fraction
 ) -> tuple[EnergyBlend, FilledMesh | None]:
-    """Learn how this surface is continued best, as far as calibration tells; also the calibration holes, filled."""
+    """Learn how this surface is continued best, as far as calibration tells; also the calibration holes, filled.
+
+    Energies with a slope take part where calibration holes are as wide as the real ones (mesh units) typically are.
+    """
     if holes is None:
         return EnergyBlend.of_one(PRIOR_ENERGY), None
-    return learn_energy_blend(holes, FAIRING_ENERGIES, DEFAULT_ENERGY, reach)
+    is_narrow = diameter is not None and diameter > AS_WIDE * holes.diameter
+    return learn_energy_blend(holes, PLAIN_ENERGIES if is_narrow else FAIRING_ENERGIES, DEFAULT_ENERGY, reach)

@@ -14,7 +14,7 @@ import pytest
 from quadpatch.calibration.kept import KeptCalibrations
 from quadpatch.options import HoleOptions, HoleRule, RepairOptions
 from quadpatch.recipes import default
-from quadpatch.recipes.default import FAIRING_ENERGIES
+from quadpatch.recipes.default import CALIBRATED_ENERGIES
 from quadpatch.repair import repair_and_keep
 from quadpatch.types import TriangleMesh
 from tests.quadpatch.calibration.test_crease_selection import folded_paper
@@ -75,7 +75,7 @@ def test_a_kept_calibration_gives_the_same_bytes_and_the_same_report(
 ) -> None:
     scan, data = calibrated(name)
     plain_mesh, plain = repaired(scan, model)
-    kept = KeptCalibrations.read(data, FAIRING_ENERGIES)
+    kept = KeptCalibrations.read(data, CALIBRATED_ENERGIES)
     monkeypatch.setattr(default, "suitable_blend", None)  # to calibrate again would fail
     mesh, report = repaired(scan, model, kept)
     reused, made = report.pop("calibration"), plain.pop("calibration")
@@ -121,7 +121,7 @@ def test_a_calibration_for_other_options_is_not_used_and_is_no_error(
     rough: Path, kept_of_rough: bytes, name: str
 ) -> None:
     options, is_reused = OTHER_OPTIONS[name]
-    kept = KeptCalibrations.read(kept_of_rough, FAIRING_ENERGIES)
+    kept = KeptCalibrations.read(kept_of_rough, CALIBRATED_ENERGIES)
     mesh, report = repaired(rough, "smooth", kept, options)
     plain_mesh, plain = repaired(rough, "smooth", None, options)
     assert report.pop("calibration")["reused"] is (is_reused is True)
@@ -135,10 +135,10 @@ def test_a_calibration_of_another_scan_is_not_used(kept_of_rough: bytes, tmp_pat
     mesh = SCANS["rough"]()
     vertices = mesh.vertices.copy()
     vertices[0, 2] = np.nextafter(vertices[0, 2], 1.0)
-    kept = KeptCalibrations.read(kept_of_rough, FAIRING_ENERGIES)
+    kept = KeptCalibrations.read(kept_of_rough, CALIBRATED_ENERGIES)
     other = write_ply(tmp_path / "other.ply", TriangleMesh(vertices, mesh.triangles))
     assert repaired(other, "smooth", kept)[1]["calibration"]["reused"] is False
-    again = KeptCalibrations.read(kept.written(), FAIRING_ENERGIES)
+    again = KeptCalibrations.read(kept.written(), CALIBRATED_ENERGIES)
     assert repaired(other, "smooth", again)[1]["calibration"]["reused"] is True
 
 
@@ -146,7 +146,9 @@ def test_a_scan_that_is_named_is_not_hashed(rough: Path, monkeypatch: pytest.Mon
     kept = KeptCalibrations("a name")
     monkeypatch.setattr(default, "array_digest", None)
     repaired(rough, "smooth", kept)
-    named, renamed = (KeptCalibrations.read(kept.written(), FAIRING_ENERGIES, name) for name in ("a name", "another"))
+    named, renamed = (
+        KeptCalibrations.read(kept.written(), CALIBRATED_ENERGIES, name) for name in ("a name", "another")
+    )
     assert repaired(rough, "smooth", named)[1]["calibration"]["reused"] is True
     assert repaired(rough, "smooth", renamed)[1]["calibration"]["reused"] is False
 
@@ -155,7 +157,7 @@ def test_a_calibration_whose_holes_are_not_there_is_made_anew(rough: Path, kept_
     first = kept_of_rough.index(b'"weights": [[') + len(b'"weights": [')
     end = kept_of_rough.index(b"], ", first)
     shortened = kept_of_rough[:first] + kept_of_rough[end + 3 :]
-    kept = KeptCalibrations.read(shortened, FAIRING_ENERGIES)
+    kept = KeptCalibrations.read(shortened, CALIBRATED_ENERGIES)
     mesh, report = repaired(rough, "general-dictionary@1", kept)
     plain_mesh, plain = repaired(rough, "general-dictionary@1")
     assert report.pop("calibration")["holes"] == plain.pop("calibration")["holes"]

@@ -63,7 +63,9 @@ def _repair(folder: Path, request: EngineRequest, reporter: Reporter) -> None:
 def _kept_calibrations(folder: Path, scan: str) -> KeptCalibrations:
     """Read what earlier repairs kept; the worker has checked the file, and says what is wrong with it."""
     path = folder / CALIBRATION_NAME
-    return KeptCalibrations.read(path.read_bytes(), CALIBRATED_ENERGIES, scan) if path.exists() else KeptCalibrations(scan)
+    return (
+        KeptCalibrations.read(path.read_bytes(), CALIBRATED_ENERGIES, scan) if path.exists() else KeptCalibrations(scan)
+    )
 
 
 def _inspect(folder: Path, request: EngineRequest, reporter: Reporter) -> None:

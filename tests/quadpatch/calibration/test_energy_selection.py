@@ -15,6 +15,7 @@ from tests.quadpatch.shapes import bumpy_plate, open_grid, punched, sphere
 
 SMOOTH = Energy(plate=1.0, variation=40.0)
 PAIR = (THIN_PLATE, SMOOTH)
+STEEP = Energy(plate=1.0, slope=1.5)
 
 
 def blend_of(log_error: list[float], log_miss: list[float]) -> EnergyBlend:
@@ -151,6 +152,29 @@ def test_where_weighing_gains_nothing_one_energy_fills_all_holes() -> None:
     assert calibration is not None
     blend, _ = learn_energy_blend(calibration, FAIRING_ENERGIES, DEFAULT_ENERGY)
     assert tuple(blend.energies) == (DEFAULT_ENERGY,)
+
+
+def two_holes() -> tuple[TriangleMesh, list[IntArray]]:
+    """A rough sheet with a wide hole and a narrow one, 0.3 and 0.7 across at most and at least."""
+    mesh = punched(bumpy_plate(60, 2.0), (0.4, 0.4, 0), radius=0.4)
+    mesh = punched(mesh, (-0.6, -0.6, 0), radius=0.12)
+    loops = [hole.loop for hole in find_holes(mesh) if hole.diameter < 1.0]
+    return mesh, sorted(loops, key=len)
+
+
+@pytest.mark.parametrize("belief", [0.0, 0.4])
+def test_holes_wider_than_calibration_holes_are_filled_without_a_slope(belief: float) -> None:
+    mesh, (narrow, wide) = two_holes()
+    zeros = np.zeros(3)
+    blend = EnergyBlend((STEEP, *PAIR), zeros - [1.0, 0.0, 0.5], zeros, 0, belief, widest=0.5)
+    filled = blend.fill(mesh, [narrow, wide])
+    assert filled.energy_weights is not None
+    of_narrow, of_wide = filled.energy_weights
+    assert of_narrow[0] > 0.5
+    assert of_wide[0] == 0.0
+    assert of_wide.argmax() == 2
+    if not belief:
+        assert (of_narrow.tolist(), of_wide.tolist()) == ([1.0, 0.0, 0.0], [0.0, 0.0, 1.0])
 
 
 def corners(mesh: TriangleMesh) -> FloatArray:

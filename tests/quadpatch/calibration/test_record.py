@@ -18,7 +18,9 @@ RNG = np.random.default_rng(5)
 N_ENERGIES = len(FAIRING_ENERGIES)
 ROWS = RNG.random((24, N_ENERGIES))
 RECORD = CalibrationRecord(
-    EnergyBlend(list(FAIRING_ENERGIES), -7 * RNG.random(N_ENERGIES), -7 * RNG.random(N_ENERGIES), 3, 0.1 + 0.2),
+    EnergyBlend(
+        list(FAIRING_ENERGIES), -7 * RNG.random(N_ENERGIES), -7 * RNG.random(N_ENERGIES), 3, 0.1 + 0.2, 0.7 - 0.1
+    ),
     ErrorModel(1 / 3, 0.7),
     0.75,
     True,
