@@ -19,12 +19,12 @@ from client.exit_codes import MEANINGS
 from jobkit.schema import STAGES, JobState
 from jobkit.settings import settings_table
 from onebox.demo import find_scan
-from quadpatch.calibration import calibration_set, error_model
+from quadpatch.calibration import calibration_set, energy_selection, error_model
 from quadpatch.filling import fill, triangulation
 from quadpatch.inpainters import dictionary, paper_dictionary
 from quadpatch.mesh import hole_kinds, slits
 from quadpatch.patches import paper_layout, ray_visibility, scale
-from quadpatch.recipes import assessment, default, paper
+from quadpatch.recipes import assessment, default, fairing_energies, paper
 from quadpatch.report import VERDICTS
 from quadpatch.sparse import gaussian
 from service.problems import to_problem_error
@@ -143,7 +143,11 @@ NUMBERS_OF_THE_METHOD: dict[str, set[float]] = {
     "quadpatch/mesh/slits.py": {100 * slits.SLIT_SHARE, slits.SLIT_WIDTH, slits.SLIT_WAY},
     "quadpatch/filling/triangulation.py": {triangulation.MAX_TABLE_SIZE},
     "quadpatch/calibration/calibration_set.py": {
-        *(energy.variation / energy.plate for energy in default.FAIRING_ENERGIES[1:-1]),
+        *(energy.variation / energy.plate for energy in fairing_energies.FAIRING_ENERGIES[2:]),
+        *(energy.membrane / energy.plate for energy in fairing_energies.FAIRING_ENERGIES[:2]),
+        *(energy.slope for energy in fairing_energies.FAIRING_ENERGIES),
+        default.WIDEST_CALIBRATION,
+        energy_selection.AS_WIDE,
         calibration_set.MIN_HOLES,
         calibration_set.MAX_HOLES,
     },

@@ -19,7 +19,7 @@ from quadpatch.options import PatchOptions
 from quadpatch.patches.layout import lay_out
 from quadpatch.patches.residual_input import RESOLUTION
 from quadpatch.patches.scale import base_surface_iterations, choose_scale
-from quadpatch.recipes.default import suitable_blend
+from quadpatch.recipes.fairing_energies import suitable_blend
 from quadpatch.types import TriangleMesh
 from training.shards import Arrays
 

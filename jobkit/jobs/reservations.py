@@ -1,7 +1,7 @@
 """Memory of machines: what their workers' engines are expected to need, and what is left.
 
 Each worker has one row while it has an engine, with the lease of its task: the memory of a killed worker is given back
-when its lease is over. Whoever decides about a machine's memory holds the row of the machine.
+when its lease is over. Each decision about the memory of a machine is made with its row locked.
 
 Tested in `tests/jobkit/jobs/test_admission.py`.
 """

@@ -28,7 +28,7 @@ def read_calibrations(path: Path | None) -> "KeptCalibrations | None":
         return None
     # Numerical libraries.
     from quadpatch.calibration.kept import KeptCalibrations  # noqa: PLC0415
-    from quadpatch.recipes.default import CALIBRATED_ENERGIES  # noqa: PLC0415
+    from quadpatch.recipes.fairing_energies import CALIBRATED_ENERGIES  # noqa: PLC0415
 
     if is_stream(path):
         raise OptionError(f"{path} can't be read and replaced: --calibration names a file")

@@ -13,7 +13,6 @@ import numpy as np
 
 from quadpatch.calibration.calibration_set import MAX_HOLES, CalibrationSet, cut_calibration_set, expect
 from quadpatch.calibration.crease_selection import calibrate_creases
-from quadpatch.calibration.energy_selection import AS_WIDE, EnergyBlend, learn_energy_blend
 from quadpatch.calibration.error_model import PRIOR
 from quadpatch.calibration.kept import KeptCalibrations, array_digest, key_of
 from quadpatch.calibration.record import CalibrationRecord
@@ -21,8 +20,6 @@ from quadpatch.errors import NoQuadsError
 from quadpatch.filling.bridged_rims import join_bridges
 from quadpatch.filling.bridges import make_bridges, ribs_of
 from quadpatch.filling.checked_fill import LoopsToFill, fill_checked, with_creases
-from quadpatch.filling.fairing import THIN_PLATE, Energy
-from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.filling.islands import JoinedRims, join_islands
 from quadpatch.inpainters.inpainter import Inpainter
 from quadpatch.mesh.edge_groups import EdgeSurvey
@@ -31,8 +28,9 @@ from quadpatch.mesh.loops import cut_at, laid_out
 from quadpatch.mesh.measures import EdgeStatistics, diagonal, edge_statistics, longest_side
 from quadpatch.options import RepairOptions
 from quadpatch.patches.scale import choose_scale, coarse_edge_length, preset_scale
-from quadpatch.progress import Fraction, no_fraction
+from quadpatch.progress import Fraction
 from quadpatch.recipes.assessment import assess
+from quadpatch.recipes.fairing_energies import suitable_blend
 from quadpatch.recipes.learned_detail import Calibration, complete
 from quadpatch.recipes.repair_region import Reach, RepairRegion, repair_region
 from quadpatch.recipes.result import Repair
@@ -40,31 +38,6 @@ from quadpatch.recipes.verification import verified_results, with_ribs, without_
 from quadpatch.stages import Stages
 from quadpatch.types import BoolArray, TriangleMesh, Triangles
 from shared_rules.hole_selection import HoleAction
-
-# From rough to smooth: a noisy surface is continued best by the first, a rough one by the second, a smooth one by the
-# last.
-FAIRING_ENERGIES = (
-    Energy(membrane=0.3, plate=1.0),
-    Energy(membrane=0.1, plate=1.0, slope=2.0),
-    Energy(plate=1.0, variation=0.4),
-    Energy(plate=1.0, variation=0.4, slope=1.5),
-    Energy(plate=1.0, variation=2.0, slope=1.5),
-    Energy(plate=1.0, variation=40.0),
-)
-
-# For surfaces on which calibration can't tell the energies apart.
-DEFAULT_ENERGY = FAIRING_ENERGIES[2]
-# For surfaces whose calibration holes are narrower than the real ones.
-PLAIN_ENERGIES = (
-    FAIRING_ENERGIES[0],
-    THIN_PLATE,
-    *(Energy(plate=1.0, variation=weight) for weight in (0.4, 2.0, 40.0)),
-)
-# For surfaces without room for calibration: they are coarse for their holes, and a rim of few edges shows no curvature
-# to carry on.
-PRIOR_ENERGY = THIN_PLATE
-# All that a calibration may end with.
-CALIBRATED_ENERGIES = (*FAIRING_ENERGIES, *PLAIN_ENERGIES, PRIOR_ENERGY)
 
 # Calibration holes are at most so many mean edges wide: wider ones cost more and tell the same.
 WIDEST_CALIBRATION = 24.0
@@ -304,16 +277,3 @@ def _calibrated(task: _Task, cut: Callable[[], CalibrationSet | None], reach: Fr
     record = CalibrationRecord(blend, model, creases.share, holes.is_graded, filled.energy_weights, seconds)
     # A graded fill is denser once models are tried on it.
     return Calibration(task.diameters, edge, record, holes, creases.filled or (None if holes.is_graded else filled))
-
-
-def suitable_blend(
-    holes: CalibrationSet | None, diameter: float | None = None, reach: Fraction = no_fraction
-) -> tuple[EnergyBlend, FilledMesh | None]:
-    """Learn how this surface is continued best, as far as calibration tells; also the calibration holes, filled.
-
-    Energies with a slope take part where calibration holes are as wide as the real ones (mesh units) typically are.
-    """
-    if holes is None:
-        return EnergyBlend.of_one(PRIOR_ENERGY), None
-    is_narrow = diameter is not None and diameter > AS_WIDE * holes.diameter
-    return learn_energy_blend(holes, PLAIN_ENERGIES if is_narrow else FAIRING_ENERGIES, DEFAULT_ENERGY, reach)

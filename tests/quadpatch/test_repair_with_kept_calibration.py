@@ -14,7 +14,7 @@ import pytest
 from quadpatch.calibration.kept import KeptCalibrations
 from quadpatch.options import HoleOptions, HoleRule, RepairOptions
 from quadpatch.recipes import default
-from quadpatch.recipes.default import CALIBRATED_ENERGIES
+from quadpatch.recipes.fairing_energies import CALIBRATED_ENERGIES
 from quadpatch.repair import repair_and_keep
 from quadpatch.types import TriangleMesh
 from tests.quadpatch.calibration.test_crease_selection import folded_paper

@@ -15,7 +15,7 @@ from quadpatch.formats.output_files import write_whole
 from quadpatch.inpainters.proof import prove_model
 from quadpatch.options import RepairOptions
 from quadpatch.preview.drawing import add_close_up_archive, add_comparison, add_picture
-from quadpatch.recipes.default import CALIBRATED_ENERGIES
+from quadpatch.recipes.fairing_energies import CALIBRATED_ENERGIES
 from quadpatch.repair import repair_and_keep
 from quadpatch.stages import failure_of
 from quadpatch.tasks.inspect import inspect_any

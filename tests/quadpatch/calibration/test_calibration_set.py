@@ -20,7 +20,7 @@ from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.mesh.boundary import boundary_loops
 from quadpatch.mesh.measures import mean_edge_length
 from quadpatch.mesh.raycast import RayScene
-from quadpatch.recipes.default import DEFAULT_ENERGY, FAIRING_ENERGIES
+from quadpatch.recipes.fairing_energies import DEFAULT_ENERGY, FAIRING_ENERGIES
 from quadpatch.types import FloatArray, TriangleMesh
 from tests.quadpatch.shapes import bumpy_plate, open_grid, punched, relief, sphere
 

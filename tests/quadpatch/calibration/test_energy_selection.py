@@ -9,7 +9,7 @@ from quadpatch.filling.fairing import THIN_PLATE, Energy
 from quadpatch.filling.fill import close_holes, fair_holes
 from quadpatch.mesh.holes import find_holes
 from quadpatch.mesh.measures import mean_edge_length
-from quadpatch.recipes.default import DEFAULT_ENERGY, FAIRING_ENERGIES
+from quadpatch.recipes.fairing_energies import DEFAULT_ENERGY, FAIRING_ENERGIES
 from quadpatch.types import FloatArray, IntArray, TriangleMesh
 from tests.quadpatch.shapes import bumpy_plate, open_grid, punched, sphere
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from quadpatch.calibration.kept import KeptCalibrations, array_digest, key_of
-from quadpatch.recipes.default import FAIRING_ENERGIES
+from quadpatch.recipes.fairing_energies import FAIRING_ENERGIES
 from shared_rules.calibration_records import MOST_BYTES, MOST_RECORDS, RecordError
 from tests.quadpatch.calibration.test_record import RECORD
 

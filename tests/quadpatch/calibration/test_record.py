@@ -9,7 +9,7 @@ from quadpatch.calibration.energy_selection import EnergyBlend, learn_energy_ble
 from quadpatch.calibration.error_model import ErrorModel
 from quadpatch.calibration.record import CalibrationRecord, record_of
 from quadpatch.mesh.measures import mean_edge_length
-from quadpatch.recipes.default import DEFAULT_ENERGY, FAIRING_ENERGIES
+from quadpatch.recipes.fairing_energies import DEFAULT_ENERGY, FAIRING_ENERGIES
 from quadpatch.types import TriangleMesh
 from tests.quadpatch.calibration.test_crease_selection import folded_paper
 from tests.quadpatch.shapes import sphere
