@@ -9,7 +9,7 @@ from quadpatch.filling.fairing import THIN_PLATE, Energy
 from quadpatch.filling.fill import close_holes, fair_holes
 from quadpatch.mesh.holes import find_holes
 from quadpatch.mesh.measures import mean_edge_length
-from quadpatch.recipes.fairing_energies import DEFAULT_ENERGY, FAIRING_ENERGIES
+from quadpatch.recipes.fairing_energies import CALIBRATED_ENERGIES, DEFAULT_ENERGY, FAIRING_ENERGIES
 from quadpatch.types import FloatArray, IntArray, TriangleMesh
 from tests.quadpatch.shapes import bumpy_plate, open_grid, punched, sphere
 
@@ -87,13 +87,13 @@ def test_energies_rank_on_graded_fills_as_on_uniform_ones() -> None:
     assert calibration.is_graded
     uniform = close_holes(calibration.closed.mesh, calibration.loops)
     graded, dense = (
-        np.array([error_per_hole(calibration, fair_holes(closed, energy)).mean() for energy in FAIRING_ENERGIES])
+        np.array([error_per_hole(calibration, fair_holes(closed, energy)).mean() for energy in CALIBRATED_ENERGIES])
         for closed in (calibration.closed, uniform)
     )
     assert graded.argsort().tolist() == dense.argsort().tolist()
     # The others are out of the question.
     near = dense < 3 * dense.min()
-    assert near.sum() >= 2
+    assert near.sum() >= 3
     assert graded[near] / graded.min() == pytest.approx(dense[near] / dense.min(), rel=0.15)
 
 

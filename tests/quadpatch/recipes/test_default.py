@@ -172,6 +172,18 @@ def test_a_learned_repair_moves_with_its_mesh_as_far_as_the_quads_do(
     assert apart[both].mean() < 0.5 * displaced[both].mean()
 
 
+def test_where_one_energy_fills_a_repair_moves_and_grows_with_its_mesh_but_for_rounding() -> None:
+    ball = punched(sphere(4), (0, 0, 1), (1, 0, 0), radius=0.3)
+    here = inpaint(ball, None, RepairOptions())
+    assert len(here.blend.energies) == 1
+    mesh, rotation, shift = moved(ball, 1)
+    there = inpaint(mesh, None, RepairOptions())
+    assert (there.filled.mesh.triangles == here.filled.mesh.triangles).all()
+    assert np.abs(there.filled.mesh.vertices - here.filled.mesh.vertices @ rotation.T - shift).max() < 1e-9
+    doubled = inpaint(TriangleMesh(1024.0 * ball.vertices, ball.triangles), None, RepairOptions())
+    assert (doubled.filled.mesh.vertices == 1024.0 * here.filled.mesh.vertices).all()
+
+
 def test_a_mesh_twice_as_large_gets_the_same_repair_twice_as_large(smooth_small_relief: Repair) -> None:
     doubled = inpaint(TriangleMesh(1024.0 * SMALL_RELIEF.vertices, SMALL_RELIEF.triangles), None, RepairOptions())
     # Weights go by logarithms, which round.
