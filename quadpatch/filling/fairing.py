@@ -31,7 +31,7 @@ class Energy:
     Without unit: lengths in them are mean edge lengths of the fill.
 
     `slope` is how many times as steep as the measured surface the fill leaves the rim, before the energy levels it out.
-    A thin plate bulges too little over the middle of a hole; with 1.5 it bulges as much as scanned surfaces do.
+    On most scans a thin plate bulges too little over the middle of a hole; a larger slope makes it bulge more.
     """
 
     membrane: float = 0.0

@@ -32,7 +32,7 @@ PLAIN_ENERGIES = (
 # to carry on.
 PRIOR_ENERGY = THIN_PLATE
 # All that a calibration may end with.
-CALIBRATED_ENERGIES = (*FAIRING_ENERGIES, *PLAIN_ENERGIES, PRIOR_ENERGY)
+CALIBRATED_ENERGIES = tuple(dict.fromkeys((*FAIRING_ENERGIES, *PLAIN_ENERGIES, PRIOR_ENERGY)))
 
 
 def suitable_blend(
