@@ -219,9 +219,11 @@ def models(url: UrlOption = DEFAULT_URL, api_key: KeyOption = None, as_json: Jso
 
 
 @app.command()
-def jobs(
+def jobs(  # noqa: PLR0913, PLR0917 - one parameter per option of the command line
     limit: Annotated[int, typer.Option(min=1, help="Most jobs to list.")] = 20,
     state: Annotated[JobStateName | None, typer.Option(help="Only jobs in this state.")] = None,
+    label: Annotated[str | None, typer.Option(help="Only jobs with this label; * stands for any characters.")] = None,
+    filename: Annotated[str | None, typer.Option(help="Only jobs on files of this name; * as for --label.")] = None,
     url: UrlOption = DEFAULT_URL,
     api_key: KeyOption = None,
     as_json: JsonOption = False,
@@ -230,7 +232,8 @@ def jobs(
     from jobkit.schema import JobState  # noqa: PLC0415  see holes
 
     with connected(Screen(), url, api_key) as client:
-        listed = list(client.jobs(limit, JobState(state) if state else None))
+        search = {name: text for name, text in (("label", label), ("filename", filename)) if text is not None}
+        listed = list(client.jobs(limit, JobState(state) if state else None, **search))
     if as_json:
         typer.echo(json.dumps([job.model_dump(mode="json") for job in listed], indent=2))
     else:

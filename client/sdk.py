@@ -248,12 +248,22 @@ class Client:
                 return found
             params["cursor"] = page.next_cursor
 
-    def jobs(self, limit: int | None = None, state: JobState | None = None) -> Iterator[Job]:
-        """Yield jobs, newest first, fetched page by page."""
+    def jobs(self, limit: int | None = None, state: JobState | None = None, **search: str) -> Iterator[Job]:
+        """Yield jobs, newest first, fetched page by page.
+
+        Parameters
+        ----------
+        limit : int, optional
+            Most jobs; None: all.
+        state : JobState, optional
+            Only jobs in this state.
+        search : str
+            Further parameters of `GET /v1/jobs`, such as `label="station 4*"`.
+        """
         left = limit
         cursor: str | None = None
         while left is None or left > 0:
-            params = {"limit": str(min(left or _PAGE, _PAGE))}
+            params = {"limit": str(min(left or _PAGE, _PAGE)), **search}
             params |= {"cursor": cursor} if cursor else {}
             params |= {"state": state.value} if state else {}
             page = parse(JobPage, self._transport.request("GET", "/v1/jobs", params=params))

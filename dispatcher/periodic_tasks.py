@@ -2,7 +2,7 @@
 
 from dispatcher.lease_reaper import LeaseReaper
 from dispatcher.loop import PeriodicTask
-from dispatcher.retention import Sweeper, remove_expired
+from dispatcher.retention import Sweeper, forget_audit, remove_expired
 from dispatcher.scrub import ROUND_S, scrub_task
 from dispatcher.webhooks import deliver_webhooks, forget_old_deliveries
 from jobkit.database.leadership import Leadership
@@ -43,6 +43,7 @@ def periodic_tasks(
         PeriodicTask(
             "webhook log", _HOUR_S, lambda is_over: forget_old_deliveries(database, settings.webhook_log_days, is_over)
         ),
+        PeriodicTask("audit log", _HOUR_S, lambda is_over: forget_audit(database, settings.audit_log_days, is_over)),
         PeriodicTask("retention", settings.sweep_s, lambda is_over: remove_expired(settings, database, store, is_over)),
         PeriodicTask("sweep", settings.sweep_s, sweeper.sweep),
         PeriodicTask("scrub", ROUND_S, scrub_task(settings, database, store)),

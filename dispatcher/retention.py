@@ -1,9 +1,11 @@
 """Periodic tasks that remove what is past its retention, and compare database and store."""
 
 from collections.abc import Callable
+from datetime import timedelta
 
 from dispatcher.missing_objects import MissingCounts, MissingObjects
 from dispatcher.unreferenced_objects import SweepResult, sweep_objects
+from jobkit.access.audit import AuditLog
 from jobkit.database.clock import shared_now
 from jobkit.database.idempotency import forget_keys
 from jobkit.database.session import Database
@@ -21,6 +23,19 @@ def remove_expired(settings: Settings, database: Database, store: ObjectStore, i
     meshes = expire_meshes(database, settings.mesh_retention_days, now, is_over)
     forget_keys(database, now)
     return f"removed {jobs} jobs and {meshes} meshes" if jobs or meshes else ""
+
+
+def forget_audit(database: Database, days: float, is_over: Callable[[], bool]) -> str:
+    """Remove entries of the audit log that are older than `days`; return how many were removed, in words."""
+    log, n_removed = AuditLog(database), 0
+    with database.read() as session:
+        moment = shared_now(session) - timedelta(days=days)
+    while not is_over():
+        n_batch = log.forget_before(moment)
+        n_removed += n_batch
+        if n_batch == 0:
+            break
+    return f"removed {n_removed} entries of the audit log" if n_removed else ""
 
 
 class Sweeper:

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from enum import Enum
 
-from sqlalchemy import select, update
+from sqlalchemy import func, select, update
 from sqlalchemy.orm import Session
 
 from jobkit.database.clock import shared_now
@@ -153,7 +153,7 @@ class Scrub:
         if named_object.kind != "mesh":
             return None
         with self._database.read() as session:
-            return session.scalar(select(MeshRow.used_at).where(MeshRow.id == named_object.sha256))
+            return session.scalar(select(func.max(MeshRow.used_at)).where(MeshRow.key == named_object.key))
 
     def _read_once(self, named_object: NamedObject, pace: "_Pace", is_over: IsOver) -> tuple[ObjectState, int]:
         digest, size_bytes = hashlib.sha256(), 0
@@ -229,22 +229,28 @@ class _Pace:
 
 
 def _note_one(session: Session, reading: _Reading, now: datetime) -> bool:
-    named_object, mesh = reading.named_object, None
-    if named_object.kind == "mesh":
-        mesh = session.get(MeshRow, named_object.sha256, with_for_update=True)
-        if mesh is not None and mesh.used_at != reading.used_at:
-            return False  # its bytes were uploaded again meanwhile
+    named_object, meshes = reading.named_object, _locked_meshes(session, reading.named_object)
+    if meshes and max(mesh.used_at for mesh in meshes) != reading.used_at:
+        return False  # its bytes were uploaded again meanwhile
     if reading.state in (ObjectState.SOUND, ObjectState.MISSING):
         forget_damaged(session, named_object.key)
-        if mesh is not None and reading.state is ObjectState.SOUND and is_damaged(mesh):
+        for mesh in filter(is_damaged, meshes if reading.state is ObjectState.SOUND else []):
             restart(mesh, mesh.filename, mesh.format)
         return False
-    if mesh is not None and reading.state is ObjectState.DAMAGED and not is_damaged(mesh):
-        mesh.state, mesh.problem = MeshState.REJECTED.value, _PROBLEM.model_dump(mode="json")
-        mesh.lease_until, mesh.updated_at = None, now
+    for mesh in meshes if reading.state is ObjectState.DAMAGED else []:
+        if not is_damaged(mesh):
+            mesh.state, mesh.problem = MeshState.REJECTED.value, _PROBLEM.model_dump(mode="json")
+            mesh.lease_until, mesh.updated_at = None, now
     is_new = note_damaged(session, named_object, now)
     if is_new:
         _log.error(
             "%s is %s: its sha256 was %s when it was stored", named_object.key, reading.state.value, named_object.sha256
         )
     return is_new
+
+
+def _locked_meshes(session: Session, named_object: NamedObject) -> list[MeshRow]:
+    """Lock the meshes of an object: several tenants may have uploaded the same bytes."""
+    if named_object.kind != "mesh":
+        return []
+    return list(session.scalars(select(MeshRow).where(MeshRow.key == named_object.key).with_for_update()))

@@ -10,6 +10,7 @@
     │   ├── ModelNotFoundError      model_not_found       no such name, version or alias
     │   ├── WebhookNotFoundError    webhook_not_found     no subscription has that id
     │   ├── DeliveryNotFoundError   delivery_not_found    the subscription has no such delivery, or no longer
+    │   ├── KeyNotFoundError        key_not_found
     │   ├── ResultMissingError      result_missing        the job has a result, but the store has lost its file
     │   └── ObjectNotFoundError     object_not_found      the store holds nothing under that key
     ├── ConflictError
@@ -28,6 +29,7 @@
     │   ├── IdempotencyError        idempotency_conflict  the key came before with another request
     │   ├── TooManyWebhooksError    too_many_webhooks     as many subscriptions as there may be
     │   ├── WebhookDisabledError    webhook_disabled      nothing is sent to a subscription that is switched off
+    │   ├── KeyRevokedError         key_revoked           the key was revoked; it can't be rotated
     │   ├── DeliveryPendingError    delivery_pending      a delivery that is still under way can't be repeated
     │   └── HostUnknownError        webhook_host_unknown  the name in a subscription's URL has no address
     ├── AddressRefusedError         webhook_address_refused   nothing is sent to that address
@@ -102,6 +104,12 @@ class ModelNotFoundError(NotFoundError):
     """No model has that name, version or alias."""
 
     code = "model_not_found"
+
+
+class KeyNotFoundError(NotFoundError):
+    """No key has that id."""
+
+    code = "key_not_found"
 
 
 class ResultMissingError(NotFoundError):
@@ -228,6 +236,12 @@ class WebhookDisabledError(ConflictError):
     """Nothing is sent to a subscription that is switched off."""
 
     code = "webhook_disabled"
+
+
+class KeyRevokedError(ConflictError):
+    """The key was revoked."""
+
+    code = "key_revoked"
 
 
 class DeliveryPendingError(ConflictError):

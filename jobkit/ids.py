@@ -6,6 +6,10 @@ import time
 JOB_ID_PATTERN = r"^job_[0-9a-hjkmnp-tv-z]{26}$"
 WEBHOOK_ID_PATTERN = r"^wh_[0-9a-hjkmnp-tv-z]{26}$"
 MESSAGE_ID_PATTERN = r"^msg_[0-9a-hjkmnp-tv-z]{26}$"
+KEY_ID_PATTERN = r"^key_[0-9a-hjkmnp-tv-z]{26}$"
+AUDIT_ID_PATTERN = r"^aud_[0-9a-hjkmnp-tv-z]{26}$"
+TENANT = r"[a-z0-9][a-z0-9-]{0,62}"
+TENANT_PATTERN = rf"^{TENANT}$"
 SHA256_PATTERN = r"^[0-9a-f]{64}$"
 MODEL_NAME = r"[a-z0-9][a-z0-9._-]{0,63}"
 
@@ -26,6 +30,16 @@ def new_webhook_id() -> str:
 def new_message_id() -> str:
     """Return a fresh id of a message to a subscriber."""
     return _new_id("msg")
+
+
+def new_key_id() -> str:
+    """Return a fresh id of a key."""
+    return _new_id("key")
+
+
+def new_audit_id() -> str:
+    """Return a fresh id of an entry of the audit log."""
+    return _new_id("aud")
 
 
 def _new_id(kind: str) -> str:

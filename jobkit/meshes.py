@@ -7,16 +7,19 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from datetime import timedelta
 
-from sqlalchemy import exists, select, update
+from sqlalchemy import ColumnElement, exists, select, update
 from sqlalchemy.orm import Session
 
 from jobkit.database.clock import shared_now, utc_now
 from jobkit.database.expiry import expiry
 from jobkit.database.job_rows import names_mesh
+from jobkit.database.readable_rows import readable
+from jobkit.database.searching import ALWAYS, Period, cursor_of, matches, older_than
 from jobkit.database.session import Database
 from jobkit.database.tables import MeshRow
+from jobkit.database.tenancy import mesh_id_of, tenant_of
 from jobkit.errors import MeshNotFoundError, RowConflictError, StaleAttemptError
-from jobkit.schema import Format, Mesh, MeshFacts, MeshLinks, MeshProblem, MeshState
+from jobkit.schema import Format, Mesh, MeshFacts, MeshLinks, MeshPage, MeshProblem, MeshState, MeshSummary
 from jobkit.storage.base import StoredObject
 
 # Code of the problem of a mesh whose bytes are gone from the store.
@@ -32,6 +35,7 @@ class MeshSource:
     """Where the bytes of a mesh lie, and as what they are to be read."""
 
     mesh_id: str
+    sha256: str
     key: str
     filename: str | None
     format: Format | None
@@ -45,6 +49,26 @@ class Analysis:
     size_bytes: int
     attempt: int
     is_last: bool = False
+
+
+@dataclass(frozen=True)
+class MeshSearch:
+    """Which meshes are looked for; what is left out does not matter. `*` in a text stands for any characters."""
+
+    states: Collection[MeshState] = ()
+    filename: str | None = None
+    format: Format | None = None
+    created: Period = ALWAYS
+
+    def conditions(self) -> list[ColumnElement[bool]]:
+        """Return the conditions on the row."""
+        found = [
+            MeshRow.state.in_([state.value for state in self.states]) if self.states else None,
+            None if self.filename is None else matches(MeshRow.filename, self.filename),
+            None if self.format is None else MeshRow.format == self.format,
+            self.created.condition(MeshRow.created_at),
+        ]
+        return [condition for condition in found if condition is not None]
 
 
 class Meshes:
@@ -82,6 +106,28 @@ class Meshes:
         with self._database.read() as session:
             return self._show(session, _existing(session, mesh_id))
 
+    def page(self, limit: int, cursor: str | None = None, search: MeshSearch | None = None) -> MeshPage:
+        """Return meshes, those that were uploaded last first.
+
+        Parameters
+        ----------
+        limit : int
+            Most meshes on the page.
+        cursor : str, optional
+            `next_cursor` of the page before. Meshes that came later don't shift the pages.
+        search : MeshSearch, optional
+            Only meshes of that kind.
+        """
+        query = select(MeshRow).order_by(MeshRow.created_at.desc(), MeshRow.id.desc()).limit(limit + 1)
+        query = query.where(*(search or MeshSearch()).conditions())
+        if cursor is not None:
+            query = query.where(older_than(MeshRow.created_at, MeshRow.id, cursor))
+        with self._database.read() as session:
+            rows = list(session.scalars(query))
+            items = list(readable(rows[:limit], lambda row: MeshSummary.of(self._show(session, row))))
+        last = rows[limit - 1] if len(rows) > limit else None
+        return MeshPage(items=items, next_cursor=None if last is None else cursor_of(last.created_at, last.id))
+
     def source(self, mesh_id: str) -> MeshSource:
         """Return where the bytes lie; raise MeshNotFoundError."""
         with self._database.read() as session:
@@ -90,12 +136,14 @@ class Meshes:
     def calibrations(self, mesh_id: str) -> str | None:
         """Return what repairs of a mesh have kept, as it was given; None where that is nothing."""
         with self._database.read() as session:
-            return session.scalar(select(MeshRow.calibrations).where(MeshRow.id == mesh_id))
+            own_id = mesh_id_of(tenant_of(session), mesh_id)
+            return session.scalar(select(MeshRow.calibrations).where(MeshRow.id == own_id))
 
     def keep_calibrations(self, mesh_id: str, calibrations: str) -> None:
         """Keep what a repair found out about a mesh, in place of what was kept; of a mesh that is gone nothing is."""
         with self._database.write() as session:
-            session.execute(update(MeshRow).where(MeshRow.id == mesh_id).values(calibrations=calibrations))
+            own_id = mesh_id_of(tenant_of(session), mesh_id)
+            session.execute(update(MeshRow).where(MeshRow.id == own_id).values(calibrations=calibrations))
 
     def start_analysis(self, mesh_id: str, worker: str, lease_s: float) -> Analysis:
         """Take a mesh for analysis; raise StaleAttemptError where another worker has it or nothing is to be done."""
@@ -158,10 +206,12 @@ class Meshes:
     def _add(self, stored: StoredObject, filename: str | None, mesh_format: Format | None) -> tuple[Mesh, bool]:
         now = utc_now()
         with self._database.write() as session:
-            row = session.get(MeshRow, stored.sha256, with_for_update=True)
+            mesh_id = mesh_id_of(self._database.tenant, stored.sha256)
+            row = session.get(MeshRow, mesh_id, with_for_update=True)
             is_new = row is None
             if row is None:
-                row = MeshRow(id=stored.sha256, key=stored.key, size_bytes=stored.size_bytes, created_at=now, attempt=0)
+                named = {"id": mesh_id, "sha256": stored.sha256, "key": stored.key}
+                row = MeshRow(**named, size_bytes=stored.size_bytes, created_at=now, attempt=0)
                 session.add(row)
                 restart(row, filename, mesh_format)
             elif is_missing(row) or is_damaged(row):
@@ -178,9 +228,9 @@ class Meshes:
         """Return the row as clients see it."""
         is_used = session.scalar(select(exists().where(names_mesh(row.id))))
         expires_at = expiry(None if is_used else row.used_at, self._retention_days, row.pinned)
-        path = f"/v1/meshes/{row.id}"
-        names = Mesh.model_fields.keys() - {"links", "expires_at"}
-        values = {name: getattr(row, name) for name in names}
+        path = f"/v1/meshes/{row.sha256}"
+        names = Mesh.model_fields.keys() - {"id", "links", "expires_at"}
+        values = {name: getattr(row, name) for name in names} | {"id": row.sha256}
         links = MeshLinks(self=path, content=f"{path}/content")
         return Mesh.model_validate(values | {"links": links, "expires_at": expires_at})
 
@@ -223,11 +273,11 @@ def restart(row: MeshRow, filename: str | None, mesh_format: str | None) -> None
 
 
 def _existing(session: Session, mesh_id: str) -> MeshRow:
-    row = session.scalars(select(MeshRow).where(MeshRow.id == mesh_id)).one_or_none()
+    row = session.get(MeshRow, mesh_id_of(tenant_of(session), mesh_id), populate_existing=True)
     if row is None:
         raise MeshNotFoundError(f"there is no mesh {mesh_id}")
     return row
 
 
 def _to_source(row: MeshRow) -> MeshSource:
-    return MeshSource(row.id, row.key, row.filename, row.format)  # type: ignore[arg-type]
+    return MeshSource(row.id, row.sha256, row.key, row.filename, row.format)  # type: ignore[arg-type]

@@ -13,6 +13,7 @@ from sqlalchemy import Row, exists, or_, select, update
 from jobkit.database.clock import shared_now
 from jobkit.database.session import Database
 from jobkit.database.tables import JobRow, MeshRow, ModelRow
+from jobkit.database.tenancy import mesh_id_of, own_name
 from jobkit.jobs.timeouts import TimeLimits, end_overdue
 from jobkit.meshes import MAX_ANALYSES
 from jobkit.models.proofs import give_up_proofs, parts_of, reference_of
@@ -91,6 +92,7 @@ def submit_job(database: Database, queue: TaskQueue, job_id: str, attempt: int, 
 
 def submit_analysis(database: Database, queue: TaskQueue, mesh_id: str) -> None:
     """Put a mesh that waits for its analysis into the queue; nothing happens where none is due. Raises like above."""
+    mesh_id = mesh_id_of(database.tenant, mesh_id)
     with database.read() as session:
         query = select(MeshRow.attempt).where(MeshRow.id == mesh_id, MeshRow.state == MeshState.ANALYSING.value)
         attempt = session.scalars(query).one_or_none()
@@ -104,13 +106,14 @@ def submit_analysis(database: Database, queue: TaskQueue, mesh_id: str) -> None:
 def submit_proof(database: Database, queue: TaskQueue, reference: str) -> None:
     """Put a version that waits for its proof into the queue; nothing happens where none is due. Raises like above."""
     name, version = parts_of(reference)
+    name = own_name(database.tenant, name)
     is_version = (ModelRow.name == name) & (ModelRow.version == version)
     with database.read() as session:
         query = select(ModelRow.attempt).where(is_version, ModelRow.state == ModelState.PROVING.value)
         attempt = session.scalars(query).one_or_none()
     if attempt is None:
         return
-    queue.enqueue_proof(reference, attempt + 1)
+    queue.enqueue_proof(reference_of(name, version), attempt + 1)
     with database.write() as session:
         session.execute(update(ModelRow).where(is_version).values(enqueued_at=shared_now(session)))
 

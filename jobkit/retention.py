@@ -17,6 +17,7 @@ from jobkit.database.clock import utc_now
 from jobkit.database.job_rows import names_mesh
 from jobkit.database.session import Database
 from jobkit.database.tables import AttemptRow, EventRow, IdempotencyRow, JobRow, MeshRow
+from jobkit.database.tenancy import mesh_id_of
 from jobkit.errors import (
     JobNotFinishedError,
     JobNotFoundError,
@@ -44,8 +45,9 @@ def pin_job(database: Database, job_id: str, is_pinned: bool) -> None:
 
 def pin_mesh(database: Database, mesh_id: str, is_pinned: bool) -> None:
     """Keep a mesh whatever its age, or no longer; raise MeshNotFoundError."""
+    own_id = mesh_id_of(database.tenant, mesh_id)
     with database.write() as session:
-        if not _has_matched(session.execute(update(MeshRow).where(MeshRow.id == mesh_id).values(pinned=is_pinned))):
+        if not _has_matched(session.execute(update(MeshRow).where(MeshRow.id == own_id).values(pinned=is_pinned))):
             raise MeshNotFoundError(f"there is no mesh {mesh_id}")
 
 
@@ -79,13 +81,14 @@ def delete_mesh(database: Database, mesh_id: str) -> None:
     MeshInUseError
         If jobs name it.
     """
+    own_id = mesh_id_of(database.tenant, mesh_id)
     try:
         with database.write() as session:
-            n_jobs = session.scalar(select(func.count()).select_from(JobRow).where(names_mesh(mesh_id)))
+            n_jobs = session.scalar(select(func.count()).select_from(JobRow).where(names_mesh(own_id)))
             if n_jobs:
                 noun = "job names" if n_jobs == 1 else "jobs name"
                 raise MeshInUseError(f"{n_jobs} {noun} mesh {mesh_id}; delete them first")
-            if not _has_matched(session.execute(delete(MeshRow).where(MeshRow.id == mesh_id))):
+            if not _has_matched(session.execute(delete(MeshRow).where(MeshRow.id == own_id))):
                 raise MeshNotFoundError(f"there is no mesh {mesh_id}")
     except RowConflictError as error:
         raise MeshInUseError(f"1 job came to name mesh {mesh_id} at this moment") from error

@@ -1,13 +1,16 @@
 """Settings from environment variables, all with the prefix QUADPATCH_.
 
+Those that hold secrets may be read from files: `QUADPATCH_API_KEYS_FILE` names one with the keys.
+
 An unknown name with that prefix stops the start: a mistyped limit that is silently ignored is worse than none.
 Names that start with QUADPATCH_CLIENT_ belong to the client and are ignored.
 """
 
 import difflib
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from pathlib import Path
+from typing import Any
 
 from pydantic import Field, SecretStr, ValidationError, field_validator
 from pydantic_settings import BaseSettings, SettingsConfigDict
@@ -48,7 +51,8 @@ class Settings(BaseSettings):
     port: int = Field(default=8000, ge=0, le=65_535, description="Port to listen on; 0: any free one.")
     api_keys: SecretStr = Field(
         default=SecretStr(""),
-        description=f"Keys of clients, comma-separated, {MIN_KEY_LENGTH} characters or more each.",
+        description=f"Keys of the tenant `default` for everything, comma-separated, {MIN_KEY_LENGTH} characters or "
+        "more each. Others are made by `python -m service keys create`.",
     )
     max_upload_mb: int = Field(default=1024, ge=1, description="Largest mesh or model, in MiB.")
     max_json_kb: int = Field(default=1024, ge=1, description="Largest JSON body, in KiB.")
@@ -130,6 +134,9 @@ class Settings(BaseSettings):
     webhook_log_days: float = Field(
         default=30.0, ge=1, le=36_500, description="Days that a delivery of a webhook is kept after its end."
     )
+    audit_log_days: float = Field(
+        default=365.0, ge=1, le=36_500, description="Days that an entry of the audit log is kept."
+    )
     models_dir: Path | None = Field(
         default=None, description="Folder of models to register at start; empty: those that ship with the project."
     )
@@ -184,7 +191,7 @@ def load_settings() -> Settings:
     """
     refuse_unknown_names(os.environ)
     try:
-        settings = Settings()
+        settings = Settings(**_secrets_of_files(os.environ))
     except ValidationError as error:
         # Only the place and the kind of the error: a value may be a secret.
         lines = [f"{PREFIX}{str(e['loc'][0]).upper()}: {e['msg']}" for e in error.errors(include_input=False)]
@@ -198,9 +205,31 @@ def load_settings() -> Settings:
     return settings
 
 
+def _secret_names() -> list[str]:
+    return [name for name, field in Settings.model_fields.items() if field.annotation is SecretStr]
+
+
+def _secrets_of_files(environment: Mapping[str, str]) -> dict[str, Any]:
+    """Read the settings that come in files, as container platforms hand secrets out."""
+    found = {}
+    for name in _secret_names():
+        variable = PREFIX + name.upper()
+        path = environment.get(f"{variable}_FILE")
+        if path is None:
+            continue
+        if variable in environment:
+            raise SettingsError(f"{variable} and {variable}_FILE are both set; keep one of them")
+        try:
+            found[name] = SecretStr(Path(path).read_text("utf-8").strip())
+        except (OSError, UnicodeDecodeError) as error:
+            raise SettingsError(f"{variable}_FILE can't be read: {type(error).__name__}") from None
+    return found
+
+
 def refuse_unknown_names(names: Iterable[str]) -> None:
     """Raise SettingsError for the first name with the prefix that is no setting."""
     names_of_settings = [PREFIX + name.upper() for name in Settings.model_fields]
+    names_of_settings += [f"{PREFIX}{name.upper()}_FILE" for name in _secret_names()]
     for name in sorted(names):
         if not name.startswith(PREFIX) or name.startswith(CLIENT_PREFIX) or name in names_of_settings:
             continue

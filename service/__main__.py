@@ -1,7 +1,11 @@
-"""`python -m service` serves; with `openapi` it prints the OpenAPI document, with `settings` the table of settings."""
+"""`python -m service` serves; with `openapi` it prints the OpenAPI document, with `settings` the table of settings.
+
+With `keys` it makes, lists, rotates and revokes keys of clients.
+"""
 
 import socket
 import sys
+from collections.abc import Callable
 from typing import cast
 
 import uvicorn
@@ -12,6 +16,7 @@ from jobkit.logs import set_up_logs
 from jobkit.privacy import hide_memory
 from jobkit.settings import Settings, load_settings, settings_table
 from jobkit.telemetry import open_telemetry
+from service import key_commands
 from service.app import create_app
 from service.auth import check_exposure
 from service.connections import ConnectionLimits, limited_protocol, raise_descriptor_limit
@@ -20,7 +25,7 @@ from service.document import to_yaml
 # As of `uvicorn.run`.
 _START_FAILED = 3
 _BACKLOG = 4096
-USAGE = "usage: python -m service [openapi | settings]"
+USAGE = "usage: python -m service [openapi | settings | keys]"
 
 
 def main(arguments: list[str]) -> int:
@@ -31,16 +36,26 @@ def main(arguments: list[str]) -> int:
     if arguments == ["settings"]:
         sys.stdout.write(settings_table())
         return 0
+    if arguments[:1] == ["keys"]:
+        return _with_settings(lambda settings: key_commands.run(arguments[1:], settings))
     if arguments:
         sys.stderr.write(USAGE + "\n")
         return 2
     hide_memory()
+    return _with_settings(_start)
+
+
+def _with_settings(run: Callable[[Settings], int]) -> int:
+    """Run with the settings of the environment; 1 where they are wrong."""
     try:
-        settings = load_settings()
-        check_exposure(settings)
+        return run(load_settings())
     except SettingsError as error:
         sys.stderr.write(f"quadpatch: {error}\n")
         return 1
+
+
+def _start(settings: Settings) -> int:
+    check_exposure(settings)
     set_up_logs(settings)
     _serve(create_app(settings, open_telemetry("api")), settings)
     return 0

@@ -7,10 +7,11 @@ from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 
 import anyio.to_thread
-from fastapi import FastAPI
+from fastapi import Depends, FastAPI
 
 from jobkit.settings import Settings
 from jobkit.telemetry import Telemetry
+from service.audit import AuditMiddleware
 from service.auth import AuthMiddleware, check_exposure
 from service.body_limit import BodyLimitMiddleware
 from service.cached_answer import READINESS_CACHE_S, CachedAnswer
@@ -22,10 +23,12 @@ from service.pacing import Pacer, PacingMiddleware
 from service.request_context import RequestContextMiddleware
 from service.request_telemetry import RequestTelemetryMiddleware
 from service.routes import (
+    audit,
     deliveries,
     events,
     health,
     jobs,
+    keys,
     meshes,
     metrics,
     model_lifetime,
@@ -35,6 +38,7 @@ from service.routes import (
     retention,
     webhooks,
 )
+from service.scopes import check_scope
 from service.services import open_services
 
 
@@ -69,17 +73,19 @@ def create_app(settings: Settings, telemetry: Telemetry | None = None) -> FastAP
     app.state.readiness = CachedAnswer(READINESS_CACHE_S)
     app.state.documents = {}
     app.state.telemetry = telemetry or Telemetry()
+    about_access = (keys, audit)
     about_jobs = (meshes, jobs, events, results, repairs, retention)
-    modules = (*about_jobs, models, model_lifetime, webhooks, deliveries, health, metrics)
+    modules = (*about_jobs, models, model_lifetime, webhooks, deliveries, *about_access, health, metrics)
     routers = [module.router for module in modules]
     for router in routers:
-        app.include_router(router)
+        app.include_router(router, dependencies=[Depends(check_scope)])
     install_document(app)
     install_handlers(app, [route for router in routers for route in router.routes])
     # The last one added is the outermost: ids and headers also stand on the answers of the auth middleware.
     app.add_middleware(HeadMiddleware)
     app.add_middleware(BodyLimitMiddleware, most=settings.max_bodies)
     app.add_middleware(AuthMiddleware, settings=settings)
+    app.add_middleware(AuditMiddleware)
     app.add_middleware(RequestContextMiddleware)
     app.add_middleware(RequestTelemetryMiddleware, registry=app.state.registry, telemetry=app.state.telemetry)
     app.add_middleware(PacingMiddleware, pacer=Pacer())
@@ -93,7 +99,7 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     collector = StateCollector(services)
     app.state.registry.register(collector)
     try:
-        async with services.streams.running():
+        async with services.streams.running(), services.audit.running():
             yield
             services.job_waiters.close()
             services.mesh_waiters.close()

@@ -1,32 +1,58 @@
 """Authentication: API keys; without keys only requests from this machine and from pages of the same origin."""
 
-import hashlib
 import hmac
 import ipaddress
 from http import HTTPStatus
+from pathlib import Path
 
+import anyio.to_thread
+from cachetools import TTLCache
+from sqlalchemy.engine import make_url
 from starlette.requests import Request
 from starlette.types import ASGIApp, Receive, Scope, Send
 
-from jobkit.errors import SettingsError
+from jobkit.access.keys import PREFIX, Holder, Keys, digest_of
+from jobkit.database.session import Database
+from jobkit.database.tenancy import DEFAULT_TENANT
+from jobkit.errors import DatabaseError, DatabaseUnavailableError, JobkitError, SettingsError
+from jobkit.schema import Scope as KeyScope
 from jobkit.settings import Settings
 from service.host_header import Authority, parse_origin, plain_host, requested_authority
-from service.problems import ProblemError, problem_response
+from service.problems import ProblemError, problem_response, to_problem_error
 
 PUBLIC_PATHS = frozenset({"/", "/healthz", "/readyz", "/openapi.yaml", "/openapi.json"})
 METRICS_PATH = "/metrics"
-LOCAL_PRINCIPAL = "local"
+ALL_SCOPES = frozenset(KeyScope)
+# Who asks without a key: from this machine, where none is needed, and for what is public.
+LOCAL = Holder("local", "", DEFAULT_TENANT, ALL_SCOPES)
+ANONYMOUS = Holder("anonymous", "", DEFAULT_TENANT, ALL_SCOPES)
+_KNOWN_FOR_S = 2.0
+_MOST_KNOWN = 10_000
 _LOCAL_NAMES = frozenset({"localhost", "127.0.0.1", "::1"})
 _SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
 
 
 def check_exposure(settings: Settings) -> None:
     """Raise SettingsError where the service would listen to others without a key."""
-    if not settings.key_list and not is_loopback(settings.host):
+    if not settings.key_list and not is_loopback(settings.host) and not _has_keys(settings):
         raise SettingsError(
             f"QUADPATCH_HOST is {settings.host}, which other machines can reach, and QUADPATCH_API_KEYS is empty; "
-            "set keys, or listen on 127.0.0.1"
+            "set keys, make one (python -m service keys create NAME), or listen on 127.0.0.1"
         )
+
+
+def _has_keys(settings: Settings) -> bool:
+    """Tell whether keys were made; a database that does not answer, or is not there yet, has none."""
+    url = make_url(settings.effective_database_url)
+    if url.get_backend_name() == "sqlite" and not Path(url.database or "").is_file():
+        return False
+    database = Database(settings.effective_database_url)
+    try:
+        return Keys(database).are_there()
+    except (DatabaseError, DatabaseUnavailableError):
+        return False
+    finally:
+        database.close()
 
 
 def is_loopback(host: str) -> bool:
@@ -45,16 +71,46 @@ def public_paths(settings: Settings) -> frozenset[str]:
 
 
 class KeyRing:
-    """The accepted keys, as hashes: a dump of the memory of this process does not show them."""
+    """The accepted keys: those of the settings, as hashes, and those of the database, which are looked up.
+
+    What was looked up is known for two seconds, so a key that is revoked is taken no longer than that.
+
+    Parameters
+    ----------
+    keys : list of str
+        Of the settings: of the default tenant, for everything.
+    """
 
     def __init__(self, keys: list[str]) -> None:
-        self._hashes = [hashlib.sha256(key.encode()).digest() for key in keys]
+        self._digests = [digest_of(key) for key in keys]
+        # In tuples: what is known may be that there is no holder.
+        self._found: TTLCache[str, tuple[Holder | None]] = TTLCache(_MOST_KNOWN, _KNOWN_FOR_S)
+        self._are_made: TTLCache[None, tuple[bool]] = TTLCache(1, _KNOWN_FOR_S)
 
-    def principal(self, key: str) -> str | None:
-        """Return a name for the holder of a key, None for a wrong key; takes as long for either."""
-        digest = hashlib.sha256(key.encode("utf-8", "surrogateescape")).digest()
-        matches = [hmac.compare_digest(digest, known) for known in self._hashes]
-        return f"key-{digest.hex()[:16]}" if any(matches) else None
+    def of_settings(self, key: str) -> Holder | None:
+        """Return the holder of a key of the settings; takes as long for a wrong key."""
+        digest = digest_of(key)
+        matches = [hmac.compare_digest(digest, known) for known in self._digests]
+        return Holder(f"key-{digest[:16]}", "settings", DEFAULT_TENANT, ALL_SCOPES) if any(matches) else None
+
+    async def is_needed(self, keys: Keys) -> bool:
+        """Tell whether requests need a key: where one is set, or was ever made."""
+        if self._digests:
+            return True
+        # An entry may expire at any moment, so it is read once.
+        known = self._are_made.get(None) or (await anyio.to_thread.run_sync(keys.are_there),)
+        self._are_made.setdefault(None, known)
+        return known[0]
+
+    async def holder(self, key: str, keys: Keys) -> Holder | None:
+        """Return the holder of a key, None for a wrong one."""
+        holder = self.of_settings(key)
+        if holder is not None or not key.startswith(PREFIX):
+            return holder
+        digest = digest_of(key)
+        known = self._found.get(digest) or (await anyio.to_thread.run_sync(keys.holder, digest),)
+        self._found.setdefault(digest, known)
+        return known[0]
 
 
 class AuthMiddleware:
@@ -62,7 +118,7 @@ class AuthMiddleware:
 
     def __init__(self, app: ASGIApp, settings: Settings) -> None:
         self._app = app
-        self._keys = KeyRing(settings.key_list) if settings.key_list else None
+        self._keys = KeyRing(settings.key_list)
         self._public_paths = public_paths(settings)
         self._own_names = _LOCAL_NAMES | {plain_host(settings.host)}
 
@@ -73,28 +129,40 @@ class AuthMiddleware:
             return
         request = Request(scope, receive)
         try:
-            request.state.principal = self._principal(request)
-        except ProblemError as error:
-            await problem_response(request, error)(scope, receive, send)
+            request.state.principal = await self._principal(request)
+        except (ProblemError, JobkitError) as error:
+            problem = error if isinstance(error, ProblemError) else to_problem_error(error)
+            await problem_response(request, problem)(scope, receive, send)
             return
         await self._app(scope, receive, send)
 
-    def _principal(self, request: Request) -> str:
-        authority = requested_authority(request.scope)
-        if self._keys is None:
+    async def _principal(self, request: Request) -> Holder:
+        authority, keys = requested_authority(request.scope), Keys(request.app.state.services.database)
+        is_public = request.scope["path"] in self._public_paths
+        is_needed = await self._is_needed(keys, is_public=is_public)
+        if is_needed and is_public:
+            return ANONYMOUS
+        holder = await self._keys.holder(presented_key(request), keys)
+        if holder is None and not is_needed:
             self._refuse_foreign_pages(request, authority)
-            return LOCAL_PRINCIPAL
-        if request.scope["path"] in self._public_paths:
-            return "anonymous"
-        principal = self._keys.principal(presented_key(request))
-        if principal is None:
+            return LOCAL
+        if holder is None:
             raise ProblemError(
                 HTTPStatus.UNAUTHORIZED,
                 "unauthorized",
                 "send a valid key as 'Authorization: Bearer KEY' or 'X-API-Key: KEY'",
                 {"WWW-Authenticate": 'Bearer realm="quadpatch"'},
             )
-        return principal
+        return holder
+
+    async def _is_needed(self, keys: Keys, *, is_public: bool) -> bool:
+        try:
+            return await self._keys.is_needed(keys)
+        except (DatabaseUnavailableError, DatabaseError):
+            # Signs of life are given in an outage, too.
+            if is_public:
+                return True
+            raise
 
     def _refuse_foreign_pages(self, request: Request, authority: Authority | None) -> None:
         # A page from elsewhere can make the user's browser call this machine. Its name then stands in Origin, or,

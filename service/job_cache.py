@@ -42,6 +42,30 @@ class _Batch:
     task: asyncio.Task[dict[str, JobView]] | None = None
 
 
+@dataclass(frozen=True)
+class OwnJobs:
+    """The jobs of a tenant, as the cache of all has them; without a tenant, all of them."""
+
+    cache: "JobCache"
+    tenant: str | None = None
+
+    async def status(self, job_id: str) -> JobView:
+        """Read state and revision of a job; raise JobNotFoundError."""
+        view = await self.cache.status(job_id)
+        self._check(view, job_id)
+        return view
+
+    async def job(self, job_id: str) -> Job:
+        """Read a whole job; raise JobNotFoundError."""
+        view = await self.cache.view(job_id)
+        self._check(view, job_id)
+        return view.job or await self.cache.read_alone(job_id)
+
+    def _check(self, view: JobView, job_id: str) -> None:
+        if self.tenant not in (None, view.status.tenant):
+            raise JobNotFoundError(f"there is no job {job_id}")
+
+
 class JobCache:
     """The jobs that all requests of a process read."""
 
@@ -58,12 +82,17 @@ class JobCache:
         """Read state and revision of a job; raise JobNotFoundError."""
         return await self._shared_view(job_id, is_whole=False)
 
-    async def job(self, job_id: str) -> Job:
-        """Read a whole job; raise JobNotFoundError."""
-        job = (await self._shared_view(job_id, is_whole=True)).job
-        if job is None:  # removed right after the query, or a row that can't be read: this fails for it alone
-            return await anyio.to_thread.run_sync(self._jobs.get, job_id)
-        return job
+    async def view(self, job_id: str) -> JobView:
+        """Read a whole job with its state; raise JobNotFoundError.
+
+        The job is None where it was removed right after the query, or its row can't be read: `read_alone` then fails
+        for it alone.
+        """
+        return await self._shared_view(job_id, is_whole=True)
+
+    async def read_alone(self, job_id: str) -> Job:
+        """Read a job by a query of its own; raise JobNotFoundError."""
+        return await anyio.to_thread.run_sync(self._jobs.get, job_id)
 
     async def _shared_view(self, job_id: str, is_whole: bool) -> JobView:
         self._start_refresh()
@@ -110,7 +139,7 @@ class JobCache:
         jobs = {job_id: entry[1] for job_id, entry in cached.items() if entry and entry[0] == statuses[job_id]}
         for job_id, job in self._jobs.get_many(statuses.keys() - jobs.keys()).items():
             jobs[job_id] = job
-            self._cached[job_id] = (JobStatus(job.revision, job.state, job.pinned), job)
+            self._cached[job_id] = (JobStatus(job.revision, job.state, job.pinned, statuses[job_id].tenant), job)
             self._cached.move_to_end(job_id)
         while len(self._cached) > _MOST_CACHED:
             self._cached.popitem(last=False)

@@ -3,13 +3,15 @@
 Tested in `tests/service/routes/test_health.py`.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Annotated, cast
 
 from fastapi import Depends, Request
 
+from jobkit.access.audit import AuditLog
+from jobkit.access.keys import Holder
 from jobkit.database.session import Database
 from jobkit.egress import check_url
 from jobkit.jobs.attempts import Attempts
@@ -25,7 +27,8 @@ from jobkit.storage.base import ObjectStore
 from jobkit.storage.open import open_store
 from jobkit.webhooks.deliveries import Deliveries
 from jobkit.webhooks.subscriptions import Webhooks
-from service.job_cache import JobCache
+from service.audit import AuditTrail
+from service.job_cache import JobCache, OwnJobs
 from service.streams import EventStreams
 from service.waiting import Waiters
 
@@ -47,10 +50,25 @@ class Services:
     deliveries: Deliveries
     estimates: Estimates
     streams: EventStreams
-    job_cache: JobCache
+    job_cache: OwnJobs
     job_waiters: Waiters
     mesh_waiters: Waiters
     model_waiters: Waiters
+    audit: AuditTrail
+
+    def of(self, tenant: str) -> "Services":
+        """Return the same connections, as one tenant sees them."""
+        database, settings = self.database.of(tenant), self.settings
+        return replace(
+            self,
+            database=database,
+            jobs=Jobs(database, settings.job_retention_days),
+            meshes=Meshes(database, settings.mesh_retention_days),
+            registry=Registry(database, self.store),
+            webhooks=self.webhooks.of(database),
+            deliveries=Deliveries(database),
+            job_cache=replace(self.job_cache, tenant=tenant),
+        )
 
     def close(self) -> None:
         """Close all connections."""
@@ -90,10 +108,11 @@ def open_services(settings: Settings) -> Services:
         Deliveries(database),
         estimates,
         EventStreams(database, settings.max_streams),
-        JobCache(jobs, estimates),
+        OwnJobs(JobCache(jobs, estimates)),
         Waiters(jobs.unfinished, settings.max_waiters),
         Waiters(meshes.unfinished, settings.max_waiters),
         Waiters(proofs.unfinished, settings.max_waiters),
+        AuditTrail(AuditLog(database)),
     )
 
 
@@ -102,15 +121,22 @@ def shipped_models_folder() -> Path:
     return Path(__file__).resolve().parent.parent / "quadpatch" / "shipped_models"
 
 
-async def get_services(request: Request) -> Services:
-    """Return what the app's lifespan has opened."""
+async def get_principal(request: Request) -> Holder:
+    """Return who is calling, as the auth middleware found out."""
+    return cast(Holder, request.state.principal)
+
+
+async def get_all_services(request: Request) -> Services:
+    """Return what the app's lifespan has opened, for all tenants."""
     return cast(Services, request.app.state.services)
 
 
-async def get_principal(request: Request) -> str:
-    """Return who is calling, as the auth middleware found out."""
-    return cast(str, request.state.principal)
+async def get_services(request: Request) -> Services:
+    """Return what the app's lifespan has opened, as the tenant of the caller sees it."""
+    services, principal = await get_all_services(request), await get_principal(request)
+    return services.of(principal.tenant)
 
 
 ServicesDep = Annotated[Services, Depends(get_services)]
-PrincipalDep = Annotated[str, Depends(get_principal)]
+AllServicesDep = Annotated[Services, Depends(get_all_services)]
+PrincipalDep = Annotated[Holder, Depends(get_principal)]

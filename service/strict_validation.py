@@ -1,14 +1,14 @@
 """Routes that refuse whatever they would otherwise ignore.
 
-That is an unknown or repeated query parameter, a body that is not declared as JSON, and a body or a condition that the
-route does not read.
+That is an unknown query parameter, one that is repeated though it names one thing, a body that is not declared as JSON,
+and a body or a condition that the route does not read.
 
 Tested in `tests/attacks/test_h_http_as_written.py`.
 """
 
 from collections.abc import Callable, Coroutine
 from http import HTTPStatus
-from typing import Any, Literal
+from typing import Any, Literal, get_args, get_origin
 
 from fastapi import Request, Response
 from fastapi.dependencies.models import Dependant
@@ -31,11 +31,12 @@ class StrictRoute(APIRoute):
         """Wrap FastAPI's handler."""
         handle = super().get_route_handler()
         known = _names(self.dependant, "query_params")
+        lists = _lists(self.dependant)
         knows_if_match = "If-Match" in _names(self.dependant, "header_params")
         takes_upload = "requestBody" in (self.openapi_extra or {})
 
         async def handle_strictly(request: Request) -> Response:
-            _check_query(request, known)
+            _check_query(request, known, known - lists)
             if not knows_if_match:
                 _check_if_match(request)
             if self.body_field is not None:
@@ -47,13 +48,13 @@ class StrictRoute(APIRoute):
         return handle_strictly
 
 
-def _check_query(request: Request, known: set[str]) -> None:
+def _check_query(request: Request, known: set[str], single: set[str]) -> None:
     names = [name for name, _ in request.query_params.multi_items()]
     unknown = [name for name in dict.fromkeys(names) if name not in known]
     if unknown:
         message = f"no such parameter; there are: {', '.join(sorted(known)) or 'none'}"
         raise invalid_request([{"loc": ("query", name), "msg": message, "type": "unknown"} for name in unknown])
-    repeated = [name for name in known if names.count(name) > 1]
+    repeated = [name for name in single if names.count(name) > 1]
     if repeated:
         message = "the parameter comes more than once"
         raise invalid_request([{"loc": ("query", name), "msg": message, "type": "repeated"} for name in repeated])
@@ -68,6 +69,16 @@ def _check_if_match(request: Request) -> None:
 def _names(dependant: Dependant, kind: Literal["query_params", "header_params"]) -> set[str]:
     own = {parameter.alias for parameter in getattr(dependant, kind)}
     return own.union(*(_names(inner, kind) for inner in dependant.dependencies))
+
+
+def _lists(dependant: Dependant) -> set[str]:
+    """Name the query parameters that may be repeated."""
+    own = {found.alias for found in dependant.query_params if _is_list(found.field_info.annotation)}
+    return own.union(*(_lists(inner) for inner in dependant.dependencies))
+
+
+def _is_list(annotation: Any) -> bool:
+    return get_origin(annotation) is list or any(_is_list(part) for part in get_args(annotation))
 
 
 class _BoundedRequest(Request):

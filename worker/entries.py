@@ -14,13 +14,13 @@ from typing import Any
 from rq.exceptions import NoSuchJobError
 from rq.job import Job
 
-from jobkit.ids import MODEL_NAME
+from jobkit.ids import MODEL_NAME, TENANT
 from jobkit.queue import INSPECT_MESH, PROVE_MODEL, RUN_JOB
 from worker.jobs import inspect_mesh, prove_model, run_job
 
 TASKS: dict[str, Callable[[str], None]] = {RUN_JOB: run_job, INSPECT_MESH: inspect_mesh, PROVE_MODEL: prove_model}
-# Of a job or a mesh, or the reference to a version of a model.
-_ID = re.compile(rf"[0-9A-Za-z_-]{{1,100}}|{MODEL_NAME}@[1-9][0-9]{{0,9}}")
+# Of a job or a mesh, or the reference to a version of a model, of a tenant perhaps.
+_ID = re.compile(rf"[0-9A-Za-z_-]{{1,100}}|({TENANT}/)?{MODEL_NAME}@[1-9][0-9]{{0,9}}")
 
 
 class UnknownTaskError(Exception):

@@ -77,7 +77,7 @@ def folder_with_mesh(context: Context, source: MeshSource, reference: MeshSource
 def _linked(context: Context, source: MeshSource, folder: Path, subfolder: str, name: str) -> Iterator[None]:
     """Link the verified file of a mesh into a folder of its own; `name` is for people."""
     try:
-        with verified_file(context.store, source.key, source.mesh_id) as path:
+        with verified_file(context.store, source.key, source.sha256) as path:
             (folder / subfolder).mkdir()
             (folder / source_name(source, subfolder)).symlink_to(path)
             yield

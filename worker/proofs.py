@@ -43,7 +43,7 @@ def prove(context: Context, proof: Proof) -> None:
 
 def _work(context: Context, proof: Proof, observer: Observer) -> None:
     settings, model = context.settings, proof.model
-    pinned = ResolvedModel(requested=proof.reference, kind=model.kind, name=model.name, version=model.version)
+    pinned = ResolvedModel(requested=proof.reference, kind=model.kind, name=proof.name, version=model.version)
     path = model_argument(pinned, context.registry, context.store, context.cache_folder)
     limits = EngineLimits(
         min(settings.job_time_limit_s, _TIME_LIMIT_S), settings.job_memory_limit_mb, n_threads=context.n_threads

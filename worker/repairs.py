@@ -20,6 +20,8 @@ from jobkit.errors import (
 )
 from jobkit.jobs.attempts import StartedAttempt
 from jobkit.jobs.stage_seconds import StageSeconds
+from jobkit.meshes import Meshes
+from jobkit.models.registry import Registry
 from jobkit.requeue import submit_job
 from jobkit.schema import JobError, JobResult, JobState
 from jobkit.telemetry import StageSpans
@@ -119,18 +121,20 @@ def _run(context: Context, started_attempt: StartedAttempt) -> _Repaired:
 
 def _work(context: Context, started_attempt: StartedAttempt, heartbeat: Heartbeat) -> _Repaired:
     job, started_at = started_attempt.job, time.monotonic()
-    source = context.meshes.source(job.mesh_id)
-    reference = None if job.spec.reference_id is None else context.meshes.source(job.spec.reference_id)
-    model = model_argument(job.model, context.registry, context.store, context.cache_folder)
-    deprecated = deprecation(job.model, context.registry)
+    owner = context.database.of(started_attempt.tenant)
+    meshes, registry = Meshes(owner), Registry(owner, context.store)
+    source = meshes.source(job.mesh_id)
+    reference = None if job.spec.reference_id is None else meshes.source(job.spec.reference_id)
+    model = model_argument(job.model, registry, context.store, context.cache_folder)
+    deprecated = deprecation(job.model, registry)
     settings = context.settings
     memory_mb = min(settings.job_memory_limit_mb, started_attempt.memory_mb or settings.job_memory_limit_mb)
     limits = EngineLimits(settings.job_time_limit_s, memory_mb, n_threads=context.n_threads)
     request = replace(
-        job_request(job.spec, source, model, limits, reference), model_card=network_card(job.model, context.registry)
+        job_request(job.spec, source, model, limits, reference), model_card=network_card(job.model, registry)
     )
     with folder_with_mesh(context, source, reference) as folder:
-        before = hand_on(context.meshes, job.mesh_id, folder) if request.scan else b""
+        before = hand_on(meshes, job.mesh_id, folder) if request.scan else b""
         with context.telemetry.stages() as spans:
             observer = Observer(
                 _report_to_both(heartbeat, spans),
@@ -144,7 +148,7 @@ def _work(context: Context, started_attempt: StartedAttempt, heartbeat: Heartbea
         elif missing_pictures(folder, request):
             log_engine_tail(folder / LOG_NAME)
         if request.scan:
-            take_back(context.meshes, job.mesh_id, folder, before)
+            take_back(meshes, job.mesh_id, folder, before)
         if deprecated is not None:
             note_deprecation(folder, f"{job.model.name}@{job.model.version}", deprecated.reason)
         cost = Cost(time.monotonic() - started_at, heartbeat.peak_mb)

@@ -79,7 +79,7 @@ def job_request(
         with_close_ups=spec.output.closeups,
         reference="" if reference is None else source_name(reference, REFERENCE_FOLDER),
         missing=None if spec.restore is None else spec.restore.missing.model_dump(),
-        scan=f"{source.mesh_id} {source_name(source)}" if spec.task == "fill" else "",
+        scan=f"{source.sha256} {source_name(source)}" if spec.task == "fill" else "",
     )
 
 

@@ -28,11 +28,16 @@ def to_job(row: JobRow, retention_days: float = 0) -> Job:
 
     What depends on other jobs, `queue_position` and `eta_s`, is left to `jobkit.jobs.estimates`.
     """
-    names = Job.model_fields.keys() - {"links", "expires_at", "queue_position", "eta_s", "waits_for"}
-    values = {name: getattr(row, name) for name in names}
+    names = Job.model_fields.keys() - {"links", "mesh_id", "expires_at", "queue_position", "eta_s", "waits_for"}
+    values = {name: getattr(row, name) for name in names} | {"mesh_id": _mesh_id(row)}
     values["waits_for"] = None if row.memory_wait_since is None else "memory"
     expires_at = expiry(row.finished_at, retention_days, row.pinned)
     return Job.model_validate(values | {"links": _links(row), "expires_at": expires_at})
+
+
+def _mesh_id(row: JobRow) -> str | None:
+    """Return the id of the mesh as its owner knows it; None where the row can't be read."""
+    return row.spec.get("mesh_id") if isinstance(row.spec, dict) else None
 
 
 def _links(row: JobRow) -> JobLinks:
@@ -42,7 +47,7 @@ def _links(row: JobRow) -> JobLinks:
     return JobLinks(
         self=path,
         events=f"{path}/events",
-        mesh=f"/v1/meshes/{row.mesh_id}",
+        mesh=f"/v1/meshes/{_mesh_id(row)}",
         rerun=f"{path}/rerun",
         cancel=None if state.is_terminal else f"{path}/cancel",
         result=f"{path}/result" if "result" in roles else None,

@@ -9,13 +9,14 @@ then, and an UPDATE that waited for a row looks at its conditions again. So what
 the WHERE of the UPDATE, or the row is locked while it is read (`with_for_update`, which SQLite leaves out).
 """
 
+import copy
 import fcntl
 import json
 import re
 from collections.abc import Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 from alembic import command
 from alembic.config import Config
@@ -26,6 +27,7 @@ from sqlalchemy.exc import DBAPIError, IntegrityError, InterfaceError, Operation
 from sqlalchemy.exc import TimeoutError as PoolTimeoutError
 from sqlalchemy.orm import Session
 
+from jobkit.database.tenancy import TenantSession
 from jobkit.database.write_queue import BUSY_TIMEOUT_MS, WriteQueue
 from jobkit.errors import DatabaseError, DatabaseUnavailableError, RowConflictError, SettingsError
 from shared_rules.text import encodable
@@ -69,6 +71,7 @@ class Database:
         self._reader = self._engine
         self._writer = self._engine.execution_options(quadpatch_write=True)
         self._write_queue: AbstractContextManager[object] = nullcontext()
+        self._tenant: str | None = None
         if self._engine.dialect.name == "sqlite":
             self._write_queue = WriteQueue()
         if self._engine.dialect.name == "postgresql":
@@ -80,10 +83,21 @@ class Database:
         """The engine, for migrations and tests."""
         return self._engine
 
+    @property
+    def tenant(self) -> str | None:
+        """Whose rows its sessions see; None: all."""
+        return self._tenant
+
+    def of(self, tenant: str) -> Self:
+        """Return the same database, as one tenant sees it."""
+        view = copy.copy(self)
+        view._tenant = tenant
+        return view
+
     @contextmanager
     def read(self) -> Iterator[Session]:
         """Open a session that sees one snapshot and writes nothing."""
-        with _translated(), Session(self._reader, expire_on_commit=False) as session:
+        with _translated(), self._session(self._reader) as session:
             yield session
 
     @contextmanager
@@ -92,10 +106,13 @@ class Database:
         with (
             self._write_queue,
             _translated(),
-            Session(self._writer, expire_on_commit=False) as session,
+            self._session(self._writer) as session,
             session.begin(),
         ):
             yield session
+
+    def _session(self, engine: Engine) -> TenantSession:
+        return TenantSession(engine, expire_on_commit=False, info={"tenant": self._tenant})
 
     def ping(self) -> None:
         """Raise DatabaseUnavailableError if the database does not answer."""

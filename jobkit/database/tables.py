@@ -1,7 +1,9 @@
 """Tables. Portable types only: PostgreSQL and SQLite hold the same rows.
 
-A mesh is named by the sha256 of its bytes. A job's `revision` is the number of its latest event; it is raised in the
-same statement that changes the job, which makes event numbers gapless without a lock of their own.
+A mesh is named by its bytes and the tenant that it belongs to (`mesh_id_of`). The names of models and aliases of other
+tenants than the default one begin with that of the tenant and a slash (`own_name`). A job's `revision` is the number of
+its latest event; it is raised in the same statement that changes the job, which makes event numbers gapless without a
+lock of their own.
 
 Tested in `tests/jobkit/database/test_session.py`.
 """
@@ -10,12 +12,19 @@ from datetime import datetime
 from typing import Any
 
 from sqlalchemy import JSON, BigInteger, ForeignKey, ForeignKeyConstraint, Index, String, Text, UniqueConstraint
+from sqlalchemy.engine.default import DefaultExecutionContext
 from sqlalchemy.orm import Mapped, mapped_column
 
 from jobkit.database.table_base import Base
+from jobkit.database.tenancy import Owned, Shareable
 
 
-class MeshRow(Base):
+def _own_id(context: DefaultExecutionContext) -> str:
+    """Take the id of a row of the default tenant, which is the sha256."""
+    return str(context.get_current_parameters()["id"])  # type: ignore[no-untyped-call]
+
+
+class MeshRow(Owned, Base):
     """An uploaded mesh and its analysis.
 
     `filename` is that of its latest upload. `calibrations` is what repairs found out about it by calibration
@@ -26,6 +35,7 @@ class MeshRow(Base):
 
     __tablename__ = "meshes"
     id: Mapped[str] = mapped_column(String(64), primary_key=True)
+    sha256: Mapped[str] = mapped_column(String(64), default=_own_id)
     key: Mapped[str] = mapped_column(String(200))
     size_bytes: Mapped[int] = mapped_column(BigInteger)
     filename: Mapped[str | None] = mapped_column(String(255))
@@ -44,10 +54,15 @@ class MeshRow(Base):
     checked_at: Mapped[datetime | None]
     created_at: Mapped[datetime]
     updated_at: Mapped[datetime]
-    __table_args__ = (Index(None, "state"), Index(None, "used_at"), Index(None, "checked_at", "created_at"))
+    __table_args__ = (
+        Index(None, "state"),
+        Index(None, "used_at"),
+        Index(None, "checked_at", "created_at"),
+        Index(None, "key"),
+    )
 
 
-class JobRow(Base):
+class JobRow(Owned, Base):
     """A job. This row is authoritative; the queue is a hint.
 
     `attempt` fences and never falls; `forgiven` says how many attempts ended for reasons that lie outside of the job (a
@@ -96,6 +111,7 @@ class JobRow(Base):
     checked_at: Mapped[datetime | None]
     __table_args__ = (
         Index(None, "state", "id"),
+        Index(None, "tenant", "id"),
         Index(None, "mesh_id"),
         Index(None, "reference_id"),
         Index(None, "finished_at"),
@@ -130,11 +146,11 @@ class EventRow(Base):
     data: Mapped[dict[str, Any]]
 
 
-class ModelRow(Base):
+class ModelRow(Shareable, Base):
     """One immutable version of a model, and its proof: `attempt` fences and `forgiven` forgives as in an analysis."""
 
     __tablename__ = "models"
-    name: Mapped[str] = mapped_column(String(64), primary_key=True)
+    name: Mapped[str] = mapped_column(String(128), primary_key=True)
     version: Mapped[int] = mapped_column(primary_key=True, autoincrement=False)
     kind: Mapped[str] = mapped_column(String(32))
     format: Mapped[str] = mapped_column(String(16))
@@ -160,16 +176,16 @@ class DeletedModelRow(Base):
     """The highest version of a name that was deleted: numbers up to it never come back."""
 
     __tablename__ = "deleted_models"
-    name: Mapped[str] = mapped_column(String(64), primary_key=True)
+    name: Mapped[str] = mapped_column(String(128), primary_key=True)
     version: Mapped[int]
 
 
-class AliasRow(Base):
+class AliasRow(Shareable, Base):
     """A name that points to a model version."""
 
     __tablename__ = "aliases"
-    alias: Mapped[str] = mapped_column(String(64), primary_key=True)
-    name: Mapped[str] = mapped_column(String(64))
+    alias: Mapped[str] = mapped_column(String(128), primary_key=True)
+    name: Mapped[str] = mapped_column(String(128))
     version: Mapped[int]
     updated_at: Mapped[datetime]
     __table_args__ = (ForeignKeyConstraint(["name", "version"], ["models.name", "models.version"]),)
@@ -271,7 +287,7 @@ class AttemptCountRow(Base):
     count: Mapped[int] = mapped_column(BigInteger)
 
 
-class WebhookRow(Base):
+class WebhookRow(Owned, Base):
     """A subscription: where to send which events. Messages are signed with the old secret as well for a while."""
 
     __tablename__ = "webhooks"
@@ -318,3 +334,40 @@ class DeliveryTryRow(Base):
     status: Mapped[int | None]
     error: Mapped[str | None] = mapped_column(String(500))
     milliseconds: Mapped[int]
+
+
+class KeyRow(Owned, Base):
+    """A key of a client: its digest, never the key itself.
+
+    For a while after a rotation the key of before, `old_sha256`, is taken as well. A key that is revoked stays here, so
+    that the audit log can name it.
+    """
+
+    __tablename__ = "keys"
+    id: Mapped[str] = mapped_column(String(40), primary_key=True)
+    name: Mapped[str] = mapped_column(String(64))
+    scopes: Mapped[list[str]] = mapped_column(JSON(none_as_null=True))
+    sha256: Mapped[str] = mapped_column(String(64))
+    old_sha256: Mapped[str | None] = mapped_column(String(64))
+    old_until: Mapped[datetime | None]
+    expires_at: Mapped[datetime | None]
+    revoked_at: Mapped[datetime | None]
+    used_at: Mapped[datetime | None]
+    created_at: Mapped[datetime]
+    __table_args__ = (Index(None, "sha256", unique=True), Index(None, "old_sha256", unique=True))
+
+
+class AuditRow(Owned, Base):
+    """A request that changed something, or was refused: who, what, when, from where."""
+
+    __tablename__ = "audit"
+    id: Mapped[str] = mapped_column(String(40), primary_key=True)
+    at: Mapped[datetime]
+    principal: Mapped[str] = mapped_column(String(64))
+    name: Mapped[str | None] = mapped_column(String(64))
+    operation: Mapped[str] = mapped_column(String(64))
+    path: Mapped[str] = mapped_column(String(512))
+    status: Mapped[int]
+    address: Mapped[str | None] = mapped_column(String(64))
+    request_id: Mapped[str | None] = mapped_column(String(64))
+    __table_args__ = (Index(None, "at"), Index(None, "tenant", "id"))

@@ -39,7 +39,7 @@ AT_WORK = (JobState.RUNNING.value, JobState.CANCELING.value)
 
 @dataclass(frozen=True)
 class StartedAttempt:
-    """An attempt, and the job as it was when it started.
+    """An attempt, and the job as it was when it started, with its owner.
 
     `request_id` and `traceparent` name the request that made the job; `memory_mb` is the most memory of its engine, in
     MiB, where its machine has less than it is expected to need.
@@ -47,6 +47,7 @@ class StartedAttempt:
 
     attempt: Attempt
     job: Job
+    tenant: str
     request_id: str | None = None
     traceparent: str | None = None
     memory_mb: int | None = None
@@ -89,7 +90,7 @@ class Attempts:
             if grant is not None:
                 attempt = _start(session, row, worker, lease_s, now)
                 row = existing_job(session, job_id)
-                return StartedAttempt(attempt, to_job(row), row.request_id, row.traceparent, grant.limit_mb)
+                return StartedAttempt(attempt, to_job(row), row.tenant, row.request_id, row.traceparent, grant.limit_mb)
         raise MemoryFullError(f"job {job_id} waits for memory")
 
     def heartbeat(self, attempt: Attempt, lease_s: float, memory_mb: int = 0) -> bool:

@@ -2,8 +2,9 @@
 
 from collections.abc import Collection
 from dataclasses import dataclass
+from typing import Any
 
-from sqlalchemy import bindparam, select
+from sqlalchemy import Row, bindparam, select
 from sqlalchemy.orm import Session
 
 from jobkit.database.clock import shared_now, utc_now
@@ -11,11 +12,14 @@ from jobkit.database.idempotency import Idempotency, earlier_row, remember
 from jobkit.database.job_rows import existing_job, to_job
 from jobkit.database.readable_rows import readable
 from jobkit.database.session import Database
-from jobkit.database.tables import JobRow, MeshRow, ModelRow
-from jobkit.errors import JobFinishedError, JobNotFoundError, MeshNotFoundError, ModelNotFoundError, RowConflictError
+from jobkit.database.tables import JobRow, MeshRow
+from jobkit.database.tenancy import mesh_id_of, tenant_of
+from jobkit.errors import JobFinishedError, JobNotFoundError, MeshNotFoundError, RowConflictError
 from jobkit.ids import new_job_id
 from jobkit.jobs.events import append_event, read_events
+from jobkit.jobs.search import JobSearch
 from jobkit.jobs.transitions import Transition, make_transition
+from jobkit.models.rows import version_row
 from jobkit.schema import EventPage, Job, JobPage, JobSpec, JobState, ResolvedModel
 
 
@@ -41,10 +45,11 @@ class JobStatus:
     revision: int
     state: JobState
     is_pinned: bool
+    tenant: str
 
 
 # Built once: to build it takes longer than to run it.
-_STATUS_QUERY = select(JobRow.id, JobRow.revision, JobRow.state, JobRow.pinned).where(
+_STATUS_QUERY = select(JobRow.id, JobRow.revision, JobRow.state, JobRow.pinned, JobRow.tenant).where(
     JobRow.id.in_(bindparam("ids", expanding=True))
 )
 
@@ -105,7 +110,7 @@ class Jobs:
         """Return the same for many jobs; those that are not there, or can't be read, are left out."""
         with self._database.read() as session:
             rows = session.execute(_STATUS_QUERY, {"ids": list(job_ids)}).all()
-        return dict(readable(rows, lambda row: (row.id, JobStatus(row.revision, JobState(row.state), row.pinned))))
+        return dict(readable(rows, _to_status))
 
     def unfinished(self, job_ids: Collection[str]) -> set[str]:
         """Return those of the jobs that have not ended."""
@@ -119,8 +124,8 @@ class Jobs:
             rows = session.scalars(select(JobRow).where(JobRow.id.in_(job_ids)))
             return {job.id: job for job in readable(rows, self._show)}
 
-    def page(self, limit: int, cursor: str | None = None, state: JobState | None = None) -> JobPage:
-        """Return jobs, newest first.
+    def page(self, limit: int, cursor: str | None = None, search: JobSearch | None = None) -> JobPage:
+        """Return jobs by age.
 
         Parameters
         ----------
@@ -128,15 +133,15 @@ class Jobs:
             Most jobs on the page.
         cursor : str, optional
             `next_cursor` of the page before. Jobs that came later don't shift the pages.
-        state : JobState, optional
-            Only jobs that are in it now.
+        search : JobSearch, optional
+            Only jobs of that kind, and in that order; None: all, newest first.
         """
-        query = select(JobRow).order_by(JobRow.id.desc()).limit(limit + 1)
+        search = search or JobSearch()
+        query = select(JobRow).order_by(JobRow.id if search.oldest_first else JobRow.id.desc()).limit(limit + 1)
         if cursor is not None:
-            query = query.where(JobRow.id < cursor)
-        if state is not None:
-            query = query.where(JobRow.state == state.value)
+            query = query.where(JobRow.id > cursor if search.oldest_first else JobRow.id < cursor)
         with self._database.read() as session:
+            query = query.where(*search.conditions(tenant_of(session)))
             rows = list(session.scalars(query))
         next_cursor = rows[limit - 1].id if len(rows) > limit else None
         return JobPage(items=list(readable(rows[:limit], self._show)), next_cursor=next_cursor)
@@ -176,10 +181,11 @@ class Jobs:
             if idempotency is not None and (earlier := self._earlier_job(session, idempotency)) is not None:
                 return earlier, False
             mesh = _existing_mesh(session, new.spec.mesh_id)
+            reference = None
             if new.spec.reference_id is not None:
-                _existing_mesh(session, new.spec.reference_id)
+                reference = _existing_mesh(session, new.spec.reference_id)
             _lock_model(session, new.model)
-            row = _new_row(new, mesh.filename)
+            row = _new_row(new, mesh, reference)
             session.add(row)
             session.flush()
             append_event(session, row.id, "queued", row.created_at, {"state": row.state, "task": row.task})
@@ -196,8 +202,12 @@ class Jobs:
         return self._show(existing_job(session, earlier.job_id))
 
 
+def _to_status(row: Row[*tuple[Any, ...]]) -> tuple[str, JobStatus]:
+    return row.id, JobStatus(row.revision, JobState(row.state), row.pinned, row.tenant)
+
+
 def _existing_mesh(session: Session, mesh_id: str) -> MeshRow:
-    mesh = session.get(MeshRow, mesh_id)
+    mesh = session.get(MeshRow, mesh_id_of(tenant_of(session), mesh_id))
     if mesh is None:
         raise MeshNotFoundError(f"there is no mesh {mesh_id}")
     return mesh
@@ -207,20 +217,18 @@ def _lock_model(session: Session, model: ResolvedModel) -> None:
     """Keep the version from being deleted until the job is written; raise ModelNotFoundError where it was."""
     if model.name is None or model.version is None:
         return
-    shared = {"read": True}
-    if session.get(ModelRow, (model.name, model.version), with_for_update=shared) is None:
-        raise ModelNotFoundError(f"there is no model {model.name}@{model.version}")
+    version_row(session, model.name, model.version, lock={"read": True})
 
 
-def _new_row(new: NewJob, latest_name: str | None) -> JobRow:
+def _new_row(new: NewJob, mesh: MeshRow, reference: MeshRow | None) -> JobRow:
     """Make the row of a job; its mesh's name is copied: later the same bytes may come under another one."""
     now = utc_now()
     return JobRow(
         id=new_job_id(),
-        mesh_id=new.spec.mesh_id,
-        mesh_name=new.spec.mesh_name or latest_name,
+        mesh_id=mesh.id,
+        mesh_name=new.spec.mesh_name or mesh.filename,
         task=new.spec.task,
-        reference_id=new.spec.reference_id,
+        reference_id=None if reference is None else reference.id,
         state=JobState.QUEUED.value,
         attempt=0,
         max_attempts=new.max_attempts,

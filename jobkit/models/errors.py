@@ -7,7 +7,8 @@
     ├── ModelRefusedError       model_refused         the proof of the version failed
     ├── ModelDeprecatedError    model_deprecated      an alias is to point to a deprecated version
     ├── ModelInUseError         model_in_use          a job that has not ended, or an alias, needs the version
-    └── AliasInUseError         alias_in_use          jobs that name no model mean the alias
+    ├── AliasInUseError         alias_in_use          jobs that name no model mean the alias
+    └── SharedModelError        shared_model          the operator shares it, and alone may change it
 """
 
 from jobkit.errors import ConflictError
@@ -41,3 +42,9 @@ class AliasInUseError(ConflictError):
     """Jobs that name no model mean the alias."""
 
     code = "alias_in_use"
+
+
+class SharedModelError(ConflictError):
+    """The operator shares it, and alone may change it."""
+
+    code = "shared_model"

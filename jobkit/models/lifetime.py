@@ -12,10 +12,11 @@ from sqlalchemy.orm import Session
 from jobkit.database.clock import utc_now
 from jobkit.database.session import Database
 from jobkit.database.tables import AliasRow, DeletedModelRow, JobRow, ModelRow
+from jobkit.database.tenancy import shown_name
 from jobkit.errors import ModelNotFoundError, RowConflictError
 from jobkit.models.default_aliases import DEFAULT_KINDS
 from jobkit.models.errors import AliasInUseError, ModelInUseError
-from jobkit.models.rows import to_version, version_row
+from jobkit.models.rows import alias_row, check_owner, to_version, version_row
 from jobkit.schema import JobState, ModelVersion
 
 _OPEN_STATES = tuple(state.value for state in JobState if not state.is_terminal)
@@ -32,7 +33,8 @@ def deprecate_version(database: Database, name: str, version: int, reason: str) 
         If an alias points to it that jobs mean which name no model.
     """
     with database.write() as session:
-        row = version_row(session, name, version, locked=True)
+        row = version_row(session, name, version, lock=True)
+        check_owner(session, row)
         defaults = [alias for alias in _aliases(session, row) if alias in DEFAULT_KINDS]
         if defaults:
             raise ModelInUseError(f"the alias {defaults[0]} points to {name}@{version}; point it to another one first")
@@ -44,7 +46,8 @@ def deprecate_version(database: Database, name: str, version: int, reason: str) 
 def restore_version(database: Database, name: str, version: int) -> None:
     """Take the mark of a deprecated version away; raise ModelNotFoundError."""
     with database.write() as session:
-        row = version_row(session, name, version, locked=True)
+        row = version_row(session, name, version, lock=True)
+        check_owner(session, row)
         row.deprecated_at = row.deprecation = None
 
 
@@ -76,10 +79,11 @@ def delete_alias(database: Database, alias: str) -> None:
         If jobs that name no model mean it.
     """
     with database.write() as session:
-        row = session.get(AliasRow, alias, with_for_update=True)
+        row = alias_row(session, alias)
         if row is None:
             raise ModelNotFoundError(f"there is no alias {alias!r}")
-        if alias in DEFAULT_KINDS:
+        check_owner(session, row)
+        if row.alias in DEFAULT_KINDS:
             raise AliasInUseError(f"jobs that name no model mean {alias!r}; it can be moved, but not deleted")
         session.delete(row)
 
@@ -87,14 +91,16 @@ def delete_alias(database: Database, alias: str) -> None:
 def _delete_version(database: Database, name: str, version: int) -> None:
     with database.write() as session:
         # Locked: a job that is being accepted holds the row until it is written, and is seen below.
-        row = version_row(session, name, version, locked=True)
+        row = version_row(session, name, version, lock=True)
+        check_owner(session, row)
         aliases = _aliases(session, row)
         if aliases:
             raise ModelInUseError(f"the alias {aliases[0]} points to {name}@{version}; move or delete it first")
         job_id = _open_job(session, row)
         if job_id is not None:
             raise ModelInUseError(f"job {job_id} needs {name}@{version}; cancel it, or wait for its end")
-        deleted = session.get(DeletedModelRow, name, with_for_update=True) or DeletedModelRow(name=name, version=0)
+        deleted = session.get(DeletedModelRow, row.name, with_for_update=True)
+        deleted = deleted or DeletedModelRow(name=row.name, version=0)
         deleted.version = max(deleted.version, version)
         session.add(deleted)
         session.delete(row)
@@ -102,11 +108,16 @@ def _delete_version(database: Database, name: str, version: int) -> None:
 
 def _aliases(session: Session, row: ModelRow) -> list[str]:
     query = select(AliasRow.alias).where(AliasRow.name == row.name, AliasRow.version == row.version)
-    return list(session.scalars(query.order_by(AliasRow.alias)))
+    # Those of other tenants as well: each of them needs the version.
+    everywhere = query.order_by(AliasRow.alias).execution_options(all_tenants=True)
+    return [shown_name(alias) for alias in session.scalars(everywhere)]
 
 
 def _open_job(session: Session, row: ModelRow) -> str | None:
     """Return a job that is pinned to the version and has not ended."""
     name, version = JobRow.model["name"].as_string(), JobRow.model["version"].as_integer()
-    query = select(JobRow.id).where(JobRow.state.in_(_OPEN_STATES), name == row.name, version == row.version)
-    return session.scalars(query.limit(1)).first()
+    is_pinned = (name == shown_name(row.name)) & (version == row.version)
+    query = select(JobRow.id).where(JobRow.state.in_(_OPEN_STATES), is_pinned)
+    if not row.shared:
+        query = query.where(JobRow.tenant == row.tenant)
+    return session.scalars(query.limit(1).execution_options(all_tenants=True)).first()

@@ -25,9 +25,13 @@ MAX_PROOFS = 3
 
 @dataclass(frozen=True)
 class Proof:
-    """One try at proving a version; `is_last` where a failure of it refuses the version."""
+    """One try at proving a version; `is_last` where a failure of it refuses the version.
+
+    `name` is that of the model among those of all tenants.
+    """
 
     model: ModelVersion
+    name: str
     attempt: int
     is_last: bool = False
 
@@ -56,14 +60,14 @@ class Proofs:
         name, version = parts_of(reference)
         with self._database.write() as session:
             now = shared_now(session)
-            row = version_row(session, name, version, locked=True)
+            row = version_row(session, name, version, lock=True)
             is_leased = row.lease_until is not None and row.lease_until > now
             if row.state != ModelState.PROVING or is_leased:
                 raise StaleAttemptError(f"model {reference} is {row.state} and not to be proven now")
             row.attempt += 1
             row.worker, row.lease_until = worker, now + timedelta(seconds=lease_s)
             session.flush()
-            return Proof(to_version(session, row), row.attempt, row.attempt - row.forgiven >= MAX_PROOFS)
+            return Proof(to_version(session, row), row.name, row.attempt, row.attempt - row.forgiven >= MAX_PROOFS)
 
     def unfinished(self, references: Collection[str]) -> set[str]:
         """Return those of the versions whose proof is still to come."""
@@ -105,7 +109,7 @@ class Proofs:
             result = session.execute(
                 update(ModelRow)
                 .where(
-                    ModelRow.name == proof.model.name,
+                    ModelRow.name == proof.name,
                     ModelRow.version == proof.model.version,
                     ModelRow.attempt == proof.attempt,
                     ModelRow.state == ModelState.PROVING.value,

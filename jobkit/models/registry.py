@@ -17,12 +17,22 @@ from jobkit.database.clock import utc_now
 from jobkit.database.readable_rows import readable
 from jobkit.database.session import Database
 from jobkit.database.tables import AliasRow, DeletedModelRow, ModelRow
+from jobkit.database.tenancy import names_of, own_name, shown_name, tenant_of
 from jobkit.errors import ModelKindError, NameTakenError, RowConflictError
 from jobkit.models.default_aliases import DEFAULT_KINDS
 from jobkit.models.errors import ModelDeprecatedError
 from jobkit.models.header import artifact_format, dictionary_card, to_wire_card
 from jobkit.models.network_header import check_network, read_network_card
-from jobkit.models.rows import check_proven, resolved_row, row_of_bytes, to_alias, to_model, to_version, version_row
+from jobkit.models.rows import (
+    alias_row,
+    check_proven,
+    resolved_row,
+    row_of_bytes,
+    to_alias,
+    to_model,
+    to_version,
+    version_row,
+)
 from jobkit.schema import SELF, Alias, Model, ModelKind, ModelList, ModelState, ModelVersion
 from jobkit.storage.base import CHUNK_BYTES, ObjectStore, StoredObject
 from jobkit.storage.removals import assure
@@ -63,6 +73,7 @@ class Registry:
         version: int | None = None,
         *,
         is_proven: bool = False,
+        shared: bool = False,
     ) -> tuple[ModelVersion, bool]:
         """Make bytes that lie in the store a version of a model; one that was refused is to be proven anew.
 
@@ -78,6 +89,8 @@ class Registry:
             Number to take; None: the next one.
         is_proven : bool
             Whether the bytes are trusted; otherwise a worker has to prove them.
+        shared : bool
+            Whether all tenants may use the version.
 
         Returns
         -------
@@ -95,7 +108,8 @@ class Registry:
         kind, artifact, full_card = self._inspect(stored, card)
         wire_card = to_wire_card(full_card).model_dump(mode="json")
         row = ModelRow(
-            name=name,
+            name=own_name(self._database.tenant, name),
+            shared=shared,
             kind=kind,
             format=artifact.format,
             sha256=stored.sha256,
@@ -117,12 +131,12 @@ class Registry:
     def publish_file(
         self, name: str, path: Path, card: Card | None = None, version: int | None = None
     ) -> tuple[ModelVersion, bool]:
-        """Store a local file that is trusted, and publish it; returns and raises as `publish`."""
+        """Store a local file that is trusted, and share it with all tenants; returns and raises as `publish`."""
         with path.open("rb") as source, self._store.writer(MODEL_PREFIX) as writer:
             while chunk := source.read(CHUNK_BYTES):
                 writer.write(chunk)
             stored = writer.commit()
-        return self.publish(name, stored, card, version, is_proven=True)
+        return self.publish(name, stored, card, version, is_proven=True, shared=True)
 
     def resolve(self, reference: str) -> ModelVersion:
         """Return the version that `name@version`, `name` or an alias means now; raise ModelNotFoundError."""
@@ -173,11 +187,14 @@ class Registry:
         cursor : str, optional
             `next_cursor` of the page before.
         """
-        query = select(ModelRow.name).distinct().order_by(ModelRow.name).limit(limit + 1)
+        tenant = self._database.tenant
+        shown = func.replace(ModelRow.name, own_name(tenant, ""), "") if own_name(tenant, "") else ModelRow.name
+        query = select(shown).distinct().order_by(shown).limit(limit + 1)
         with self._database.read() as session:
-            names = list(session.scalars(query if cursor is None else query.where(ModelRow.name > cursor)))
+            names = list(session.scalars(query if cursor is None else query.where(shown > cursor)))
             page_names = names[:limit]
-            aliases = session.scalars(select(AliasRow).where(AliasRow.name.in_(page_names)).order_by(AliasRow.alias))
+            owned = [owned for name in page_names for owned in names_of(tenant, name)]
+            aliases = session.scalars(select(AliasRow).where(AliasRow.name.in_(owned)).order_by(AliasRow.alias))
             return ModelList(
                 models=list(readable(page_names, lambda name: to_model(session, name, MOST_LISTED_VERSIONS))),
                 aliases=[to_alias(row) for row in aliases],
@@ -207,13 +224,19 @@ class Registry:
         with self._database.write() as session:
             resolved = resolved_row(session, reference)
             # Locked: it may be deprecated or deleted at the same moment.
-            target = version_row(session, resolved.name, resolved.version, locked=True)
+            target = version_row(session, resolved.name, resolved.version, lock=True)
             check_proven(target)
             if target.deprecated_at is not None:
-                raise ModelDeprecatedError(f"{target.name}@{target.version} is deprecated; no alias may point to it")
-            if alias in RESERVED_NAMES or session.scalars(select(ModelRow).where(ModelRow.name == alias)).first():
+                shown = f"{shown_name(target.name)}@{target.version}"
+                raise ModelDeprecatedError(f"{shown} is deprecated; no alias may point to it")
+            tenant = tenant_of(session)
+            names = names_of(tenant, alias)
+            if alias in RESERVED_NAMES or session.scalars(select(ModelRow).where(ModelRow.name.in_(names))).first():
                 raise NameTakenError(f"{alias!r} is the name of a model, or reserved")
-            row = session.get(AliasRow, alias, with_for_update=True) or AliasRow(alias=alias)
+            own = own_name(tenant, alias)
+            row = session.get(AliasRow, own, with_for_update=True) or AliasRow(alias=own, shared=False)
+            if tenant is None:
+                row.shared = True
             kind = _kind_of_alias(session, row)
             if kind not in (None, target.kind):
                 raise ModelKindError(
@@ -234,8 +257,11 @@ class Registry:
 
     def _insert(self, row: ModelRow, version: int | None) -> tuple[ModelVersion, bool]:
         with self._database.write() as session:
-            if row.name in RESERVED_NAMES or session.get(AliasRow, row.name) is not None:
-                raise NameTakenError(f"{row.name!r} is an alias, or reserved")
+            name = shown_name(row.name)
+            if name in RESERVED_NAMES or alias_row(session, name) is not None:
+                raise NameTakenError(f"{name!r} is an alias, or reserved")
+            if row.name != name and session.scalars(select(ModelRow).where(ModelRow.name == name).limit(1)).first():
+                raise NameTakenError(f"{name!r} is the name of a shared model; publish yours under another one")
             is_same = (ModelRow.name == row.name) & (ModelRow.sha256 == row.sha256)
             existing_row = session.scalars(select(ModelRow).where(is_same).with_for_update()).one_or_none()
             if existing_row is not None:
@@ -253,21 +279,21 @@ class Registry:
 def _kind_of_alias(session: Session, row: AliasRow) -> str | None:
     """Return the kind of model that an alias keeps to: that of its first target; None where it is free."""
     if row.name is None:
-        return DEFAULT_KINDS.get(row.alias)
+        return DEFAULT_KINDS.get(shown_name(row.alias))
     return version_row(session, row.name, row.version).kind
 
 
 def _free_number(session: Session, name: str, requested_number: int | None) -> int:
     """Return the number for a new version; those of deleted versions never come back, since jobs name them."""
     if requested_number is not None and session.get(ModelRow, (name, requested_number)) is not None:
-        raise NameTakenError(f"{name}@{requested_number} is taken by other bytes; versions never change")
+        raise NameTakenError(f"{shown_name(name)}@{requested_number} is taken by other bytes; versions never change")
     latest = session.scalar(select(func.max(ModelRow.version)).where(ModelRow.name == name)) or 0
     # Read last: a version that is deleted at this moment is seen among the rows above, or here.
     last_deleted = session.scalar(select(DeletedModelRow.version).where(DeletedModelRow.name == name)) or 0
     if requested_number is None:
         return max(latest, last_deleted) + 1
     if requested_number <= last_deleted:
-        raise NameTakenError(f"{name}@{last_deleted} was deleted; no version up to it comes back")
+        raise NameTakenError(f"{shown_name(name)}@{last_deleted} was deleted; no version up to it comes back")
     return requested_number
 
 

@@ -6,10 +6,11 @@ those it knows, so models of responses ignore the rest.
 Tested in `tests/jobkit/schema/test_spec.py`.
 """
 
+import re
 from datetime import datetime
 from typing import Annotated
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, PlainSerializer
+from pydantic import AwareDatetime, BaseModel, BeforeValidator, ConfigDict, Field, PlainSerializer
 
 from jobkit.ids import JOB_ID_PATTERN, MODEL_NAME, SHA256_PATTERN
 
@@ -17,6 +18,7 @@ from jobkit.ids import JOB_ID_PATTERN, MODEL_NAME, SHA256_PATTERN
 TEXT_PATTERN = r"^[^\x00-\x1f\x7f]*$"
 NAME_PATTERN = rf"^{MODEL_NAME}$"
 REFERENCE_PATTERN = rf"^{MODEL_NAME}(@[1-9][0-9]{{0,8}})?$"
+_RFC3339 = re.compile(r"^\d{4}-\d\d-\d\d[Tt ]\d\d:\d\d:\d\d(\.\d+)?([Zz]|[+-]\d\d:\d\d)$", re.ASCII)
 EXAMPLE_SHA256 = "3b1f5b1a4c6e5d7a9f0c2b4d6e8f10213243546576879809a1b2c3d4e5f60718"
 EXAMPLE_JOB_ID = "job_01jd7z3v5qk8m2x4c6b8n0a9de"
 
@@ -43,11 +45,26 @@ def _whole_number(value: object) -> object:
     return int(value) if isinstance(value, float) and value.is_integer() else value
 
 
+def _is_rfc3339(value: object) -> object:
+    if isinstance(value, str) and not _RFC3339.match(value):
+        raise ValueError("write a moment as RFC 3339 does, like 2026-11-22T09:15:02Z")
+    if not isinstance(value, str | datetime):
+        raise ValueError("write a moment as a text, like 2026-11-22T09:15:02Z")
+    return value
+
+
 # To stand last, so that it comes first and the bounds show in the document.
 WHOLE = BeforeValidator(_whole_number)
 Moment = Annotated[
     datetime,
     PlainSerializer(rfc3339, return_type=str, when_used="json"),
+    Field(json_schema_extra={"format": "date-time"}, examples=["2026-11-22T09:15:02.250Z"]),
+]
+# As clients send it: a number of seconds, which pydantic takes as well, is none.
+SentMoment = Annotated[
+    AwareDatetime,
+    Field(strict=False),
+    BeforeValidator(_is_rfc3339),
     Field(json_schema_extra={"format": "date-time"}, examples=["2026-11-22T09:15:02.250Z"]),
 ]
 JobId = Annotated[

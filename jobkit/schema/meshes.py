@@ -1,6 +1,6 @@
 """Meshes and their holes as clients see them. Lengths are in mesh units; `unit` names them where the file does."""
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, model_validator
 
@@ -154,3 +154,36 @@ class Mesh(Response):
     facts: MeshFacts | None = Field(default=None, description="Set once the state is `ready`.")
     problem: MeshProblem | None = Field(default=None, description="Set once the state is `rejected`.")
     links: MeshLinks = Field(description="Paths on this service.")
+
+
+class MeshSummary(Response):
+    """An uploaded mesh, as lists have it."""
+
+    id: MeshId
+    state: MeshState = Field(description="Whether a worker has analysed the file.", examples=["ready"])
+    filename: str | None = Field(
+        default=None, description="As the sender of its latest upload named it.", examples=["face000.ply"]
+    )
+    format: Format | None = Field(default=None, description="As stated or seen; null: unknown.", examples=["ply"])
+    size_bytes: int = Field(ge=0, description="Size of the file, in bytes.", examples=[3_212_000])
+    triangles: int | None = Field(default=None, ge=0, description="Once it is analysed.", examples=[166_259])
+    holes: int | None = Field(default=None, ge=0, description="Boundary loops, once it is analysed.", examples=[39])
+    created_at: Moment = Field(description="When it was first uploaded, RFC 3339.")
+    pinned: bool = Field(default=False, description="Whether it is kept whatever the retention.")
+    expires_at: Moment | None = Field(default=None, description="As in the mesh.")
+    links: MeshLinks = Field(description="Paths on this service.")
+
+    @classmethod
+    def of(cls, mesh: Mesh) -> Self:
+        """Sum a mesh up."""
+        values = {name: getattr(mesh, name) for name in cls.model_fields.keys() - {"triangles", "holes"}}
+        facts = mesh.facts
+        counts = {} if facts is None else {"triangles": facts.triangles, "holes": len(facts.holes)}
+        return cls.model_validate(values | counts)
+
+
+class MeshPage(Response):
+    """One page of meshes."""
+
+    items: list[MeshSummary] = Field(description="Newest first.")
+    next_cursor: str | None = Field(default=None, description="Pass as `cursor` to go on; null on the last page.")

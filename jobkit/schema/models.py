@@ -95,6 +95,7 @@ class ModelVersion(Response):
     problem: ModelProblem | None = Field(default=None, description="Set once the state is `refused`.")
     deprecated: Deprecation | None = Field(default=None, description="Set where it should be used no more.")
     aliases: list[AliasName] = Field(default_factory=list, description="Aliases that point here.")
+    shared: bool = Field(default=False, description="Whether all tenants see it; else it is yours alone.")
     created_at: Moment = Field(description="When it was published, RFC 3339.")
     links: ModelLinks = Field(description="Paths on this service.")
 
@@ -122,6 +123,7 @@ class Alias(Response):
     alias: AliasName
     name: ModelName
     version: int = Field(ge=1, description="The version it points to.", examples=[1])
+    shared: bool = Field(default=False, description="Whether all tenants see it; else it is yours alone.")
     updated_at: Moment = Field(description="When it was last moved, RFC 3339.")
 
 

@@ -84,7 +84,7 @@ def _damaged(session: Session, now: datetime) -> Iterator[ScheduledRead]:
 
 def _meshes(session: Session, before: datetime) -> Iterator[ScheduledRead]:
     for row in _rows(session, MeshRow, MeshRow.created_at, before):
-        named_object = NamedObject("mesh", row.key, row.id)
+        named_object = NamedObject("mesh", row.key, row.sha256)
         yield ScheduledRead(row.checked_at or row.created_at, (named_object,), MeshRow, MeshRow.id == row.id)
 
 

@@ -13,7 +13,7 @@ from sqlalchemy.orm import Session
 from jobkit.database.clock import shared_now
 from jobkit.database.job_rows import existing_job, to_job
 from jobkit.database.readable_rows import readable
-from jobkit.database.tables import DeliveryRow, WebhookRow
+from jobkit.database.tables import DeliveryRow, JobRow, WebhookRow
 from jobkit.ids import new_message_id
 from jobkit.schema import DeliveryState, EventType, Job, Message, WebhookEvent
 
@@ -37,9 +37,9 @@ def write_messages(session: Session, job_id: str, change: EventType, at: datetim
         return
     # The lock keeps a subscription from being deleted until the message to it is committed: a foreign key that fails
     # then would undo the change of the job. It holds up no other message.
-    query = (
-        select(WebhookRow.id, WebhookRow.events).where(WebhookRow.enabled).with_for_update(read=True, key_share=True)
-    )
+    owner = select(JobRow.tenant).where(JobRow.id == job_id).scalar_subquery()
+    query = select(WebhookRow.id, WebhookRow.events).where(WebhookRow.enabled, WebhookRow.tenant == owner)
+    query = query.with_for_update(read=True, key_share=True, of=WebhookRow)
     webhook_ids = [webhook_id for webhook_id, events in session.execute(query) if event in events]
     if not webhook_ids:
         return

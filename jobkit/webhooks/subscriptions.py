@@ -4,7 +4,7 @@ import base64
 import secrets
 from collections.abc import Callable
 from datetime import timedelta
-from typing import Any
+from typing import Any, Self
 
 from sqlalchemy import delete, func, select, update
 from sqlalchemy.orm import Session
@@ -49,6 +49,10 @@ class Webhooks:
     def create(self, new: NewWebhook) -> WebhookWithSecret:
         """Make a subscription; its secret is shown this once. Raises as `create_once`."""
         return self.create_once(new, None)[0]
+
+    def of(self, database: Database) -> Self:
+        """Return the subscriptions of another view of the database."""
+        return type(self)(database, self._check_url)
 
     def create_once(self, new: NewWebhook, idempotency: Idempotency | None) -> tuple[WebhookWithSecret, bool]:
         """Make a subscription, or show the one that the same request made, with its secret.

@@ -13,6 +13,7 @@ from fastapi import Depends, Header, Path, Request
 from pydantic import BaseModel
 from starlette.responses import Response
 
+from jobkit.access.keys import Holder
 from jobkit.database.idempotency import Idempotency
 from jobkit.ids import JOB_ID_PATTERN, SHA256_PATTERN, WEBHOOK_ID_PATTERN
 from jobkit.schema import Job, Problem
@@ -54,12 +55,12 @@ IdempotencyKey = Annotated[
 class Caller:
     """Who sends a request, and under which idempotency key."""
 
-    principal: str
+    principal: Holder
     key: str | None
 
     def idempotency(self, *request: str) -> Idempotency | None:
         """Return the key for what the request asks for: its operation, and everything that it says."""
-        return idempotency_of(self.principal, self.key, *request)
+        return idempotency_of(self.principal.key_id, self.key, *request)
 
 
 async def _get_caller(principal: PrincipalDep, key: IdempotencyKey = None) -> Caller:

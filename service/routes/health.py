@@ -15,7 +15,7 @@ from service.document import to_yaml
 from service.problems import RETRY_AFTER_S, ProblemError
 from service.readiness import Readiness, find_failures, read_readiness
 from service.routes.common import problems
-from service.services import Services, ServicesDep
+from service.services import AllServicesDep, Services
 from service.strict_validation import StrictRoute
 
 router = APIRouter(tags=["service"], route_class=StrictRoute)
@@ -47,7 +47,7 @@ async def healthz() -> Health:
 
 
 @router.get("/readyz", response_model=Readiness, responses=problems())
-async def readyz(request: Request, services: ServicesDep) -> Readiness:
+async def readyz(request: Request, services: AllServicesDep) -> Readiness:
     """Tell whether jobs can be taken, which needs database and object store, and whether they are worked on.
 
     The answer is up to a second old.

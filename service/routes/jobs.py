@@ -8,7 +8,8 @@ from starlette.concurrency import run_in_threadpool
 from starlette.responses import Response
 
 from jobkit.ids import JOB_ID_PATTERN
-from jobkit.schema import Job, JobPage, JobSpec, JobState, Plan, RepairSpec
+from jobkit.schema import Job, JobPage, JobSpec, Plan, RepairSpec
+from service.finding import JobSearchDep, Limit
 from service.idempotency import note_replayed
 from service.problems import invalid_request
 from service.routes.common import (
@@ -46,9 +47,7 @@ ACCEPTED: dict[int | str, dict[str, Any]] = {
 }
 _ENDED: dict[int | str, dict[str, Any]] = {200: {"model": Job, "description": "The job has ended."}}
 DryRun = Annotated[bool, Query(description="Only say what the job would do.")]
-Limit = Annotated[int, Query(ge=1, le=100, description="Most jobs on the page.")]
 Cursor = Annotated[str | None, Query(pattern=JOB_ID_PATTERN, description="`next_cursor` of the page before this one.")]
-StateFilter = Annotated[JobState | None, Query(description="Only jobs in this state.")]
 
 
 @router.post(
@@ -72,13 +71,13 @@ async def create_job(
     """Start a job. `{"mesh_id": …}` alone is enough: it fills the holes of the mesh."""
     if dry_run:
         return json_response(await run_in_threadpool(plan, services, spec))
-    return await answer_submission(services, Submission(spec, principal, key), prefer)
+    return await answer_submission(services, Submission(spec, principal.key_id, key), prefer)
 
 
 @router.get("/v1/jobs", response_model=JobPage, responses=problems())
-def list_jobs(services: ServicesDep, limit: Limit = 20, cursor: Cursor = None, state: StateFilter = None) -> JobPage:
+def list_jobs(services: ServicesDep, search: JobSearchDep, limit: Limit = 20, cursor: Cursor = None) -> JobPage:
     """List jobs, newest first. Those that arrive meanwhile don't shift the pages."""
-    page = services.jobs.page(limit, cursor, state)
+    page = services.jobs.page(limit, cursor, search)
     services.estimates.refresh()
     return page.model_copy(update={"items": [services.estimates.complete(job) for job in page.items]})
 
@@ -142,7 +141,7 @@ async def rerun_job(
     """
     job = await run_in_threadpool(services.jobs.get, job_id)
     spec = _changed_spec(job.spec, changes or RepairSpec())
-    return await answer_submission(services, Submission(spec, principal, key, rerun_of=job_id), prefer)
+    return await answer_submission(services, Submission(spec, principal.key_id, key, rerun_of=job_id), prefer)
 
 
 def _changed_spec(spec: JobSpec, changes: RepairSpec) -> JobSpec:

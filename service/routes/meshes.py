@@ -8,9 +8,12 @@ from starlette.concurrency import run_in_threadpool
 from starlette.responses import Response
 
 from jobkit.database.idempotency import note_request, refuse_conflict
-from jobkit.schema import Format, Mesh, MeshState
+from jobkit.database.searching import CURSOR_PATTERN
+from jobkit.database.tenancy import mesh_id_of
+from jobkit.schema import Format, Mesh, MeshPage, MeshState
 from jobkit.storage.removals import assure
 from service.content import Content, content_response
+from service.finding import Limit, MeshSearchDep
 from service.formats import clean_filename, stated_format
 from service.idempotency import note_replayed
 from service.problems import RETRY_AFTER_S
@@ -65,6 +68,9 @@ FilenameQuery = Annotated[
     Query(max_length=255, description="Name of the file; its suffix tells the format.", examples=["face000.ply"]),
 ]
 FormatQuery = Annotated[Format | None, Query(description="Format of the file; null: from its name or media type.")]
+MeshCursor = Annotated[
+    str | None, Query(pattern=CURSOR_PATTERN, description="`next_cursor` of the page before this one.")
+]
 WaitQuery = Annotated[
     int, Query(ge=0, le=300, description="Let the answer wait up to so many seconds for the analysis.", examples=[10])
 ]
@@ -103,6 +109,12 @@ async def upload_mesh(
     return note_replayed(response, is_new=is_first)
 
 
+@router.get("/v1/meshes", response_model=MeshPage, responses=problems())
+def list_meshes(services: ServicesDep, search: MeshSearchDep, limit: Limit = 20, cursor: MeshCursor = None) -> MeshPage:
+    """List meshes, newest first. Those that arrive meanwhile don't shift the pages."""
+    return services.meshes.page(limit, cursor, search)
+
+
 @router.get("/v1/meshes/{mesh_id}", response_model=Mesh, responses=problems(404))
 async def get_mesh(
     response: Response, services: ServicesDep, mesh_id: MeshIdPath, wait: WaitQuery = 0, prefer: PreferHeader = None
@@ -112,7 +124,7 @@ async def get_mesh(
     mesh = await run_in_threadpool(services.meshes.get, mesh_id)
     has_waited = True
     if wait_s > 0 and mesh.state is MeshState.ANALYSING:
-        has_waited = await services.mesh_waiters.wait(mesh_id, wait_s)
+        has_waited = await services.mesh_waiters.wait(mesh_id_of(services.database.tenant, mesh_id), wait_s)
         mesh = await run_in_threadpool(services.meshes.get, mesh_id)
     if has_waited:
         note_applied(response, prefer)
@@ -141,7 +153,7 @@ def get_mesh_content(
     mesh = services.meshes.get(mesh_id)
     source = services.meshes.source(mesh_id)
     name = mesh.filename or f"mesh-{mesh_id[:12]}"
-    return content_response(request, services, Content(source.key, mesh_id, mesh.size_bytes, name))
+    return content_response(request, services, Content(source.key, source.sha256, mesh.size_bytes, name))
 
 
 def register_mesh(services: Services, upload: Upload, filename: str | None, given: Format | None) -> tuple[Mesh, bool]:

@@ -8,6 +8,8 @@ from starlette.concurrency import run_in_threadpool
 from starlette.responses import Response
 
 from jobkit.database.idempotency import note_request, refuse_conflict
+from jobkit.database.tenancy import DEFAULT_TENANT, own_name
+from jobkit.models.errors import SharedModelError
 from jobkit.models.proofs import reference_of
 from jobkit.models.registry import MODEL_PREFIX, MOST_VERSIONS
 from jobkit.schema import Alias, AliasTarget, Model, ModelList, ModelState, ModelVersion
@@ -77,6 +79,9 @@ _BODY: dict[str, Any] = {
 # For the proof of a small model by a worker that is free.
 PROOF_WAIT_S = 10.0
 Limit = Annotated[int, Query(ge=1, le=100, description="Most models on the page.")]
+Shared = Annotated[
+    bool, Query(description="Let all tenants use the version; for keys of the tenant `default`, the operator's own.")
+]
 NameCursor = Annotated[
     str | None, Query(pattern=NAME_PATTERN, description="`next_cursor` of the page before this one.")
 ]
@@ -173,7 +178,12 @@ def get_model_artifact(
     openapi_extra=_BODY,
 )
 async def publish_model(
-    request: Request, services: ServicesDep, caller: CallerDep, name: ModelNamePath, prefer: PreferHeader = None
+    request: Request,
+    services: ServicesDep,
+    caller: CallerDep,
+    name: ModelNamePath,
+    shared: Shared = False,
+    prefer: PreferHeader = None,
 ) -> Response:
     """Publish a version. Versions never change; the same bytes are the same version.
 
@@ -183,10 +193,12 @@ async def publish_model(
     rules = UploadRules("artifact", frozenset({"card"}), MODEL_PREFIX, services.settings.max_upload_mb << 20)
     upload = await receive_upload(request, services.store, rules)
     card = _read_card(upload.fields.get("card"))
+    if shared and services.database.tenant != DEFAULT_TENANT:
+        raise SharedModelError("only the operator shares models: keys of the tenant default")
     request_parts = ("publish_model", name, upload.stored.sha256, upload.fields.get("card", b"").hex())
     idempotency = caller.idempotency(*request_parts)
     await run_in_threadpool(refuse_conflict, services.database, idempotency)
-    version, is_new = await run_in_threadpool(services.registry.publish, name, upload.stored, card)
+    version, is_new = await run_in_threadpool(services.registry.publish, name, upload.stored, card, shared=shared)
     is_first = await run_in_threadpool(note_request, services.database, idempotency, version.links.self)
     has_waited = True
     if version.state is ModelState.PROVING:
@@ -209,7 +221,8 @@ def set_alias(services: ServicesDep, alias: AliasPath, target: AliasTarget) -> A
 async def _wait_for_proof(services: Services, reference: str, wait_s: float) -> bool:
     """Wait for the end of a proof; return whether that was possible."""
     allowed_s = min(wait_s, services.settings.max_wait_s)
-    return allowed_s <= 0 or await services.model_waiters.wait(reference, allowed_s)
+    own = own_name(services.database.tenant, reference)
+    return allowed_s <= 0 or await services.model_waiters.wait(own, allowed_s)
 
 
 def _published(version: ModelVersion, is_new: bool) -> Response:

@@ -71,7 +71,7 @@ async def repair(
     whole = JobSpec(
         mesh_id=mesh.id, mesh_name=name, **{field: getattr(spec, field) for field in RepairSpec.model_fields}
     )
-    return await answer_submission(services, Submission(whole, principal, key), prefer)
+    return await answer_submission(services, Submission(whole, principal.key_id, key), prefer)
 
 
 def _read_spec(text: bytes) -> RepairSpec:

@@ -10,9 +10,11 @@ import yaml
 from sqlalchemy import func, select
 from starlette.testclient import TestClient
 
+from jobkit.access.keys import Keys
 from jobkit.database.clock import utc_now
 from jobkit.database.idempotency import KEEP_FOR, Idempotency, forget_keys, note_request
 from jobkit.database.tables import DeliveryRow, IdempotencyRow, JobRow, WebhookRow
+from jobkit.schema import NewKey, Scope
 from service.services import Services
 
 DOCUMENT = yaml.safe_load((Path(__file__).resolve().parents[2] / "openapi.yaml").read_text("utf-8"))
@@ -39,8 +41,9 @@ def ended_delivery(client: TestClient, services: Services, webhook: str) -> str:
 
 
 @pytest.fixture
-def requests(
+def requests(  # noqa: PLR0917 - fixtures
     client: TestClient,
+    services: Services,
     mesh_id: str,
     job_id: str,
     webhook: str,
@@ -48,6 +51,10 @@ def requests(
     dictionary_bytes: Callable[[int], bytes],
 ) -> dict[str, tuple[Ask, Ask | None]]:
     """By operation: how to ask for it, and how to ask for something else with the same operation."""
+    # Once a key is made, no request goes without one.
+    key = Keys(services.database).create(NewKey(name="test", scopes=list(Scope)))[0]
+    client.headers["X-API-Key"] = key.key
+    other_key = Keys(services.database).create(NewKey(name="other"))[0]
     job = {"mesh_id": mesh_id, "method": {"method": "smooth"}}
     form = {"mesh": ("a.ply", MESH)}
 
@@ -71,6 +78,8 @@ def requests(
         "test_webhook": (post(f"{webhook}/test"), None),
         "rotate_webhook_secret": (post(f"{webhook}/rotate"), None),
         "replay_delivery": (post(f"{ended_delivery}/replay"), None),
+        "create_key": (post("/v1/keys", json={"name": "a"}), post("/v1/keys", json={"name": "b"})),
+        "rotate_key": (post(f"/v1/keys/{other_key.id}/rotate"), None),
     }
 
 

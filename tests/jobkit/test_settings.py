@@ -65,3 +65,23 @@ def test_every_setting_stands_in_the_table_with_its_meaning() -> None:
         assert f"`QUADPATCH_{name.upper()}`" in table
         assert field.description is not None
         assert field.description in table
+
+
+def test_secrets_are_read_from_files(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    path = tmp_path / "keys"
+    path.write_text("a-key-of-station-1,a-key-of-station-2\n")
+    monkeypatch.setenv("QUADPATCH_API_KEYS_FILE", str(path))
+    assert load_settings().key_list == ["a-key-of-station-1", "a-key-of-station-2"]
+    monkeypatch.setenv("QUADPATCH_API_KEYS", "a-key-of-station-3")
+    with pytest.raises(SettingsError, match="both set"):
+        load_settings()
+    monkeypatch.delenv("QUADPATCH_API_KEYS")
+    monkeypatch.setenv("QUADPATCH_API_KEYS_FILE", str(tmp_path / "nothing"))
+    with pytest.raises(SettingsError, match="API_KEYS_FILE can't be read"):
+        load_settings()
+
+
+def test_only_secrets_have_files(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("QUADPATCH_PORT_FILE", "port")
+    with pytest.raises(SettingsError, match="is no setting"):
+        load_settings()

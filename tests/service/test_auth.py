@@ -79,12 +79,12 @@ def test_signs_of_life_and_the_document_need_no_key(guarded: TestClient, path: s
 
 def test_each_key_has_a_name_of_its_own_that_does_not_give_it_away() -> None:
     ring = KeyRing([KEY, "another-long-key-2"])
-    first, second = ring.principal(KEY), ring.principal("another-long-key-2")
+    first, second = ring.of_settings(KEY), ring.of_settings("another-long-key-2")
     assert first is not None
     assert second is not None
-    assert first != second
-    assert KEY not in first
-    assert ring.principal("wrong") is None
+    assert first.key_id != second.key_id
+    assert KEY not in first.key_id
+    assert ring.of_settings("wrong") is None
     assert KEY not in str(vars(ring))
 
 

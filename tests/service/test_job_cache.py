@@ -13,7 +13,7 @@ from jobkit.jobs.jobs import Jobs, JobStatus, NewJob
 from jobkit.meshes import Meshes
 from jobkit.schema import Job, JobSpec, JobState, ResolvedModel
 from jobkit.storage.base import ObjectStore
-from service.job_cache import JobCache
+from service.job_cache import JobCache, OwnJobs
 from tests.service.rounds import most_in_a_round
 from tests.waiting import GUARD_S
 
@@ -73,7 +73,7 @@ def test_who_comes_during_a_look_shares_the_next_one_and_sees_what_has_changed_m
             await anyio.sleep(0)
             jobs.may_go_on.set()
 
-    job_cache = JobCache(jobs, Estimates(database))
+    job_cache = OwnJobs(JobCache(jobs, Estimates(database)))
     anyio.run(live)
     assert len(jobs.status_queries) == 2
     assert {found[place].state for place in range(1, 50)} == {JobState.RUNNING}
@@ -83,7 +83,7 @@ def test_a_job_is_read_whole_once_for_each_change_and_only_if_a_request_wants_it
     database: Database, job: Job, jobs: CountingJobs
 ) -> None:
     jobs.may_go_on.set()
-    job_cache = JobCache(jobs, Estimates(database))
+    job_cache = OwnJobs(JobCache(jobs, Estimates(database)))
 
     async def live() -> None:
         await job_cache.status(job.id)
@@ -98,7 +98,7 @@ def test_a_job_is_read_whole_once_for_each_change_and_only_if_a_request_wants_it
 
 
 def test_what_the_board_shows_is_what_the_database_holds(database: Database, job: Job) -> None:
-    job_cache = JobCache(Jobs(database), Estimates(database))
+    job_cache = OwnJobs(JobCache(Jobs(database), Estimates(database)))
     attempts = Attempts(database)
 
     async def live() -> None:
@@ -111,7 +111,7 @@ def test_what_the_board_shows_is_what_the_database_holds(database: Database, job
 
 
 def test_one_unknown_job_leaves_the_others_their_answers(database: Database, job: Job) -> None:
-    job_cache = JobCache(Jobs(database), Estimates(database))
+    job_cache = OwnJobs(JobCache(Jobs(database), Estimates(database)))
     refused = []
 
     async def unknown() -> None:
@@ -131,7 +131,7 @@ def test_one_unknown_job_leaves_the_others_their_answers(database: Database, job
 def test_a_client_that_disconnects_does_not_cancel_the_query_of_others(
     database: Database, job: Job, jobs: CountingJobs
 ) -> None:
-    job_cache = JobCache(jobs, Estimates(database))
+    job_cache = OwnJobs(JobCache(jobs, Estimates(database)))
     found = []
 
     async def look() -> None:
@@ -153,7 +153,7 @@ def test_a_client_that_disconnects_does_not_cancel_the_query_of_others(
 def test_those_that_shared_a_look_write_their_answers_one_after_the_other(
     database: Database, job: Job, jobs: CountingJobs
 ) -> None:
-    job_cache = JobCache(jobs, Estimates(database))
+    job_cache = OwnJobs(JobCache(jobs, Estimates(database)))
     jobs.may_go_on.set()
     assert anyio.run(most_in_a_round, lambda: job_cache.job(job.id), 100) == 1
     assert len(jobs.status_queries) < 10

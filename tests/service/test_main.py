@@ -1,6 +1,9 @@
+"""The command line, and that of keys: `service/key_commands.py`."""
+
 import os
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -50,3 +53,29 @@ def test_serving_loads_no_numeric_library() -> None:
     )
     ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=GUARD_S, check=True)
     assert ended.stdout.strip() == "set()"
+
+
+def test_keys_are_made_listed_rotated_and_revoked_without_http(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    monkeypatch.setenv("QUADPATCH_DATA_DIR", str(tmp_path))
+    assert main(["keys", "create", "station 4", "--tenant", "plant-north", "--scope", "read"]) == 0
+    shown = capsys.readouterr()
+    assert shown.out.startswith("qpk_")
+    assert "plant-north: read" in shown.err
+    assert main(["keys", "list"]) == 0
+    table = capsys.readouterr().out
+    assert "station 4" in table
+    assert shown.out.strip() not in table
+    key_id = table.splitlines()[1].split()[0]
+    assert main(["keys", "rotate", key_id]) == 0
+    assert capsys.readouterr().out != shown.out
+    assert main(["keys", "revoke", key_id]) == 0
+    main(["keys", "list"])
+    assert "revoked 2" in capsys.readouterr().out
+    assert main(["keys", "rotate", key_id]) == 1
+    assert "was revoked" in capsys.readouterr().err
+    assert main(["keys", "create", "x", "--tenant", "Plant North"]) == 2
+    assert capsys.readouterr().err.startswith("quadpatch: tenant:")
+    with pytest.raises(SystemExit, match="2"):
+        main(["keys", "create", "x", "--scope", "all"])

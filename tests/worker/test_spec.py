@@ -36,7 +36,7 @@ LIMITS = EngineLimits(time_s=900.0, memory_mb=4096, n_threads=2)
 
 
 def source(mesh_format: Any = "ply", filename: str | None = None) -> MeshSource:
-    return MeshSource(MESH_ID, "meshes/00/00", filename, mesh_format)
+    return MeshSource(MESH_ID, MESH_ID, "meshes/00/00", filename, mesh_format)
 
 
 def spec(**fields: Any) -> JobSpec:

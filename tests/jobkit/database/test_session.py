@@ -1,5 +1,6 @@
 """Also tests `jobkit/migrations/versions/0001_first_tables.py`,
-`jobkit/migrations/versions/0002_leases_and_webhooks.py` and `jobkit/migrations/versions/0007_tasks_of_jobs.py`."""
+`jobkit/migrations/versions/0002_leases_and_webhooks.py`, `jobkit/migrations/versions/0007_tasks_of_jobs.py` and
+`jobkit/migrations/versions/0010_tenants_and_keys.py`."""
 
 import multiprocessing
 import signal

@@ -14,6 +14,7 @@ from jobkit.jobs.attempts import Attempts
 from jobkit.jobs.estimates import Estimates, remaining_queued_s, remaining_running_s
 from jobkit.jobs.jobs import Jobs, NewJob
 from jobkit.jobs.past_jobs import MIN_PAST, Rates, Sample
+from jobkit.jobs.search import JobSearch
 from jobkit.schema import AutoMethod, Job, JobError, JobResult, JobState, ResolvedModel
 from shared_rules.option_words import Effort
 
@@ -203,7 +204,7 @@ def test_a_job_that_has_ended_or_is_about_to_has_no_estimate(
     Attempts(database).start(job.id, "test", 60)
     canceling = completed(estimates, Jobs(database).request_cancel(job.id))
     assert (canceling.eta_s, canceling.queue_position) == (None, None)
-    ended = Jobs(database).page(1, state=JobState.SUCCEEDED).items[0]
+    ended = Jobs(database).page(1, search=JobSearch([JobState.SUCCEEDED])).items[0]
     assert completed(estimates, ended) == ended
 
 

@@ -8,6 +8,7 @@ from jobkit.database.session import Database
 from jobkit.errors import IdempotencyError, JobFinishedError, JobNotFoundError, MeshNotFoundError
 from jobkit.jobs.attempts import Attempts
 from jobkit.jobs.jobs import Jobs, NewJob
+from jobkit.jobs.search import JobSearch
 from jobkit.meshes import Meshes
 from jobkit.schema import Job, JobResult, JobSpec, JobState, ResolvedModel
 from jobkit.storage.base import StoredObject
@@ -98,9 +99,9 @@ def test_a_page_can_be_of_one_state(database: Database, new_job: NewJob) -> None
     jobs = Jobs(database)
     queued, running = (jobs.create(new_job)[0].id for _ in range(2))
     Attempts(database).start(running, "w", 30)
-    assert [job.id for job in jobs.page(10, state=JobState.RUNNING).items] == [running]
-    assert [job.id for job in jobs.page(10, state=JobState.QUEUED).items] == [queued]
-    assert jobs.page(10, state=JobState.FAILED).items == []
+    assert [job.id for job in jobs.page(10, search=JobSearch([JobState.RUNNING])).items] == [running]
+    assert [job.id for job in jobs.page(10, search=JobSearch([JobState.QUEUED])).items] == [queued]
+    assert jobs.page(10, search=JobSearch([JobState.FAILED])).items == []
 
 
 def test_a_queued_job_is_canceled_at_once_and_twice_is_once(database: Database, job: Job) -> None:

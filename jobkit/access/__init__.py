@@ -1,0 +1,1 @@
+"""Who may do what: keys of clients, and the log of what they did."""
