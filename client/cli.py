@@ -36,6 +36,7 @@ from client.options import (
     OutputOption,
     OverwriteOption,
     PreviewOption,
+    PriorityOption,
     QuietOption,
     ReportOption,
     RuleOption,
@@ -130,6 +131,7 @@ def repair(  # noqa: PLR0913 - one parameter per option of the command line
     ] = None,
     seed: SeedOption = 0,
     label: LabelOption = None,
+    priority: PriorityOption = None,
     format_: FormatOption = None,
     colours: ColoursOption = None,
     report: ReportOption = None,
@@ -158,6 +160,7 @@ def repair(  # noqa: PLR0913 - one parameter per option of the command line
                 "weld_tolerance": tolerance(weld_tolerance),
                 "colours": colours,
                 "label": label,
+                "priority": priority or "normal",
                 "output": {
                     "format": format_ or format_of(output),
                     "preview": preview is not None,

@@ -126,6 +126,10 @@ ColoursOption = Annotated[
 ]
 SeedOption = Annotated[int, typer.Option(help="Starts every random choice.")]
 LabelOption = Annotated[str | None, typer.Option(help="A name for the job, for people.")]
+PriorityOption = Annotated[
+    Literal["interactive", "normal", "bulk"] | None,
+    typer.Option(help="interactive goes before all others, bulk when no other job waits.", show_default="normal"),
+]
 AgainOption = Annotated[
     bool, typer.Option("--again", help="Start a new job although the same one is under way or done.")
 ]

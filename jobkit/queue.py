@@ -52,9 +52,9 @@ class TaskQueue:
         self._queue = Queue(name, connection=self.connection, serializer=JSONSerializer)
         self._timeout_s = int(time_limit_s) + _MARGIN_S
 
-    def enqueue_job(self, job_id: str, attempt: int, *, has_waited: bool = False) -> None:
+    def enqueue_job(self, job_id: str, attempt: int, *, at_front: bool = False) -> None:
         """Ask for an attempt at a job; `attempt` is the number that it will have. Raise QueueUnavailableError."""
-        self._enqueue(RUN_JOB, job_id, job_entry(job_id, attempt), at_front=attempt > 1 or has_waited)
+        self._enqueue(RUN_JOB, job_id, job_entry(job_id, attempt), at_front=attempt > 1 or at_front)
 
     def enqueue_inspection(self, mesh_id: str, attempt: int) -> None:
         """Ask for the analysis of a mesh; raise QueueUnavailableError."""

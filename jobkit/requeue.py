@@ -63,7 +63,7 @@ def reconcile(
     return Reconciled(ended, jobs, meshes, models)
 
 
-def submit_job(database: Database, queue: TaskQueue, job_id: str, attempt: int, *, has_waited: bool = False) -> None:
+def submit_job(database: Database, queue: TaskQueue, job_id: str, attempt: int, *, at_front: bool = False) -> None:
     """Put a queued job into the queue and note when.
 
     Parameters
@@ -73,15 +73,15 @@ def submit_job(database: Database, queue: TaskQueue, job_id: str, attempt: int, 
     job_id : str
     attempt : int
         The number it has now.
-    has_waited : bool
-        Whether it goes to the front, as one whose attempt was lost does.
+    at_front : bool
+        Whether it goes to the front, as one whose attempt was lost does: it has waited, or somebody waits for it.
 
     Raises
     ------
     QueueUnavailableError
         If Redis does not answer; the row stays queued, and `reconcile` picks it up later.
     """
-    queue.enqueue_job(job_id, attempt + 1, has_waited=has_waited)
+    queue.enqueue_job(job_id, attempt + 1, at_front=at_front)
     with database.write() as session:
         session.execute(
             update(JobRow)
@@ -140,7 +140,7 @@ def _enqueue_jobs(database: Database, queue: TaskQueue, entries: set[str], now: 
         missing_jobs += waiting_jobs[:1]
     missing_jobs = [row for row in missing_jobs if _entry(row) not in entries]
     for row in missing_jobs:
-        submit_job(database, queue, row.id, row.attempt, has_waited=row.memory_wait_since is not None)
+        submit_job(database, queue, row.id, row.attempt, at_front=row.memory_wait_since is not None)
     return len(missing_jobs)
 
 

@@ -91,7 +91,8 @@ def submit(services: Services, submission: Submission) -> tuple[Job, bool]:
     job, is_new = services.jobs.create(new, idempotency)
     if is_new:
         try:
-            submit_job(services.database, services.queue, job.id, job.attempt)
+            is_urgent = job.spec.priority == "interactive"
+            submit_job(services.database, services.queue, job.id, job.attempt, at_front=is_urgent)
         except QueueUnavailableError as error:
             # The row of the job is committed; the dispatcher refills the queue from it as soon as the queue answers.
             _logger.warning("job %s waits for the queue: %s", job.id, error)

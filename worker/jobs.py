@@ -24,11 +24,11 @@ _log = logging.getLogger("quadpatch.worker.jobs")
 
 
 def run_job(job_id: str) -> None:
-    """Start an attempt at a job and work on it."""
+    """Start an attempt at the job whose turn it is, and work on it; the queue names one that waits."""
     context = current_context()
     try:
         started = _available(context)(
-            lambda: context.attempts.start(job_id, context.name, context.settings.lease_s, context.admission)
+            lambda: context.attempts.start_next(job_id, context.name, context.settings.lease_s, context.admission)
         )
     except MemoryFullError as error:
         _log.info("%s", error)

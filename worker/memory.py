@@ -48,7 +48,7 @@ def submit_fitting(context: Context) -> None:
         entries = context.queue.entries() if jobs else set()
         for job_id, attempt in reversed(jobs):
             if job_entry(job_id, attempt + 1) not in entries:
-                submit_job(context.database, context.queue, job_id, attempt, has_waited=True)
+                submit_job(context.database, context.queue, job_id, attempt, at_front=True)
         context.admission.refresh()
     except _OUTAGES as error:
         _log.warning("jobs that wait for memory are submitted later: %s", error)

@@ -68,10 +68,10 @@ class JobRow(Owned, Base):
     `attempt` fences and never falls; `forgiven` says how many attempts ended for reasons that lie outside of the job (a
     drained worker, a store that refused writes) and don't count towards `max_attempts`. A queued job that waits for
     such a reason to pass is not started before `not_before`. `queued_at` is when it last began to wait. `mesh_name` is
-    the name of the file that was uploaded for this job: the mesh itself may have another one later. `task` and
-    `reference_id`, the mesh that it learns from, are those of the spec. A queued job that did not fit into the memory
-    of a machine waits since `memory_wait_since` for `needed_memory_mb`, in MiB, and `memory_wait_at` is the machine
-    that holds back others for it in the end.
+    the name of the file that was uploaded for this job: the mesh itself may have another one later. `task`,
+    `priority` and `reference_id`, the mesh that it learns from, are those of the spec. A queued job that did not fit
+    into the memory of a machine waits since `memory_wait_since` for `needed_memory_mb`, in MiB, and `memory_wait_at` is
+    the machine that holds back others for it in the end.
     """
 
     __tablename__ = "jobs"
@@ -80,6 +80,7 @@ class JobRow(Owned, Base):
     mesh_name: Mapped[str | None] = mapped_column(String(255))
     task: Mapped[str] = mapped_column(String(16), default="fill", server_default="fill")
     reference_id: Mapped[str | None] = mapped_column(String(64), ForeignKey("meshes.id"))
+    priority: Mapped[int] = mapped_column(default=1, server_default="1")
     state: Mapped[str] = mapped_column(String(32))
     attempt: Mapped[int] = mapped_column(default=0)
     max_attempts: Mapped[int]
@@ -239,6 +240,14 @@ class LeaderRow(Base):
     holder: Mapped[str] = mapped_column(String(128))
     until: Mapped[datetime]
     since: Mapped[datetime]
+
+
+class TurnRow(Base):
+    """When a job of a tenant was started last."""
+
+    __tablename__ = "turns"
+    tenant: Mapped[str] = mapped_column(String(64), primary_key=True)
+    at: Mapped[datetime]
 
 
 class MachineRow(Base):

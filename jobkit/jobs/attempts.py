@@ -4,6 +4,7 @@ An attempt that lost its lease may still be at work: the next attempt has a high
 refused with StaleAttemptError.
 """
 
+import contextlib
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 from typing import Any
@@ -15,7 +16,7 @@ from jobkit.database.clock import shared_now, utc_now
 from jobkit.database.job_rows import existing_job, to_job
 from jobkit.database.session import Database
 from jobkit.database.tables import AttemptRow, JobRow
-from jobkit.errors import MemoryFullError, StaleAttemptError
+from jobkit.errors import JobNotFoundError, MemoryFullError, StaleAttemptError
 from jobkit.jobs.admission import Admission, Grant
 from jobkit.jobs.endings import (
     Attempt,
@@ -32,9 +33,14 @@ from jobkit.jobs.endings import (
 from jobkit.jobs.events import append_event
 from jobkit.jobs.stage_seconds import StageSeconds, add_stages
 from jobkit.jobs.transitions import Transition, make_transition, update_job
+from jobkit.jobs.turns import next_in_turn, note_turn
 from jobkit.schema import Job, JobError, JobResult, JobState
 
 AT_WORK = (JobState.RUNNING.value, JobState.CANCELING.value)
+
+
+# Jobs that a worker tries at one turn: each of them may have to wait for memory.
+_MOST_TRIED = 8
 
 
 @dataclass(frozen=True)
@@ -58,6 +64,34 @@ class Attempts:
 
     def __init__(self, database: Database) -> None:
         self._database = database
+
+    def start_next(self, job_id: str, worker: str, lease_s: float, admission: Admission) -> StartedAttempt:
+        """Start the job whose turn it is.
+
+        Parameters
+        ----------
+        job_id : str
+            The one that the entry of the queue names. It is started if it has waited for memory, or no other one can
+            be.
+        worker, lease_s, admission
+            As for `start`.
+
+        Raises
+        ------
+        JobNotFoundError, MemoryFullError, StaleAttemptError
+            As `start` does, for the last job that was tried.
+        """
+        tried: set[str] = set()
+        while not self._has_waited(job_id) and len(tried) < _MOST_TRIED:
+            with self._database.read() as session:
+                chosen = next_in_turn(session, shared_now(session))
+            if chosen is None or chosen in tried:
+                break
+            tried.add(chosen)
+            # Where it has to wait for memory, or another worker was faster, it is the turn of another one.
+            with contextlib.suppress(MemoryFullError, StaleAttemptError, JobNotFoundError):
+                return self.start(chosen, worker, lease_s, admission)
+        return self.start(job_id, worker, lease_s, admission)
 
     def start(self, job_id: str, worker: str, lease_s: float, admission: Admission | None = None) -> StartedAttempt:
         """Take a queued job: raise its attempt number and lease it.
@@ -216,6 +250,13 @@ class Attempts:
         with self._database.write() as session:
             cancel_attempt(session, attempt, utc_now())
 
+    def _has_waited(self, job_id: str) -> bool:
+        """Tell whether a job has waited for memory, or for another attempt."""
+        has_waited = JobRow.memory_wait_since.is_not(None) | (JobRow.attempt > 0)
+        is_it = (JobRow.id == job_id) & (JobRow.state == JobState.QUEUED.value) & has_waited
+        with self._database.read() as session:
+            return session.scalars(select(JobRow.id).where(is_it)).first() is not None
+
     def _end(self, attempt: Attempt, ending: Ending) -> JobState:
         with self._database.write() as session:
             return end_attempt(session, attempt, ending, utc_now())
@@ -237,6 +278,7 @@ def _start(session: Session, row: JobRow, worker: str, lease_s: float, now: date
     if not make_transition(session, row.id, transition, now, JobRow.attempt == number - 1, is_due):
         raise _not_startable(row)
     session.add(AttemptRow(job_id=row.id, number=number, worker=worker, started_at=now))
+    note_turn(session, row.tenant, now)
     return Attempt(row.id, number)
 
 

@@ -21,6 +21,7 @@ from jobkit.database.clock import shared_now
 from jobkit.database.session import Database
 from jobkit.database.tables import JobRow
 from jobkit.jobs.past_jobs import Rates, kinds_and_sizes, read_past
+from jobkit.jobs.turns import last_turns, order_of_turns
 from jobkit.schema import Job, JobState
 
 _AT_WORK = (JobState.RUNNING.value, JobState.CANCELING.value)
@@ -188,10 +189,11 @@ def read_queue_estimate(session: Session, rates: Rates) -> tuple[dict[str, int],
     # The worker of a lease that ran out does not count.
     worker_free_s = [remaining_s.get(row.id, _NEVER) for row in at_work if row.lease_until and row.lease_until > now]
     queued_jobs = session.execute(
-        kinds_and_sizes(JobRow.not_before)
+        kinds_and_sizes(JobRow.not_before, JobRow.tenant, JobRow.priority)
         .where(JobRow.state == JobState.QUEUED.value)
         .order_by(JobRow.queued_at, JobRow.id)
     ).all()
+    queued_jobs = order_of_turns(queued_jobs, last_turns(session))
     ends = remaining_queued_s(
         worker_free_s,
         [(rates.amount(row.kind, row.size_bytes), _seconds_until(row.not_before, now)) for row in queued_jobs],

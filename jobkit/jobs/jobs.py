@@ -19,6 +19,7 @@ from jobkit.ids import new_job_id
 from jobkit.jobs.events import append_event, read_events
 from jobkit.jobs.search import JobSearch
 from jobkit.jobs.transitions import Transition, make_transition
+from jobkit.jobs.turns import rank_of
 from jobkit.models.rows import version_row
 from jobkit.schema import EventPage, Job, JobPage, JobSpec, JobState, ResolvedModel
 
@@ -228,6 +229,7 @@ def _new_row(new: NewJob, mesh: MeshRow, reference: MeshRow | None) -> JobRow:
         mesh_id=mesh.id,
         mesh_name=new.spec.mesh_name or mesh.filename,
         task=new.spec.task,
+        priority=rank_of(new.spec.priority),
         reference_id=None if reference is None else reference.id,
         state=JobState.QUEUED.value,
         attempt=0,

@@ -71,6 +71,7 @@ from jobkit.schema.spec import (
     JobSpec,
     Limits,
     Output,
+    Priority,
     RepairSpec,
     identity_of,
 )
@@ -194,6 +195,7 @@ __all__ = [
     "PlannedBridge",
     "PlannedHole",
     "Preset",
+    "Priority",
     "Problem",
     "Recipe",
     "Region",

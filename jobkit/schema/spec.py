@@ -112,6 +112,7 @@ class HoleSelection(Request):
         return self
 
 
+Priority = Literal["interactive", "normal", "bulk"]
 Tolerance = Annotated[float, Field(ge=0, le=1e12)] | Literal["auto"]
 
 
@@ -181,6 +182,12 @@ class RepairSpec(Request):
     output: Output = Field(default_factory=Output, description="What is handed back.")
     limits: Limits = Field(default_factory=Limits, description="Ceilings of one attempt.")
     seed: Seed = Field(default=0, description="Starts every random choice.", examples=[0])
+    priority: Priority = Field(
+        default="normal",
+        description="`interactive`: before all others, for a station where somebody waits; `bulk`: when no other job "
+        "waits. Among jobs of one priority tenants take turns.",
+        examples=["normal"],
+    )
     label: Text | None = Field(default=None, description="A name for people.", examples=["station 4, part 1187"])
     metadata: dict[MetadataKey, Text] = Field(
         default_factory=dict,
@@ -217,7 +224,7 @@ class JobSpec(RepairSpec):
 
 
 # Fields that came after the first release of the contract, in groups that came together.
-_LATER_FIELDS = ({"task", "restore", "denoise", "encode"}, {"colours"})
+_LATER_FIELDS = ({"task", "restore", "denoise", "encode"}, {"colours"}, {"priority"})
 
 
 def identity_of(spec: JobSpec) -> str:

@@ -1,0 +1,97 @@
+"""Which waiting job starts next: by priority, and among those of one priority each tenant in turn.
+
+An entry of the queue gives a worker a turn, and the database says whose it is: the tenant that has waited longest since
+its last turn gets it, for its oldest job. So a batch of thousands delays another tenant's job by the jobs in progress
+and no more.
+
+Tested in `tests/jobkit/jobs/test_turns.py`.
+"""
+
+import heapq
+from collections import defaultdict, deque
+from collections.abc import Iterable, Mapping
+from datetime import UTC, datetime
+from typing import Protocol, TypeVar
+
+from sqlalchemy import func, or_, select
+from sqlalchemy.orm import Session
+
+from jobkit.database.tables import JobRow, TurnRow
+from jobkit.schema import JobState, Priority
+
+# By their rank; rows hold that number.
+PRIORITIES: tuple[Priority, ...] = ("interactive", "normal", "bulk")
+_LONG_AGO = datetime.min.replace(tzinfo=UTC)
+_NEVER = (0, _LONG_AGO)
+
+
+class Waiting(Protocol):
+    """A job that waits, as `order_of_turns` reads it."""
+
+    @property
+    def tenant(self) -> str:
+        """Whose it is."""
+
+    @property
+    def priority(self) -> int:
+        """Rank of its priority."""
+
+
+Job = TypeVar("Job", bound=Waiting)
+
+
+def rank_of(priority: Priority) -> int:
+    """Return the number of a priority, 0 for the most urgent."""
+    return PRIORITIES.index(priority)
+
+
+def next_in_turn(session: Session, now: datetime) -> str | None:
+    """Return the job whose turn it is, of those that may start and don't wait for memory; None where there is none."""
+    is_due = or_(JobRow.not_before.is_(None), JobRow.not_before <= now)
+    is_waiting = (JobRow.state == JobState.QUEUED.value) & is_due & JobRow.memory_wait_since.is_(None)
+    urgent = select(func.min(JobRow.priority)).where(is_waiting).scalar_subquery()
+    first = select(JobRow.tenant, func.min(JobRow.id).label("id")).where(is_waiting, JobRow.priority == urgent)
+    rows = session.execute(first.group_by(JobRow.tenant)).all()
+    turns = last_turns(session) if len(rows) > 1 else {}
+    return min(rows, key=lambda row: (turns.get(row.tenant, _LONG_AGO), row.id)).id if rows else None
+
+
+def note_turn(session: Session, tenant: str, now: datetime) -> None:
+    """Write that a tenant has had a turn."""
+    row = session.get(TurnRow, tenant) or TurnRow(tenant=tenant)
+    row.at = now
+    session.add(row)
+
+
+def last_turns(session: Session) -> dict[str, datetime]:
+    """Return when each tenant had its last turn."""
+    return {row.tenant: row.at for row in session.scalars(select(TurnRow))}
+
+
+def order_of_turns(jobs: Iterable[Job], turns: Mapping[str, datetime]) -> list[Job]:
+    """Put jobs that wait into the order of their turns.
+
+    Parameters
+    ----------
+    jobs : iterable
+        The oldest first.
+    turns : mapping
+        When each tenant had its last turn.
+    """
+    by_rank: dict[int, dict[str, deque[tuple[int, Job]]]] = defaultdict(lambda: defaultdict(deque))
+    for place, job in enumerate(jobs):
+        by_rank[job.priority][job.tenant].append((place, job))
+    # A turn that is still to come is later than all that were, and they come one after the other.
+    latest = {tenant: (0, at) for tenant, at in turns.items()}
+    ordered: list[Job] = []
+    for rank in sorted(by_rank):
+        queues = by_rank[rank]
+        heap = [(latest.get(tenant, _NEVER), queue[0][0], tenant) for tenant, queue in queues.items()]
+        heapq.heapify(heap)
+        while heap:
+            _, _, tenant = heapq.heappop(heap)
+            ordered.append(queues[tenant].popleft()[1])
+            latest[tenant] = (len(ordered), _LONG_AGO)
+            if queues[tenant]:
+                heapq.heappush(heap, (latest[tenant], queues[tenant][0][0], tenant))
+    return ordered
