@@ -24,7 +24,7 @@ from onebox.errors import DemoError
 from onebox.local_stack import ADDRESS_FILE, LOCK_NAME
 from onebox.logs import log_tail
 from onebox.processes import stop
-from worker.engine.parent_death import parent_death_signal
+from shared_rules.parent_death import parent_death_signal
 
 _HOST = "127.0.0.1"
 _SCAN = Path("tests/sample_meshes/rangemaps/face000.ply")

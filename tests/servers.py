@@ -21,8 +21,8 @@ from moto.server import ThreadedMotoServer
 from psycopg.sql import SQL, Composed, Identifier
 
 from jobkit.database.session import Database
+from shared_rules.parent_death import parent_death_signal
 from tests.waiting import GUARD_S, wait_until
-from worker.engine.parent_death import parent_death_signal
 
 # PostgreSQL refuses to run as root; this one may do nothing, and needs to do nothing.
 _UNPRIVILEGED = "nobody"

@@ -16,10 +16,10 @@ import psutil
 
 from jobkit.readiness import READY_FILE_VARIABLE
 from onebox.logs import log_tail
+from shared_rules.parent_death import parent_death_signal
 from tests.faults.network import Network
 from tests.waiting import GUARD_S
 from worker.engine.limits import thread_environment
-from worker.engine.parent_death import parent_death_signal
 
 API_KEY = "key-of-the-fault-suite"
 APIS = ("api-1", "api-2")

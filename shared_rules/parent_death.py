@@ -2,6 +2,8 @@
 
 A parent that is killed with SIGKILL can't clean up; the kernel can. On Linux a child asks for a signal on its
 parent's death. Elsewhere children stop only when the parent passes a signal on.
+
+Tested in `tests/quadpatch/test_processes.py`.
 """
 
 import ctypes
