@@ -16,11 +16,14 @@
     ├── OptionError             invalid_option        an option outside its range, an unknown hole id
     ├── ModelError              unusable_model        a model file that is broken or of the wrong kind
     ├── TorchMissingError       torch_missing         a network is to be fitted, and torch is not installed
+    ├── ProcessLostError        process_lost          a process that shared the work has ended
     └── StageError              stage_failed          a stage could not do its work on this mesh
         └── NoQuadsError        no_quads              the base surface is too small or too thin for one quad
 
 Tested in `tests/test_documents.py`.
 """
+
+import signal
 
 from shared_rules.text import printable
 
@@ -116,6 +119,23 @@ class TorchMissingError(QuadpatchError):
     """A network is to be fitted, and torch is not installed."""
 
     code = "torch_missing"
+
+
+class ProcessLostError(QuadpatchError):
+    """A process that shared the work ended before it was done: killed, or out of memory.
+
+    Parameters
+    ----------
+    status : int
+        Its exit code, negative for a signal.
+    """
+
+    code = "process_lost"
+
+    def __init__(self, status: int) -> None:
+        self.status = status
+        how = signal.Signals(-status).name if status < 0 else f"exit code {status}"
+        super().__init__(f"a process that shared the work ended by {how}")
 
 
 class StageError(QuadpatchError):

@@ -24,6 +24,7 @@ from quadpatch.mesh.orientation import triangles_facing_flipped
 from quadpatch.mesh.weld import Weld, weld
 from quadpatch.model_choice import choose_model
 from quadpatch.options import RepairOptions, check_weld_tolerance
+from quadpatch.processes import ProcessPool
 from quadpatch.progress import Progress, no_progress
 from quadpatch.recipes.default import inpaint
 from quadpatch.recipes.result import Repair
@@ -102,16 +103,18 @@ def repair_and_keep(  # noqa: PLR0913, PLR0917  the same arguments as every task
     progress: Progress = no_progress,
     network_card: dict[str, Any] | None = None,
     kept: KeptCalibrations | None = None,
+    pool: ProcessPool | None = None,
 ) -> RepairedFile:
     """Repair one file and keep what pictures of it are drawn from; see `repair_file`.
 
     A network that was published without a card in its file goes by `network_card`. What calibration found out in
-    earlier repairs of the scan is taken from `kept`, and what this one finds out is added to it.
+    earlier repairs of the scan is taken from `kept`, and what this one finds out is added to it. The processes of a
+    pool share the work; the result is the same without.
     """
     options = options or RepairOptions()
     check_suffix(output)
     progress = harmless(progress)
-    stages = Stages(progress)
+    stages = Stages(progress, pool or ProcessPool())
     inpainter, card = choose_model(model, options, progress, network_card)
     with stages.stage("read"):
         scan, welded = read_surface(source, options.weld_tolerance)

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from resource import RUSAGE_SELF, getrusage
 
 from quadpatch.errors import QuadpatchError
+from quadpatch.processes import ProcessPool
 from quadpatch.progress import Fraction, Progress, no_progress, part_of
 from shared_rules.stages import Stage
 
@@ -20,9 +21,10 @@ _log = logging.getLogger(__name__)
 
 @dataclass
 class Stages:
-    """Reports when a stage starts and ends; adds up its seconds."""
+    """Reports when a stage starts and ends; adds up its seconds; has the processes that share the work."""
 
     progress: Progress = no_progress
+    pool: ProcessPool = field(default_factory=ProcessPool)
     seconds: dict[str, float] = field(default_factory=dict)
     peak_memory_mib: dict[str, int] = field(default_factory=dict)
     _current: Stage | None = None
@@ -47,7 +49,7 @@ class Stages:
             yield
         finally:
             self.seconds[name] = self.seconds.get(name, 0.0) + time.perf_counter() - start
-            self.peak_memory_mib[name] = peak_memory_mib()
+            self.peak_memory_mib[name] = peak_memory_mib() + self.pool.extra_memory_mib
         self.progress(name, 1.0)
 
 

@@ -7,6 +7,7 @@ of a hole are blended by weights that fall with the expected error, a product of
 """
 
 from collections.abc import Sequence
+from concurrent.futures import Future
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -18,10 +19,12 @@ from quadpatch.calibration.synthetic_holes import new_loops
 from quadpatch.filling.fairing import Energy, triangles_around
 from quadpatch.filling.fill import ClosedMesh, close_holes, fair_holes
 from quadpatch.filling.filled_mesh import FilledMesh
+from quadpatch.filling.parts import surroundings
 from quadpatch.mesh.averages import mean_by
 from quadpatch.mesh.distance import distance_to_mesh
 from quadpatch.mesh.loop_diameter import loop_diameter
 from quadpatch.mesh.measures import used_vertices
+from quadpatch.processes import ProcessPool
 from quadpatch.progress import Fraction, no_fraction, part_of
 from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh
 
@@ -129,7 +132,11 @@ def _best_plain(energies: Sequence[Energy], errors: FloatArray, best: int) -> in
 
 
 def learn_energy_blend(
-    calibration: CalibrationSet, energies: Sequence[Energy], default: Energy, reach: Fraction = no_fraction
+    calibration: CalibrationSet,
+    energies: Sequence[Energy],
+    default: Energy,
+    reach: Fraction = no_fraction,
+    pool: ProcessPool | None = None,
 ) -> tuple[EnergyBlend, FilledMesh]:
     """Learn from calibration holes how to fill: by one energy, as `choose_energy` picks it, by weighing, or by both.
 
@@ -140,6 +147,8 @@ def learn_energy_blend(
     default : Energy
     reach : callable
         Told the done fraction.
+    pool : ProcessPool, optional
+        A helper leaves one ring out while this process fills the holes.
 
     Returns
     -------
@@ -147,6 +156,7 @@ def learn_energy_blend(
     FilledMesh
         The calibration holes, filled by it as densely as those of `calibration` are.
     """
+    residuals = _Residuals(calibration, energies, pool or ProcessPool())
     fills = _faired(calibration.closed, energies, part_of(reach, 0.0, 0.5))
     errors = np.array([error_per_hole(calibration, fill) for fill in fills])
     chosen = choose_energy(errors, calibration.diameter, energies, default)
@@ -155,7 +165,7 @@ def learn_energy_blend(
     wanted = {best, _best_plain(energies, mean, best)}
     kept = [i for i in range(len(energies)) if mean[i] <= _LOST * mean.min() or i in wanted]
     energies, fills, errors = [energies[i] for i in kept], [fills[i] for i in kept], errors[kept]
-    misses = leave_one_ring_out(calibration.opened, calibration.loops, energies, part_of(reach, 0.5, 1.0))
+    misses = residuals.of(kept, part_of(reach, 0.5, 1.0))
     best = energies.index(chosen)
     typical = np.nanmean(misses, axis=0) if np.isfinite(misses).any() else np.ones(len(energies))
     tiny = np.finfo(np.float64).tiny
@@ -174,6 +184,27 @@ def learn_energy_blend(
         return _without_weighing(blend, fills)
     weights = blend.weights(misses)
     return blend, replace(_blended(fills, weights), energy_weights=weights)
+
+
+class _Residuals:
+    """What `leave_one_ring_out` finds at calibration holes: a helper looks for it at once, by all energies.
+
+    It is cheaper to wait until it is known which energies are worth it, and that is done where there is no helper.
+    """
+
+    def __init__(self, calibration: CalibrationSet, energies: Sequence[Energy], pool: ProcessPool) -> None:
+        self._calibration, self._energies = calibration, energies
+        self._found: Future[FloatArray] | None = None
+        if pool.is_shared:
+            region, loops = surroundings(calibration.opened, calibration.loops)
+            self._found = pool.submit(leave_one_ring_out, region.mesh, loops, energies)
+
+    def of(self, chosen: list[int], reach: Fraction) -> FloatArray:
+        """Give the residuals (n_holes, k) of some energies (k,)."""
+        if self._found is not None:
+            return self._found.result()[:, chosen]
+        energies = [self._energies[i] for i in chosen]
+        return leave_one_ring_out(self._calibration.opened, self._calibration.loops, energies, reach)
 
 
 def _without_weighing(blend: EnergyBlend, fills: list[FilledMesh]) -> tuple[EnergyBlend, FilledMesh]:

@@ -10,6 +10,7 @@ from quadpatch.mesh.boundary import boundary_loops, on_boundary
 from quadpatch.mesh.edge_groups import survey_edges
 from quadpatch.mesh.measures import used_vertices
 from quadpatch.mesh.normals import normals_at
+from quadpatch.processes import usable_threads
 from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh
 
 # The rim of a cut lies so much outside the disk of vertices that it takes, in mean edge lengths.
@@ -83,7 +84,8 @@ class UncutSurface:
             return far
         if distance > self._known_distance:
             rim_tree = cKDTree(mesh.vertices[rim])
-            self._to_boundary = np.asarray(rim_tree.query(mesh.vertices, distance_upper_bound=distance)[0])
+            nearest = rim_tree.query(mesh.vertices, distance_upper_bound=distance, workers=usable_threads())
+            self._to_boundary = np.asarray(nearest[0])
             self._known_distance = distance
         return far & (self._to_boundary > distance)
 

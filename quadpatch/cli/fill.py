@@ -29,6 +29,7 @@ from quadpatch.cli.scipy_start import prepare_libraries
 from quadpatch.errors import OptionError
 from quadpatch.formats.output_files import check_folder, check_outputs, is_stream
 from quadpatch.options import DictionaryOptions, HoleOptions, HoleRule, NetworkOptions, PatchOptions, RepairOptions
+from quadpatch.processes import ProcessPool, n_processes_for, usable_threads
 from shared_rules.competition import outcome
 from shared_rules.hole_selection import Cap
 from shared_rules.option_words import Colours, Effort, Recipe
@@ -156,7 +157,8 @@ def fill(  # noqa: PLR0913, PLR0917  one argument per flag
         from quadpatch.repair import repair_and_keep  # noqa: PLC0415  numerical libraries, once there is work to do
 
         kept = read_calibrations(calibration)
-        repaired = repair_and_keep(source, output, model, options, progress, kept=kept)
+        with ProcessPool(n_processes_for(source, usable_threads())) as pool:
+            repaired = repair_and_keep(source, output, model, options, progress, kept=kept, pool=pool)
         logging.getLogger("quadpatch").addHandler(logging.NullHandler())  # what people read is in the warnings
         if report and (preview or closeups) and not is_stream(report):  # drawing may take the process down
             write_report(repaired.report, report)

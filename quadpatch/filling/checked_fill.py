@@ -22,6 +22,7 @@ from quadpatch.filling.rim_relief import relieve_rims
 from quadpatch.mesh.averages import mean_by
 from quadpatch.mesh.distance import distance_to_mesh
 from quadpatch.mesh.normals import length
+from quadpatch.processes import ProcessPool
 from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Triangles
 
 # How loops of a mesh may be filled: (mesh, loops) -> filled mesh.
@@ -89,9 +90,18 @@ class LoopsToFill:
     flat: BoolArray
     border: BoolArray
 
+    @property
+    def curved(self) -> list[IntArray]:
+        """Those that get no plane patch."""
+        return [self.loops[i] for i in np.flatnonzero(~self.flat)]
+
 
 def fill_checked(
-    mesh: TriangleMesh, wanted: LoopsToFill, fill: FillFunction, obstacles: Triangles | None = None
+    mesh: TriangleMesh,
+    wanted: LoopsToFill,
+    fill: FillFunction,
+    obstacles: Triangles | None = None,
+    pool: ProcessPool | None = None,
 ) -> CheckedFill:
     """Fill loops, look for faults, and fill those that have any in plainer ways.
 
@@ -103,12 +113,14 @@ def fill_checked(
         What is tried first, save where a plane patch is asked for.
     obstacles : (k, 3) int64, optional
         Triangles of the file that the mesh leaves out.
+    pool : ProcessPool, optional
+        Its processes look for crossings.
     """
     loops, flat = wanted.loops, wanted.flat
-    first = _first_fill(mesh, loops, fill, flat)
+    first = _first_fill(mesh, wanted, fill)
     doubled = np.flatnonzero(doubles_surface(first, np.flatnonzero(wanted.border)))
     filled = first.without(doubled) if len(doubled) else first
-    faults = find_faults(filled, obstacles=obstacles)
+    faults = find_faults(filled, obstacles=obstacles, pool=pool)
     names = np.where(flat, "flat", _FAIRED).tolist()
     for name, plainer in PLAINER_FILLS.items():
         doubtful = np.flatnonzero(faults.is_doubtful & ~flat)
@@ -121,13 +133,13 @@ def fill_checked(
         better = np.setdiff1d(doubtful[is_better[doubtful]], other.unfilled)
         if len(better):
             filled = filled.with_fills(other, better)
-            faults = find_faults(filled, obstacles=obstacles)
+            faults = find_faults(filled, obstacles=obstacles, pool=pool)
         for i in better.tolist():
             names[i] = name
     kept, refused = _without_wrong(filled, faults)
     relieved = relieve_rims(kept)
     if relieved is not filled:
-        faults = find_faults(relieved, obstacles=obstacles)
+        faults = find_faults(relieved, obstacles=obstacles, pool=pool)
     refused |= dict.fromkeys(doubled.tolist(), _DOUBLED)
     replaced = np.array([i for i, name in enumerate(names) if name in PLAINER_FILLS and i not in refused], np.int64)
     return CheckedFill(relieved, faults, names, _departure(relieved, first, replaced), refused)
@@ -158,11 +170,11 @@ def with_creases(checked: CheckedFill, share: float, obstacles: Triangles | None
     return replace(checked, filled=creased.filled, faults=creased.faults, fill=names, departure=departure)
 
 
-def _first_fill(mesh: TriangleMesh, loops: list[IntArray], fill: FillFunction, flat: BoolArray) -> FilledMesh:
-    curved, plane = np.flatnonzero(~flat), np.flatnonzero(flat)
+def _first_fill(mesh: TriangleMesh, wanted: LoopsToFill, fill: FillFunction) -> FilledMesh:
+    loops, curved, plane = wanted.loops, np.flatnonzero(~wanted.flat), np.flatnonzero(wanted.flat)
+    faired = fill(mesh, wanted.curved)
     if not len(plane):
-        return fill(mesh, loops)
-    faired = fill(mesh, [loops[i] for i in curved])
+        return faired
     # A plane patch has no error to be guessed: it is where it was asked for.
     disagreement, rim_variation = np.zeros(len(loops)), np.zeros(len(loops))
     disagreement[curved], rim_variation[curved] = faired.disagreement, faired.rim_variation

@@ -1,13 +1,15 @@
 """Faults of a fill: edges at which it folds over, and triangles that run through other surface."""
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.mesh.intersections import crossing_pairs, heights, touching_boxes
 from quadpatch.mesh.normals import triangle_normals
-from quadpatch.mesh.topology import neighbouring_triangles
+from quadpatch.mesh.topology import compacted, neighbouring_triangles
+from quadpatch.processes import ProcessPool, Shared
 from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Triangles
 
 # Two triangles whose normals differ by more fold over each other.
@@ -16,6 +18,10 @@ FOLD_ANGLE_DEG = 150.0
 UNSURE_HEIGHT = 1e-3
 # A wrong fill is worse than a right one with any number of doubtful edges.
 _WRONG = 1_000_000_000
+# New triangles that are searched for crossings together, where there are many.
+_PART_TRIANGLES = 15_000
+# Triangles of the scan that are compared with the fills together.
+_PIECE_TRIANGLES = 250_000
 
 
 @dataclass(frozen=True)
@@ -110,7 +116,12 @@ class Faults:
         return np.bincount(self.folds.hole[which], minlength=len(self.crossings))
 
 
-def find_faults(filled: FilledMesh, loops: IntArray | None = None, obstacles: Triangles | None = None) -> Faults:
+def find_faults(
+    filled: FilledMesh,
+    loops: IntArray | None = None,
+    obstacles: Triangles | None = None,
+    pool: ProcessPool | None = None,
+) -> Faults:
     """Look for folds and crossings in the fill of some loops.
 
     Parameters
@@ -120,10 +131,13 @@ def find_faults(filled: FilledMesh, loops: IntArray | None = None, obstacles: Tr
         Positions of the loops that are looked at; without, all of them. The fills of others are surface to be run into.
     obstacles : (k, 3) int64, optional
         Triangles of the file that the mesh leaves out, to be run into as well.
+    pool : ProcessPool, optional
+        Its processes look for crossings.
     """
     n_loops = len(filled.disagreement)
     looked_at = np.ones(n_loops, bool) if loops is None else np.isin(np.arange(n_loops), loops)
-    return Faults(find_folds(filled, looked_at), *_crossings(filled, looked_at, obstacles))
+    search = _Search.begin(filled, looked_at, obstacles, pool or ProcessPool())
+    return Faults(find_folds(filled, looked_at), *search.finish())
 
 
 def find_folds(filled: FilledMesh, looked_at: BoolArray) -> Folds:
@@ -162,41 +176,98 @@ def _near(filled: FilledMesh, looked_at: BoolArray) -> BoolArray:
     return np.asarray(touched[triangles].any(axis=1))
 
 
-def _crossings(
-    filled: FilledMesh, looked_at: BoolArray, obstacles: Triangles | None
-) -> tuple[IntArray, IntArray, IntArray, BoolArray]:
-    """Find crossings, their triangles, rivals and lost loops, as `Faults` has them."""
-    n_loops = len(filled.disagreement)
-    triangles, mine = filled.mesh.triangles, np.zeros(len(filled.mesh.triangles), bool)
-    mine[filled.n_measured_triangles :] = looked_at[filled.triangle_hole]
-    if not mine.any():
-        nothing = np.zeros(0, np.int64)
-        return np.zeros(n_loops, np.int64), nothing, nothing.reshape(0, 2), np.zeros(n_loops, bool)
-    others = triangles[~mine] if obstacles is None else np.concatenate([triangles[~mine], obstacles])
-    surroundings = TriangleMesh(filled.mesh.vertices, others)
-    near = others[touching_boxes(*_boxes(filled, looked_at), surroundings)]
-    owner = filled.triangle_hole[mine[filled.n_measured_triangles :]]
-    looked_at_first = TriangleMesh(surroundings.vertices, np.concatenate([triangles[mine], near]))
-    pairs = crossing_pairs(looked_at_first, len(owner))
-    crossing = np.unique(pairs[pairs < len(owner)])
-    crossings = np.bincount(owner[crossing], minlength=n_loops)
-    # What is near comes behind the fills that are looked at; it has no loop.
-    loops = np.concatenate([owner, np.full(len(near), -1)])[pairs]
-    loops = np.unique(np.sort(loops, axis=1), axis=0)
-    is_invalid = np.zeros(n_loops, bool)
-    is_invalid[loops[(loops[:, 0] < 0) & (loops[:, 1] >= 0), 1]] = True
-    is_invalid[loops[(loops[:, 0] == loops[:, 1]) & (loops[:, 0] >= 0), 0]] = True
-    crossing_fills = loops[(loops[:, 0] >= 0) & (loops[:, 0] < loops[:, 1])]
-    return crossings, np.flatnonzero(mine)[crossing], crossing_fills, is_invalid
+# A mesh, some of its triangles (k,), and the boxes (n, 3), by two corners, that hold them; without, the mesh holds
+# nothing that is far from them.
+_Task = tuple[TriangleMesh, IntArray, tuple[FloatArray, FloatArray] | None]
 
 
-def _boxes(filled: FilledMesh, looked_at: BoolArray) -> tuple[FloatArray, FloatArray]:
-    """Bounding boxes of some fills: lowest and highest corners (n, 3)."""
+@dataclass(frozen=True)
+class _Search:
+    """A search for crossings that has begun.
+
+    Attributes
+    ----------
+    n_loops, n_near : int
+        Loops, and triangles besides the fills that are looked at.
+    mine : (n,) int64
+        Triangles of those fills.
+    owner : (n,) int64
+        Their loops.
+    pairs : Shared
+        Finds the crossing pairs; triangles that are near count behind those of the fills.
+    """
+
+    n_loops: int
+    n_near: int
+    mine: IntArray
+    owner: IntArray
+    pairs: Shared[_Task, IntArray]
+
+    @classmethod
+    def begin(
+        cls, filled: FilledMesh, looked_at: BoolArray, obstacles: Triangles | None, pool: ProcessPool
+    ) -> "_Search":
+        n_loops = len(filled.disagreement)
+        vertices, triangles = filled.mesh.vertices, filled.mesh.triangles
+        is_mine = np.zeros(len(triangles), bool)
+        is_mine[filled.n_measured_triangles :] = looked_at[filled.triangle_hole]
+        mine, owner = np.flatnonzero(is_mine), filled.triangle_hole[is_mine[filled.n_measured_triangles :]]
+        if not len(mine):
+            return cls(n_loops, 0, mine, owner, Shared(_crossing_pairs_of, [], []))
+        others = triangles[~is_mine] if obstacles is None else np.concatenate([triangles[~is_mine], obstacles])
+        low, high = _boxes(filled)
+        there = looked_at & np.isfinite(low[:, 0])
+        touching = partial(touching_boxes, low[there], high[there])
+        starts = range(0, max(len(others), 1), _PIECE_TRIANGLES)
+        pieces = [TriangleMesh(vertices, others[at : at + _PIECE_TRIANGLES]) for at in starts]
+        near = others[np.concatenate(pool.map_in_threads(touching, pieces))]
+        used, local = compacted(np.concatenate([triangles[mine], near]), len(vertices))
+        mesh, parts = TriangleMesh(vertices[used], local), _parts(owner, n_loops)
+        if len(parts) > 1:
+            tasks = [(mesh, np.flatnonzero(part[owner]), (low[part & there], high[part & there])) for part in parts]
+            return cls(n_loops, len(near), mine, owner, pool.begin(_crossing_pairs_of, tasks))
+        alone: Shared[_Task, IntArray] = Shared(_crossing_pairs_of, [(mesh, np.arange(len(owner)), None)], [])
+        return cls(n_loops, len(near), mine, owner, alone)
+
+    def finish(self) -> tuple[IntArray, IntArray, IntArray, BoolArray]:
+        """Find crossings, their triangles, rivals and lost loops, as `Faults` has them."""
+        pairs = np.concatenate([np.zeros((0, 2), np.int64), *self.pairs.finish()])
+        crossing = np.unique(pairs[pairs < len(self.owner)])
+        crossings = np.bincount(self.owner[crossing], minlength=self.n_loops)
+        # What is near has no loop.
+        loops = np.concatenate([self.owner, np.full(self.n_near, -1)])[pairs]
+        loops = np.unique(np.sort(loops, axis=1), axis=0)
+        is_invalid = np.zeros(self.n_loops, bool)
+        is_invalid[loops[(loops[:, 0] < 0) & (loops[:, 1] >= 0), 1]] = True
+        is_invalid[loops[(loops[:, 0] == loops[:, 1]) & (loops[:, 0] >= 0), 0]] = True
+        crossing_fills = loops[(loops[:, 0] >= 0) & (loops[:, 0] < loops[:, 1])]
+        return crossings, self.mine[crossing], crossing_fills, is_invalid
+
+
+def _parts(owner: IntArray, n_loops: int) -> list[BoolArray]:
+    """Divide loops, by that of each new triangle (n,), into parts (n_loops,) of about as many triangles."""
+    n_parts = max(len(owner) // _PART_TRIANGLES, 1)
+    part = np.cumsum(np.bincount(owner, minlength=n_loops)) * n_parts // (len(owner) + 1)
+    return [part == i for i in np.unique(part)]
+
+
+def _crossing_pairs_of(task: _Task) -> IntArray:
+    """Find the crossing pairs of some triangles of a mesh with all of it; others may be among them."""
+    mesh, own, boxes = task
+    if boxes is None:
+        return crossing_pairs(mesh, len(own))
+    others = np.delete(np.arange(len(mesh.triangles)), own)
+    others = others[touching_boxes(*boxes, TriangleMesh(mesh.vertices, mesh.triangles[others]))]
+    chosen = np.concatenate([own, others])
+    return np.asarray(chosen[crossing_pairs(TriangleMesh(mesh.vertices, mesh.triangles[chosen]), len(own))])
+
+
+def _boxes(filled: FilledMesh) -> tuple[FloatArray, FloatArray]:
+    """Bounding boxes of all fills: lowest and highest corners (n_loops, 3); infinite without a fill."""
     new = filled.mesh.triangles[filled.n_measured_triangles :]
     n_loops = len(filled.disagreement)
     low, high = np.full((n_loops, 3), np.inf), np.full((n_loops, 3), -np.inf)
     corners = filled.mesh.vertices[new]
     np.minimum.at(low, filled.triangle_hole, corners.min(axis=1))
     np.maximum.at(high, filled.triangle_hole, corners.max(axis=1))
-    there = looked_at & np.isfinite(low[:, 0])
-    return low[there], high[there]
+    return low, high

@@ -21,6 +21,7 @@ from quadpatch.filling.bridged_rims import join_bridges
 from quadpatch.filling.bridges import make_bridges, ribs_of
 from quadpatch.filling.checked_fill import LoopsToFill, fill_checked, with_creases
 from quadpatch.filling.islands import JoinedRims, join_islands
+from quadpatch.filling.parts import FillInParts
 from quadpatch.inpainters.inpainter import Inpainter
 from quadpatch.mesh.edge_groups import EdgeSurvey
 from quadpatch.mesh.holes import Hole, Selection, find_holes, select_holes
@@ -28,6 +29,7 @@ from quadpatch.mesh.loops import cut_at, laid_out
 from quadpatch.mesh.measures import EdgeStatistics, diagonal, edge_statistics, longest_side
 from quadpatch.options import RepairOptions
 from quadpatch.patches.scale import choose_scale, coarse_edge_length, preset_scale
+from quadpatch.processes import ProcessPool
 from quadpatch.progress import Fraction
 from quadpatch.recipes.assessment import assess
 from quadpatch.recipes.fairing_energies import suitable_blend
@@ -198,10 +200,11 @@ def _repair(task: _Task, part: RepairRegion, stages: Stages) -> Repair:
         local = region.local(np.concatenate(rims.loops)) if rims.loops else np.zeros(0, np.int64)
         wanted = replace(task.wanted, loops=cut_at(local, laid_out(rims.loops)[0]))
         share = _share_of_calibration(task)
-        calibration = _calibrate(task, part, stages.part(0.0, share))
+        filling = FillInParts(mesh, wanted.curved, stages.pool)
+        calibration = _calibrate(task, part, filling, stages.part(0.0, share), stages.pool)
         found = calibration.record
-        fill = partial(found.blend.fill, reach=stages.part(0.0 if calibration.is_reused else share, 1.0))
-        checked = fill_checked(mesh, wanted, fill, obstacles)
+        reach = stages.part(0.0 if calibration.is_reused else share, 1.0)
+        checked = fill_checked(mesh, wanted, lambda *_: filling.finish(reach), obstacles, stages.pool)
         checked = with_creases(checked, found.crease_share, obstacles)
     completion, warnings, by_model = None, [], task.by_model
     if inpainter is not None and by_model[checked.filled.vertex_hole].any():
@@ -242,20 +245,23 @@ def _share_of_calibration(task: _Task) -> float:
     return n_calibration / max(n_calibration + len(task.rims.loops), 1)
 
 
-def _calibrate(task: _Task, part: RepairRegion, reach: Fraction) -> Calibration:
-    """Calibrate, or take what an earlier repair of the same scan has found out."""
+def _calibrate(
+    task: _Task, part: RepairRegion, filling: FillInParts, reach: Fraction, pool: ProcessPool
+) -> Calibration:
+    """Calibrate, or take what an earlier repair of the same scan has found out; begin to fill once that is known."""
     diameter, edge, kept = task.typical_diameter(), task.edges.mean, task.kept
     cut = partial(_cut, part.region.mesh, diameter, edge, task.options.seed)
     if kept is None or diameter is None:
-        return _calibrated(task, cut, reach)
+        return _calibrated(task, cut, filling, reach, pool)
     key = task.calibration_key(kept, diameter, part)
     record = kept.find(key)
     if record is not None:
         # Only models are tried on calibration holes again.
         holes = cut() if record.n_holes and task.inpainter is not None and task.by_model.any() else None
         if holes is None or len(holes.loops) == record.n_holes:
+            filling.begin(record.blend.fill)
             return Calibration(task.diameters, edge, record, holes, is_reused=True)
-    calibration = _calibrated(task, cut, reach)
+    calibration = _calibrated(task, cut, filling, reach, pool)
     kept.add(key, calibration.record)
     return calibration
 
@@ -264,11 +270,18 @@ def _cut(mesh: TriangleMesh, diameter: float | None, edge: float, seed: int) -> 
     return None if diameter is None else cut_calibration_set(mesh, diameter, edge, np.random.default_rng(seed))
 
 
-def _calibrated(task: _Task, cut: Callable[[], CalibrationSet | None], reach: Fraction) -> Calibration:
+def _calibrated(
+    task: _Task,
+    cut: Callable[[], CalibrationSet | None],
+    filling: FillInParts,
+    reach: Fraction,
+    pool: ProcessPool,
+) -> Calibration:
     """Learn from calibration holes how to fill, and how large an error to expect of that."""
     start, edge = time.perf_counter(), task.edges.mean
     holes = cut()
-    blend, filled = suitable_blend(holes, task.median_diameter(), reach)
+    blend, filled = suitable_blend(holes, task.median_diameter(), reach, pool)
+    filling.begin(blend.fill)
     if holes is None or filled is None:
         return Calibration(task.diameters, edge, CalibrationRecord(blend, PRIOR, seconds=time.perf_counter() - start))
     creases = calibrate_creases(holes, blend, filled)

@@ -7,6 +7,7 @@ from quadpatch.calibration.calibration_set import CalibrationSet
 from quadpatch.calibration.energy_selection import AS_WIDE, EnergyBlend, learn_energy_blend
 from quadpatch.filling.fairing import THIN_PLATE, Energy
 from quadpatch.filling.filled_mesh import FilledMesh
+from quadpatch.processes import ProcessPool
 from quadpatch.progress import Fraction, no_fraction
 
 # From rough to smooth: a noisy surface is continued best by the first, a rough one by the second, a smooth one by the
@@ -36,7 +37,10 @@ CALIBRATED_ENERGIES = tuple(dict.fromkeys((*FAIRING_ENERGIES, *PLAIN_ENERGIES, P
 
 
 def suitable_blend(
-    holes: CalibrationSet | None, diameter: float | None = None, reach: Fraction = no_fraction
+    holes: CalibrationSet | None,
+    diameter: float | None = None,
+    reach: Fraction = no_fraction,
+    pool: ProcessPool | None = None,
 ) -> tuple[EnergyBlend, FilledMesh | None]:
     """Learn how this surface is continued best, as far as calibration tells; also the calibration holes, filled.
 
@@ -45,4 +49,4 @@ def suitable_blend(
     if holes is None:
         return EnergyBlend.of_one(PRIOR_ENERGY), None
     is_narrow = diameter is not None and diameter > AS_WIDE * holes.diameter
-    return learn_energy_blend(holes, PLAIN_ENERGIES if is_narrow else FAIRING_ENERGIES, DEFAULT_ENERGY, reach)
+    return learn_energy_blend(holes, PLAIN_ENERGIES if is_narrow else FAIRING_ENERGIES, DEFAULT_ENERGY, reach, pool)

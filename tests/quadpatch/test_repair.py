@@ -10,9 +10,10 @@ import pytest
 from quadpatch.errors import FormatError, MeshError, ModelError, OptionError, QuadpatchError, ReadError
 from quadpatch.formats.reading import read_scan
 from quadpatch.options import HoleOptions, PatchOptions, RepairOptions
-from quadpatch.repair import inspect_file, repair_file
+from quadpatch.processes import ProcessPool
+from quadpatch.repair import inspect_file, repair_and_keep, repair_file
 from quadpatch.types import TriangleMesh
-from tests.quadpatch.shapes import punched, relief, sphere, write_ply
+from tests.quadpatch.shapes import bumpy_plate, on_surface, punched, relief, sphere, write_ply
 
 PLACES = [(x, y, 0.0) for x in (-0.5, 0.5) for y in (-0.45, 0.5)]
 RELIEF = punched(relief(80, 2.0, 0.03, 8), *PLACES, radius=0.13)
@@ -48,6 +49,26 @@ def scan_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def repaired(request: pytest.FixtureRequest, scan_file: Path) -> tuple[str, Path, dict[str, Any]]:
     output = scan_file.with_name(f"{request.param}.ply")
     return request.param, output, repair_file(scan_file, output, request.param)
+
+
+def test_a_repair_has_the_same_bytes_whatever_the_number_of_processes(tmp_path: Path) -> None:
+    at = np.arange(-1.5, 1.51, 0.6)
+    plate = bumpy_plate(160, 4.0)
+    holes = on_surface(plate, *((float(x), float(y)) for x in at for y in at))
+    source, written, records = write_ply(tmp_path / "in.ply", punched(plate, *holes, radius=0.18)), set(), set()
+    fractions: list[float] = []
+    for n_processes in (1, 2, 3):
+        output = tmp_path / f"{n_processes}.ply"
+        with ProcessPool(n_processes) as pool:
+            report = repair_and_keep(
+                source, output, "smooth", progress=lambda _, fraction: fractions.append(fraction), pool=pool
+            ).report
+        assert report["counts"]["filled_smooth"] == len(at) ** 2
+        written.add(output.read_bytes())
+        records.add(json.dumps(report["holes"]))
+    assert len(written) == 1
+    assert len(records) == 1
+    assert any(0 < fraction < 1 for fraction in fractions)
 
 
 @pytest.mark.parametrize("model", ["smooth", pytest.param("self", marks=pytest.mark.slow)])

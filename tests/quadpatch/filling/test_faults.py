@@ -5,7 +5,8 @@ from hypothesis import strategies as st
 
 from quadpatch.filling.faults import FOLD_ANGLE_DEG, Faults, find_faults
 from quadpatch.filling.filled_mesh import FilledMesh
-from quadpatch.types import FloatArray, TriangleMesh
+from quadpatch.processes import ProcessPool
+from quadpatch.types import FloatArray, TriangleMesh, Triangles
 from tests.quadpatch.filling.handmade import fan, put_together, tent
 from tests.quadpatch.shapes import flipped, joined, moved, open_grid, plate_with_disc, punched, random_rotation, sphere
 
@@ -205,3 +206,47 @@ def test_a_mesh_without_loops_has_no_faults() -> None:
     faults = find_faults(put_together(punched(sphere(2), (0, 0, 1), radius=0.5)))
     assert counts(faults) == ([], [])
     assert faults.is_wrong.tolist() == []
+
+
+# Corners of a triangle that stands on a sheet, by how far they lie aside and their height.
+POLE = np.array([[0.001, 0.002, 0.1], [0.002, -0.001, -0.1], [0.011, 0.003, 0.1]])
+
+
+def with_many_fills(n_sides: int) -> tuple[FilledMesh, Triangles]:
+    """A fine sheet, disks of which count as fills, and triangles that run through every third of them."""
+    sheet = open_grid(200, 2.0)
+    at = (np.arange(n_sides) + 0.5) * 2.0 / n_sides - 1.0
+    centres = np.array([(x, y, 0.0) for x in at for y in at])
+    distance = np.linalg.norm(sheet.vertices[sheet.triangles].mean(axis=1)[:, None] - centres, axis=2)
+    hole = np.where(distance.min(axis=1) < 0.9 / n_sides, distance.argmin(axis=1), -1)
+    corners = (centres[::3, None] + POLE).reshape(-1, 3)
+    poles = TriangleMesh(corners, np.arange(len(corners)).reshape(-1, 3))
+    mesh = joined(poles, sheet)
+    is_inner = np.zeros(len(mesh.vertices), bool)
+    is_inner[mesh.triangles[len(poles.triangles) :][hole >= 0]] = True
+    is_inner[mesh.triangles[len(poles.triangles) :][hole < 0]] = False
+    order = np.argsort(is_inner, kind="stable")
+    obstacles, triangles = np.split(np.argsort(order)[mesh.triangles], [len(poles.triangles)])
+    outside, inside, owner = triangles[hole < 0], triangles[hole >= 0], hole[hole >= 0]
+    vertex_hole = np.zeros(len(order), np.int64)
+    vertex_hole[inside] = owner[:, None]
+    n_measured, unknown = int((~is_inner).sum()), np.zeros(len(centres))
+    whole = TriangleMesh(mesh.vertices[order], np.concatenate([outside, inside]))
+    return (
+        FilledMesh(whole, n_measured, len(outside), owner, vertex_hole[n_measured:], unknown, unknown, []),
+        obstacles,
+    )
+
+
+def test_many_fills_have_the_faults_that_each_has_by_itself_whatever_the_number_of_processes() -> None:
+    filled, obstacles = with_many_fills(4)
+    assert len(filled.triangle_hole) > 45_000
+    alone = find_faults(filled, np.array([3]), obstacles)
+    for n_processes in (1, 2, 3):
+        with ProcessPool(n_processes) as pool:
+            found = find_faults(filled, obstacles=obstacles, pool=pool)
+        assert np.flatnonzero(found.crossings).tolist() == [*range(0, 16, 3)]
+        assert found.is_invalid.tolist() == (found.crossings > 0).tolist()
+        assert not len(found.crossing_fills)
+        owner = filled.triangle_hole[found.crossing_triangles - filled.n_measured_triangles]
+        assert found.crossing_triangles[owner == 3].tolist() == alone.crossing_triangles.tolist()

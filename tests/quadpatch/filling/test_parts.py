@@ -1,0 +1,98 @@
+from functools import cache, partial
+
+import numpy as np
+import pytest
+
+from quadpatch.calibration.energy_selection import EnergyBlend
+from quadpatch.filling.fairing import Energy
+from quadpatch.filling.filled_mesh import FilledMesh
+from quadpatch.filling.parts import FillInParts, surroundings
+from quadpatch.processes import ProcessPool
+from quadpatch.progress import Fraction
+from quadpatch.types import IntArray, TriangleMesh
+from tests.quadpatch.filling.fills import all_loops, assert_keeps
+from tests.quadpatch.shapes import bumpy_plate, on_surface, punched
+
+BLEND = EnergyBlend((Energy(plate=1.0), Energy(plate=1.0, variation=0.4)), np.zeros(2), np.zeros(2), widest=10.0)
+
+
+@cache
+def with_many_holes(distance: float = 0.6, radius: float = 0.18) -> tuple[TriangleMesh, list[IntArray]]:
+    """A plate with round holes in rows, and their rims."""
+    at = np.arange(-1.5, 1.51, distance)
+    plate = bumpy_plate(160, 4.0)
+    mesh = punched(plate, *on_surface(plate, *((float(x), float(y)) for x in at for y in at)), radius=radius)
+    *holes, _border = sorted(all_loops(mesh), key=len)
+    return mesh, holes
+
+
+def fill_by(mesh: TriangleMesh, loops: list[IntArray], n_processes: int) -> FilledMesh:
+    with ProcessPool(n_processes) as pool:
+        filling = FillInParts(mesh, loops, pool)
+        filling.begin(BLEND.fill)
+        return filling.finish()
+
+
+def count_and_fill(counts: list[int], mesh: TriangleMesh, loops: list[IntArray], reach: Fraction) -> FilledMesh:
+    counts.append(len(loops))
+    return BLEND.fill(mesh, loops, reach)
+
+
+def test_a_fill_has_the_same_bits_whatever_the_number_of_processes() -> None:
+    mesh, loops = with_many_holes()
+    alone, *shared = (fill_by(mesh, loops, n) for n in (1, 2, 3))
+    assert_keeps(alone, mesh)
+    assert alone.unfilled == []
+    for other in shared:
+        assert other.mesh.vertices.tobytes() == alone.mesh.vertices.tobytes()
+        assert other.mesh.triangles.tobytes() == alone.mesh.triangles.tobytes()
+        assert other.energy_weights is not None
+        assert alone.energy_weights is not None
+        assert other.energy_weights.tobytes() == alone.energy_weights.tobytes()
+
+
+def test_parts_are_filled_as_all_at_once_but_for_rounding() -> None:
+    """The unit of lengths in energies is the mean of a part: hence the difference where holes differ in width."""
+    mesh, loops = with_many_holes()
+    parts, whole = fill_by(mesh, loops, 1), BLEND.fill(mesh, loops)
+    for i in range(len(loops)):
+        one, other = (fill.mesh.vertices[fill.n_measured_vertices :][fill.vertex_hole == i] for fill in (parts, whole))
+        order = [np.lexsort(np.round(vertices, 6).T) for vertices in (one, other)]
+        assert np.allclose(one[order[0]], other[order[1]], atol=1e-4)
+        assert (parts.triangle_hole == i).sum() == (whole.triangle_hole == i).sum()
+    assert parts.energy_weights is not None
+    assert whole.energy_weights is not None
+    assert np.allclose(parts.energy_weights, whole.energy_weights, atol=0.01)
+    assert np.allclose(parts.disagreement, whole.disagreement, rtol=0.05)
+
+
+def test_few_holes_are_filled_at_once() -> None:
+    mesh, loops = with_many_holes()
+    counts: list[int] = []
+    with ProcessPool(1) as pool:
+        filling = FillInParts(mesh, loops[:5], pool)
+        filling.begin(partial(count_and_fill, counts))
+        few = filling.finish()
+    assert counts == [5]
+    assert few.mesh.vertices.tobytes() == BLEND.fill(mesh, loops[:5]).mesh.vertices.tobytes()
+
+
+@pytest.mark.parametrize(("distance", "is_dense"), [(0.6, False), (0.5, True)])
+def test_holes_that_read_each_others_surroundings_are_filled_together(distance: float, is_dense: bool) -> None:
+    mesh, loops = with_many_holes(distance)
+    counts: list[int] = []
+    with ProcessPool(1) as pool:
+        filling = FillInParts(mesh, loops, pool)
+        filling.begin(partial(count_and_fill, counts))
+        filling.finish()
+    assert sum(counts) == len(loops)
+    assert (max(counts) > 0.9 * len(loops)) == is_dense
+
+
+def test_surroundings_are_all_that_a_fill_reads() -> None:
+    mesh, loops = with_many_holes()
+    region, local = surroundings(mesh, loops[:7])
+    assert len(region.mesh.triangles) < len(mesh.triangles) / 2
+    part, whole = BLEND.fill(region.mesh, local), BLEND.fill(mesh, loops[:7])
+    assert region.widened(part).mesh.vertices.tobytes() == whole.mesh.vertices.tobytes()
+    assert region.widened(part).mesh.triangles.tobytes() == whole.mesh.triangles.tobytes()
