@@ -74,6 +74,13 @@ class Settings(BaseSettings):
     )
     job_time_limit_s: float = Field(default=900.0, ge=1, description="Most wall-clock seconds of one attempt.")
     job_memory_limit_mb: int = Field(default=4096, ge=256, description="Most memory of one attempt, in MiB.")
+    job_processes: int = Field(
+        default=0,
+        ge=0,
+        le=64,
+        description="Processes that share the repair of a large scan; 0: as many as OMP_NUM_THREADS says, else one for "
+        "each core.",
+    )
     machine: str = Field(
         default="",
         max_length=128,

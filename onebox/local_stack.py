@@ -80,7 +80,9 @@ def programs(stack: LocalStack) -> list[Program]:
         "QUADPATCH_PORT": str(stack.port),
     }
     n_threads = max(min(2, _n_cores()), _n_cores() // stack.n_workers)
-    threads = {**shared, **thread_environment(n_threads)}
+    # Two busy workers of two cores are not to divide them by four.
+    n_processes = load_settings().job_processes or max(1, _n_cores() // stack.n_workers)
+    threads = {**shared, **thread_environment(n_threads), "QUADPATCH_JOB_PROCESSES": str(n_processes)}
     workers = [_program(f"worker-{number}", stack, threads) for number in range(1, stack.n_workers + 1)]
     return [
         Program("valkey", valkey.command, ready=lambda: answers(valkey.socket_path), withheld=_NOT_FOR_VALKEY),

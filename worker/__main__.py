@@ -22,13 +22,13 @@ from jobkit.settings import Settings, load_settings
 from jobkit.storage.base import ObjectStore
 from jobkit.storage.open import open_store
 from jobkit.telemetry import open_telemetry
+from quadpatch.processes import usable_threads
 from worker.context import Context, use_context, worker_name
 from worker.engine.client import ForkServer, ForkServerLostError
 from worker.engine.confinement import weaknesses
 from worker.executor import execute
 from worker.folders import worker_folder
 
-THREADS_VARIABLE = "OMP_NUM_THREADS"
 _EXIT_BROKEN = 1
 _EXIT_SETTINGS = 2
 
@@ -49,7 +49,7 @@ def main() -> int:
 
 
 def _run(settings: Settings, store: ObjectStore) -> int:
-    n_threads = _n_threads()
+    n_threads = usable_threads()
     with ExitStack() as stack:
         database = stack.enter_context(closing(Database(settings.effective_database_url)))
         database.migrate()
@@ -61,6 +61,7 @@ def _run(settings: Settings, store: ObjectStore) -> int:
             queue=stack.enter_context(closing(_open_queue(settings))),
             fork_server=stack.enter_context(ForkServer(n_threads)),
             n_threads=n_threads,
+            n_processes=settings.job_processes or n_threads,
             telemetry=stack.enter_context(open_telemetry("worker")),
         )
         stack.enter_context(log_about(worker=context.name))
@@ -80,14 +81,6 @@ def _run(settings: Settings, store: ObjectStore) -> int:
 
 def _open_queue(settings: Settings) -> TaskQueue:
     return TaskQueue(settings.redis_url.get_secret_value(), settings.queue_name, settings.job_time_limit_s)
-
-
-def _n_threads() -> int:
-    """Threads of an engine: what the variable says that numerical libraries obey, else one per core."""
-    stated = os.environ.get(THREADS_VARIABLE, "")
-    if stated.isdecimal() and int(stated) > 0:
-        return int(stated)
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 if __name__ == "__main__":

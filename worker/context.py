@@ -39,6 +39,10 @@ class Context:
     ----------
     name : str
         Of this worker, for people.
+    n_threads : int
+        Of numerical libraries in an engine.
+    n_processes : int
+        That may share one repair.
     draining : threading.Event
         Set once the worker is asked to stop.
     telemetry : Telemetry
@@ -52,6 +56,7 @@ class Context:
     queue: TaskQueue
     fork_server: ForkServer
     n_threads: int
+    n_processes: int = 1
     draining: threading.Event = field(default_factory=threading.Event)
     telemetry: Telemetry = field(default_factory=Telemetry)
 

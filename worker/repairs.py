@@ -129,7 +129,9 @@ def _work(context: Context, started_attempt: StartedAttempt, heartbeat: Heartbea
     deprecated = deprecation(job.model, registry)
     settings = context.settings
     memory_mb = min(settings.job_memory_limit_mb, started_attempt.memory_mb or settings.job_memory_limit_mb)
-    limits = EngineLimits(settings.job_time_limit_s, memory_mb, n_threads=context.n_threads)
+    limits = EngineLimits(
+        settings.job_time_limit_s, memory_mb, n_threads=context.n_threads, n_processes=context.n_processes
+    )
     request = replace(
         job_request(job.spec, source, model, limits, reference), model_card=network_card(job.model, registry)
     )

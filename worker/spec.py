@@ -152,6 +152,7 @@ def tighter_limits(limits: EngineLimits, spec: JobSpec) -> EngineLimits:
         memory_mb=min(limits.memory_mb, spec.limits.memory_mb or limits.memory_mb),
         file_mb=limits.file_mb,
         n_threads=limits.n_threads,
+        n_processes=limits.n_processes,
     )
 
 

@@ -6,10 +6,12 @@ import os
 import signal
 import subprocess
 import time
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from quadpatch.errors import ReadError
+from quadpatch.processes import ProcessPool
 from worker.engine.entry import run_confined
 from worker.engine.reports import Reporter
 from worker.engine.request import EngineRequest
@@ -22,13 +24,17 @@ else:
 
 
 def run_request(folder: Path, descriptor: int) -> None:
-    def run_behaviour(request: EngineRequest, reporter: Reporter) -> None:
+    def run_behaviour(request: EngineRequest, reporter: Reporter, pool: ProcessPool) -> None:
         reporter.progress("fill", 0.5)
         if request.options.get("delivers"):
             (folder / "repaired.ply").write_text("a mesh")
             reporter.delivered()
             reporter.progress("preview", 0.0)
-        getattr(Behaviours, request.options["behaviour"])(folder)
+        behave = getattr(Behaviours, request.options["behaviour"])
+        if request.options.get("in_helper"):
+            pool.submit(in_helper, behave, folder).result()
+        else:
+            behave(folder)
         (folder / "facts.json").write_text(
             json.dumps({"cwd": os.getcwd(), "pid": os.getpid(), "names": list(os.environ)})
         )
@@ -37,6 +43,11 @@ def run_request(folder: Path, descriptor: int) -> None:
         grandchild = subprocess.Popen(["sleep", "600"])
         (folder / "grandchild").write_text(str(grandchild.pid))
     run_confined(folder, descriptor, run_behaviour)
+
+
+def in_helper(behave: Callable[[Path], None], folder: Path) -> None:
+    (folder / "helper").write_text(str(os.getpid()))
+    behave(folder)
 
 
 class Behaviours:
@@ -61,6 +72,12 @@ class Behaviours:
     @staticmethod
     def take_memory_for_a_moment(folder: Path) -> None:
         bytearray(200 << 20)
+
+    @staticmethod
+    def take_memory_for_a_while(folder: Path) -> None:
+        held = b"x" * (200 << 20)
+        time.sleep(1.0)
+        del held
 
     @staticmethod
     def ask_for_too_much_at_once(folder: Path) -> None:

@@ -1,4 +1,7 @@
-"""The outermost function of an engine child: sets the limits, and turns every exception into a report."""
+"""The outermost function of an engine child: sets the limits, and turns every exception into a report.
+
+Tested in `tests/worker/engine/test_supervision.py`.
+"""
 
 import contextlib
 import os
@@ -6,14 +9,18 @@ import traceback
 from collections.abc import Callable
 from pathlib import Path
 
-from quadpatch.errors import QuadpatchError
+from quadpatch.errors import ProcessLostError, QuadpatchError
+from quadpatch.processes import ProcessPool, n_processes_for
 from worker.engine.confinement import confine
 from worker.engine.reports import Reporter
 from worker.engine.request import MESH_FOLDER, REFERENCE_FOLDER, EngineRequest
 from worker.failures import Failure, from_os_error, over_memory
 
+# Called with the request, what takes reports, and the processes that share the work.
+Task = Callable[[EngineRequest, Reporter, ProcessPool], None]
 
-def run_confined(folder: Path, descriptor: int, task: Callable[[EngineRequest, Reporter], None]) -> None:
+
+def run_confined(folder: Path, descriptor: int, task: Task) -> None:
     """Load the request in `folder`, do the task under its limits and confined, and report how it ended.
 
     Parameters
@@ -27,8 +34,12 @@ def run_confined(folder: Path, descriptor: int, task: Callable[[EngineRequest, R
     request = EngineRequest.load(folder)
     try:
         request.limits.apply()
+        pool = _fork_pool(folder, request, reporter)
         confine(folder, request)
-        task(request, reporter)
+        task(request, reporter, pool)
+        pool.close()
+    except ProcessLostError as error:
+        _end_likewise(error.status)
     except QuadpatchError as error:
         reporter.failed(Failure(error.code, _without_paths(str(error), folder), reporter.stage))
     except MemoryError:
@@ -45,6 +56,27 @@ def run_confined(folder: Path, descriptor: int, task: Callable[[EngineRequest, R
         reporter.failed(Failure("engine_error", "unexpected internal error of the engine", reporter.stage))
     else:
         reporter.done()
+
+
+def _fork_pool(folder: Path, request: EngineRequest, reporter: Reporter) -> ProcessPool:
+    """Fork the processes that share a repair; each of them is under the same limits, and confines itself."""
+
+    def prepare() -> None:
+        reporter.close()
+        confine(folder, request)
+
+    n_processes = n_processes_for(folder / request.source, request.limits.n_processes)
+    pool = ProcessPool(n_processes if request.task == "repair" else 1, prepare)
+    if pool.is_shared:
+        reporter.processes(pool.process_ids)
+    return pool
+
+
+def _end_likewise(status: int) -> None:
+    """End this process as the one ended that shared its work: the worker tells from that what happened."""
+    if status < 0:
+        os.kill(os.getpid(), -status)
+    os._exit(status)
 
 
 def _print_traceback() -> None:

@@ -1,4 +1,7 @@
-"""Ceilings of an engine child, set by itself before it touches a file."""
+"""Ceilings of an engine child, set by itself before it touches a file.
+
+Tested in `tests/worker/engine/test_supervision.py`.
+"""
 
 import math
 import os
@@ -28,12 +31,15 @@ class EngineLimits:
         Size of the largest file that it may write, in MiB.
     n_threads : int
         Threads of numerical libraries.
+    n_processes : int
+        Processes that share one repair.
     """
 
     time_s: float
     memory_mb: int
     file_mb: int = 8192
     n_threads: int = 2
+    n_processes: int = 1
 
     def apply(self) -> None:
         """Put the limits that the kernel keeps on this very process."""

@@ -15,6 +15,7 @@ from quadpatch.formats.output_files import write_whole
 from quadpatch.inpainters.proof import prove_model
 from quadpatch.options import RepairOptions
 from quadpatch.preview.drawing import add_close_up_archive, add_comparison, add_picture
+from quadpatch.processes import ProcessPool
 from quadpatch.recipes.fairing_energies import CALIBRATED_ENERGIES
 from quadpatch.repair import repair_and_keep
 from quadpatch.stages import failure_of
@@ -38,14 +39,16 @@ from worker.engine.tasks import MESH_TASKS
 def run_request(folder: Path, descriptor: int) -> None:
     """Do what the request in `folder` asks for, and report the outcome through the pipe `descriptor`."""
     collect_seldom()
-    run_confined(folder, descriptor, lambda request, reporter: _TASKS[request.task](folder, request, reporter))
+    run_confined(folder, descriptor, lambda *about: _TASKS[about[0].task](folder, *about))
 
 
-def _repair(folder: Path, request: EngineRequest, reporter: Reporter) -> None:
+def _repair(folder: Path, request: EngineRequest, reporter: Reporter, pool: ProcessPool) -> None:
     source, output = folder / request.source, folder / request.output
     options = RepairOptions.from_dict(request.options)
     kept = _kept_calibrations(folder, request.scan)
-    repaired = repair_and_keep(source, output, request.model, options, reporter.progress, request.model_card, kept)
+    repaired = repair_and_keep(
+        source, output, request.model, options, reporter.progress, request.model_card, kept, pool
+    )
     _write_json(folder / REPORT_NAME, repaired.report)
     if kept.has_new:
         failure_of(lambda: write_whole(folder / CALIBRATION_NAME, kept.written()))
@@ -68,17 +71,17 @@ def _kept_calibrations(folder: Path, scan: str) -> KeptCalibrations:
     )
 
 
-def _inspect(folder: Path, request: EngineRequest, reporter: Reporter) -> None:
+def _inspect(folder: Path, request: EngineRequest, reporter: Reporter, _pool: ProcessPool) -> None:
     reporter.progress("read", 0.0)
     _write_json(folder / FACTS_NAME, inspect_any(folder / request.source))
 
 
-def _prove(_folder: Path, request: EngineRequest, reporter: Reporter) -> None:
+def _prove(_folder: Path, request: EngineRequest, reporter: Reporter, _pool: ProcessPool) -> None:
     reporter.progress("prove", 0.0)
     prove_model(request.model, request.model_card)
 
 
-def _do_task(folder: Path, request: EngineRequest, reporter: Reporter) -> None:
+def _do_task(folder: Path, request: EngineRequest, reporter: Reporter, _pool: ProcessPool) -> None:
     done = MESH_TASKS[request.task](folder, request, reporter.progress)
     _write_json(folder / REPORT_NAME, done.report)
     reporter.delivered()
@@ -88,7 +91,7 @@ def _do_task(folder: Path, request: EngineRequest, reporter: Reporter) -> None:
         _write_json(folder / REPORT_NAME, done.report)
 
 
-_TASKS: dict[EngineTask, Callable[[Path, EngineRequest, Reporter], None]] = {
+_TASKS: dict[EngineTask, Callable[[Path, EngineRequest, Reporter, ProcessPool], None]] = {
     "repair": _repair,
     **dict.fromkeys(MESH_TASKS, _do_task),
     "inspect": _inspect,

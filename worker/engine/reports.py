@@ -1,7 +1,8 @@
 """What an engine child tells its worker, as JSON lines through one pipe.
 
-`{"stage", "fraction"}` while it works, `{"delivered": true}` once all that a result needs lies in the folder and only
-optional steps are left, and at last `{"ok": true}` or `{"ok": false, "failure": {...}}`.
+`{"processes"}`, the ids of those that share the work, before it begins; `{"stage", "fraction"}` while it works,
+`{"delivered": true}` once all that a result needs lies in the folder and only optional steps are left, and at last
+`{"ok": true}` or `{"ok": false, "failure": {...}}`.
 """
 
 import json
@@ -24,6 +25,10 @@ class Reporter:
         self._last = 0.0
         self.stage: str | None = None
 
+    def processes(self, process_ids: list[int]) -> None:
+        """Report which processes share the work."""
+        self._send({"processes": process_ids})
+
     def progress(self, stage: str, fraction: float) -> None:
         """Report progress, thinned out; a new stage is always reported."""
         now = time.monotonic()
@@ -43,6 +48,10 @@ class Reporter:
     def failed(self, failure: Failure) -> None:
         """Report a failure."""
         self._send({"ok": False, "failure": asdict(failure)})
+
+    def close(self) -> None:
+        """Close the pipe, in a process that has nothing to report."""
+        os.close(self._descriptor)
 
     def _send(self, message: dict[str, Any]) -> None:
         os.write(self._descriptor, json.dumps(message).encode() + b"\n")

@@ -97,7 +97,7 @@ def run_engine(
         watch.listen()
     finally:
         end = watch.end()
-        observer.on_peak(watch.peak_mb if end is None else end.peak_mb)
+        observer.on_peak(watch.peak_mb if end is None else end.peak_mb + watch.peak_of_helpers_mb)
     failure = watch.failure
     if failure is None and not watch.is_done:
         failure = _diagnose(None if end is None else end.status, watch, request.limits, folder / LOG_NAME)
@@ -131,6 +131,8 @@ class _Watch:
         self.is_done = False
         self.is_delivered = False
         self.peak_mb = 0.0
+        self.peak_of_helpers_mb = 0.0
+        self._helpers: list[int] = []
 
     def listen(self) -> None:
         """Read reports until the child closes its pipe or has to be ended."""
@@ -176,6 +178,8 @@ class _Watch:
         if "stage" in report:
             self.stage = printable(str(report["stage"]), _LONGEST_STAGE)
             self._observer.on_progress(self.stage, float(report["fraction"]))
+        elif "processes" in report:
+            self._helpers = [int(pid) for pid in report["processes"]]
         elif "delivered" in report:
             self.is_delivered = True
         elif report["ok"]:
@@ -187,7 +191,9 @@ class _Watch:
         if self._clock() > self._deadline:
             self.failure = over_time(self._limits.time_s, self.stage)
             return
-        resident_mb = _resident_mb(self._child.pid)
+        of_helpers_mb = sum(_own_mb(pid, self._child.pid) for pid in self._helpers)
+        self.peak_of_helpers_mb = max(self.peak_of_helpers_mb, of_helpers_mb)
+        resident_mb = _resident_mb(self._child.pid) + of_helpers_mb
         self.peak_mb = max(self.peak_mb, resident_mb)
         self._observer.on_memory(resident_mb)
         if resident_mb > self._limits.memory_mb:
@@ -199,6 +205,14 @@ def _resident_mb(pid: int) -> float:
         return float(psutil.Process(pid).memory_info().rss) / 2**20
     except psutil.Error:
         return 0.0  # it has ended; its pipe is closed then
+
+
+def _own_mb(pid: int, group: int) -> float:
+    """Memory of a process that it shares with no other: what it adds to that of the engine which forked it."""
+    try:
+        return float(psutil.Process(pid).memory_full_info().uss) / 2**20 if os.getpgid(pid) == group else 0.0
+    except (psutil.Error, OSError):
+        return 0.0
 
 
 def _diagnose(status: int | None, watch: _Watch, limits: EngineLimits, log: Path) -> Failure:

@@ -1,3 +1,5 @@
+"""Also tests `worker.engine.entry`."""
+
 import contextlib
 import json
 import os
@@ -8,6 +10,7 @@ from pathlib import Path
 import psutil
 import pytest
 
+from quadpatch.processes import LEAST_BYTES
 from tests.waiting import GUARD_S, wait_until
 from worker.engine.client import ForkServer
 from worker.engine.limits import EngineLimits
@@ -41,6 +44,23 @@ def engines() -> list[psutil.Process]:
         for engine in fork_server.children(recursive=True)
         if engine.status() != psutil.STATUS_ZOMBIE
     ]
+
+
+def of_two_processes(folder: Path, behaviour: str, memory_mb: int = 1024) -> EngineRequest:
+    """Ask for a repair whose second process misbehaves; its file is large enough for two."""
+    (folder / "source.ply").write_bytes(bytes(LEAST_BYTES))
+    limits = EngineLimits(time_s=GUARD_S, memory_mb=memory_mb, file_mb=4, n_threads=1, n_processes=2)
+    return EngineRequest("repair", "source.ply", limits, options={"behaviour": behaviour, "in_helper": True})
+
+
+def helper_of(folder: Path) -> int:
+    """Wait until the second process of a repair is at work, and give its id."""
+    wait_until(lambda: (folder / "helper").exists() and (folder / "helper").read_text() != "")
+    return int((folder / "helper").read_text())
+
+
+def has_ended(pid: int) -> bool:
+    return not psutil.pid_exists(pid) or psutil.Process(pid).status() == psutil.STATUS_ZOMBIE
 
 
 def test_an_engine_works_in_its_folder_and_reports_progress(rogue_fork_server: ForkServer, tmp_path: Path) -> None:
@@ -225,6 +245,75 @@ def test_an_engine_is_ended_when_asked_whatever_it_does(
     with pytest.raises(EngineStoppedError) as caught:
         run_engine(rogue_fork_server, request(behaviour), tmp_path, observer)
     assert caught.value.reason is reason
+    assert engines() == []
+
+
+@pytest.mark.parametrize(
+    ("behaviour", "code", "retryable"),
+    [
+        ("crash", "engine_crashed", True),
+        ("leave_silently", "engine_crashed", True),
+        ("hog_memory", "out_of_memory", False),
+        ("ask_for_too_much_at_once", "out_of_memory", False),
+        ("fill_the_disk", "result_too_large", False),
+        ("raise_something_unforeseen", "engine_error", False),
+        ("raise_an_error_with_a_path", "unreadable_mesh", False),
+    ],
+)
+def test_what_ends_a_process_that_shares_a_repair_is_reported_as_the_engines_own(
+    rogue_fork_server: ForkServer, tmp_path: Path, behaviour: str, code: str, retryable: bool
+) -> None:
+    asked = of_two_processes(tmp_path, behaviour, memory_mb=300)
+    peaks: list[float] = []
+    observer = Observer(lambda stage, fraction: None, never, on_peak=peaks.append)
+    with pytest.raises(EngineFailedError) as caught:
+        run_engine(rogue_fork_server, asked, tmp_path, observer)
+    failure = caught.value.failure
+    assert (failure.code, failure.stage, failure.retryable) == (code, "fill", retryable)
+    assert behaviour != "hog_memory" or peaks[0] > 300
+    wait_until(lambda: has_ended(helper_of(tmp_path)))
+    assert engines() == []
+
+
+def test_the_memory_of_a_process_that_shares_a_repair_counts(rogue_fork_server: ForkServer, tmp_path: Path) -> None:
+    memory: list[float] = []
+    peaks: list[float] = []
+    observer = Observer(lambda stage, fraction: None, never, memory.append, peaks.append)
+    run_engine(rogue_fork_server, of_two_processes(tmp_path, "take_memory_for_a_while"), tmp_path, observer)
+    assert 200 < max(memory) < 1024
+    assert 200 < peaks[0] < 1024
+
+
+@pytest.mark.parametrize("victim", ["helper", "engine", "fork server"])
+def test_no_process_of_a_repair_outlives_another_that_is_killed(
+    rogue_fork_server: ForkServer, tmp_path: Path, victim: str
+) -> None:
+    def kill(stage: str, fraction: float) -> None:
+        helper = psutil.Process(helper_of(tmp_path))
+        engine = psutil.Process(helper.ppid())
+        os.kill({"helper": helper.pid, "engine": engine.pid, "fork server": engine.ppid()}[victim], signal.SIGKILL)
+
+    with pytest.raises(EngineFailedError) as caught:
+        run_engine(
+            rogue_fork_server, of_two_processes(tmp_path, "hang_in_native_code"), tmp_path, Observer(kill, never)
+        )
+    assert caught.value.failure.code == "engine_crashed"
+    wait_until(lambda: has_ended(helper_of(tmp_path)))
+    assert engines() == []
+
+
+def test_all_processes_of_a_repair_are_ended_when_asked(rogue_fork_server: ForkServer, tmp_path: Path) -> None:
+    def stop_reason() -> StopReason | None:
+        return StopReason.CANCELED if (tmp_path / "helper").exists() else None
+
+    with pytest.raises(EngineStoppedError):
+        run_engine(
+            rogue_fork_server,
+            of_two_processes(tmp_path, "ignore_signals_and_hang"),
+            tmp_path,
+            Observer(lambda stage, fraction: None, stop_reason),
+        )
+    wait_until(lambda: has_ended(helper_of(tmp_path)))
     assert engines() == []
 
 
