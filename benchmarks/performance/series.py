@@ -17,6 +17,8 @@ from benchmarks.performance.scans import Arrays, dome, long_rim, loose_pieces, t
 _TRIANGLES = (100_000, 300_000, 1_000_000, 3_000_000, 10_000_000)
 _HOLES = (1, 20, 200, 2_000)
 _N_HOLES = 20
+# Enough of them for two cores to have their parts.
+_N_SHARED = 200
 # Two thousand holes of this radius have room on a dome.
 _RADIUS = 0.014
 
@@ -83,12 +85,13 @@ def all_series(share: float = 1.0) -> list[Series]:
         Case(f"{n_slits:,} holes of three edges", 0, partial(three_edge_holes, n_slits)),
         Case(f"{n_pieces:,} loose triangles", 0, partial(loose_pieces, n_pieces)),
     ]
-    cores = [Case(f"{n}", n, partial(dome, middle, _N_HOLES), n) for n in (1, 2)]
+    n_shared = round(_N_SHARED * share)
+    cores = [Case(f"{n}", n, partial(dome, middle, n_shared, _RADIUS), n) for n in (1, 2)]
     return [
         Series("triangles", f"{_N_HOLES} round holes in a dome", "scan", "triangles", sizes),
         Series("holes", f"round holes in a dome of {middle:,} triangles", "holes", "holes", counts),
         Series("damages", "scans of many damages", "damage", "", damages),
-        Series("cores", f"{_N_HOLES} round holes in a dome of {middle:,} triangles, by cores", "cores", "", cores),
+        Series("cores", f"{n_shared} round holes in a dome of {middle:,} triangles, by cores", "cores", "", cores),
     ]
 
 
