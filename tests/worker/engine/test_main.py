@@ -3,9 +3,11 @@ from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
-from tests.quadpatch.shapes import bumpy_plate, punched, write_ply
+from quadpatch.processes import LEAST_BYTES
+from tests.quadpatch.shapes import bumpy_plate, on_surface, punched, write_ply
 from worker.engine.client import ForkServer
 from worker.engine.limits import EngineLimits
 from worker.engine.request import MESH_FOLDER, REPORT_NAME, EngineRequest
@@ -32,6 +34,25 @@ def repair_request(folder: Path, model: str) -> EngineRequest:
     return EngineRequest(
         task="repair", source=f"{MESH_FOLDER}/source.ply", output="repaired.ply", model=model, limits=LIMITS
     )
+
+
+def test_engines_of_one_process_and_of_two_write_the_same_bytes(fork_server: ForkServer, tmp_path: Path) -> None:
+    at, plate = np.arange(-1.5, 1.51, 0.6), bumpy_plate(160, 4.0)
+    holes = on_surface(plate, *((float(x), float(y)) for x in at for y in at))
+    written: list[bytes] = []
+    fractions: list[float] = []
+    for n_processes in (1, 2):
+        folder = tmp_path / str(n_processes)
+        (folder / MESH_FOLDER).mkdir(parents=True)
+        source = write_ply(folder / MESH_FOLDER / "source.ply", punched(plate, *holes, radius=0.18), "f8")
+        assert source.stat().st_size > LEAST_BYTES
+        limits = replace(LIMITS, n_processes=n_processes)
+        request = EngineRequest("repair", f"{MESH_FOLDER}/source.ply", limits, "repaired.ply", "smooth")
+        fractions.clear()
+        run_engine(fork_server, request, folder, Observer(lambda _, done: fractions.append(done), lambda: None))
+        assert any(0 < fraction < 1 for fraction in fractions)
+        written.append((folder / "repaired.ply").read_bytes())
+    assert written[0] == written[1]
 
 
 def test_a_worker_without_torch_fails_a_job_that_needs_it_for_good_and_says_how_to_install_it(
