@@ -26,6 +26,8 @@ _REFRESH_S = 60.0
 _GEOMETRY_MB, _GEOMETRY_PER_MB = 140, 16
 # Of patches besides; those of fills are cut from a coarse copy where the mesh is large.
 _PATCHES_MB, _PATCHES_PER_MB, _PATCHES_OF_FILL_MOST_MB = 60, 80, 800
+# Of a second process, which shares fills from this size on (`quadpatch.processes.LEAST_BYTES`).
+_SHARED_BYTES, _HELPER_MB = 1_000_000, 80
 # Of torch besides, to fit a network to the mesh.
 _FITTING_MB = 500
 
@@ -80,6 +82,8 @@ def expected_from_bytes(kind: str, size_bytes: int) -> int:
     if kind not in _BY_GEOMETRY:
         most_mb = _PATCHES_OF_FILL_MOST_MB if kind.startswith(f"{FILL} ") else math.inf
         needed_mb += _PATCHES_MB + min(_PATCHES_PER_MB * size_mb, most_mb)
+    if size_bytes >= _SHARED_BYTES:
+        needed_mb += _HELPER_MB
     if kind in _FITTING:
         needed_mb += _FITTING_MB
     return math.ceil(needed_mb)

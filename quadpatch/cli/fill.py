@@ -29,7 +29,6 @@ from quadpatch.cli.scipy_start import prepare_libraries
 from quadpatch.errors import OptionError
 from quadpatch.formats.output_files import check_folder, check_outputs, is_stream
 from quadpatch.options import DictionaryOptions, HoleOptions, HoleRule, NetworkOptions, PatchOptions, RepairOptions
-from quadpatch.processes import ProcessPool, n_processes_for, usable_threads
 from shared_rules.competition import outcome
 from shared_rules.hole_selection import Cap
 from shared_rules.option_words import Colours, Effort, Recipe
@@ -154,6 +153,7 @@ def fill(  # noqa: PLR0913, PLR0917  one argument per flag
         if closeups:
             check_folder(closeups, [source, output, *others])
         prepare_libraries()
+        from quadpatch.processes import ProcessPool, n_processes_for, usable_threads  # noqa: PLC0415  see below
         from quadpatch.repair import repair_and_keep  # noqa: PLC0415  numerical libraries, once there is work to do
 
         kept = read_calibrations(calibration)

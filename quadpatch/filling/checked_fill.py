@@ -145,7 +145,9 @@ def fill_checked(
     return CheckedFill(relieved, faults, names, _departure(relieved, first, replaced), refused)
 
 
-def with_creases(checked: CheckedFill, share: float, obstacles: Triangles | None = None) -> CheckedFill:
+def with_creases(
+    checked: CheckedFill, share: float, obstacles: Triangles | None = None, pool: ProcessPool | None = None
+) -> CheckedFill:
     """Give faired fills creases, save where these would fold or cross other surface.
 
     Parameters
@@ -155,6 +157,8 @@ def with_creases(checked: CheckedFill, share: float, obstacles: Triangles | None
         Of the way to the creases, 0 to 1.
     obstacles : (k, 3) int64, optional
         Triangles of the file that the mesh leaves out.
+    pool : ProcessPool, optional
+        Its processes look for crossings.
     """
     wanted = np.array([name == _FAIRED and i not in checked.refused for i, name in enumerate(checked.fill)], bool)
     if not share or not wanted.any():
@@ -163,7 +167,7 @@ def with_creases(checked: CheckedFill, share: float, obstacles: Triangles | None
     way = np.where(wanted[filled.vertex_hole][:, None], share * crease_displacement(filled), 0.0)
     relaxed = relax_faults(filled.displaced(way), wanted, obstacles)
     way = relaxed.mesh.vertices[filled.n_measured_vertices :] - filled.mesh.vertices[filled.n_measured_vertices :]
-    creased = displace_without_faults(filled, way, wanted, checked.faults, obstacles)
+    creased = displace_without_faults(filled, way, wanted, checked.faults, obstacles, pool)
     names = np.where(wanted & ~creased.undone, CREASED, checked.fill).tolist()
     missing = mean_by(filled.vertex_hole, length(way), len(wanted))
     departure = np.where(creased.undone, missing, checked.departure)

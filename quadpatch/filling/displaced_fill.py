@@ -7,6 +7,7 @@ import numpy as np
 from quadpatch.filling.faults import Faults, find_faults
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.mesh.smoothing import neighbour_average
+from quadpatch.processes import ProcessPool
 from quadpatch.types import BoolArray, FloatArray, IntArray, Triangles, Vertices
 
 # Rounds of relaxing; a fold is gone after three, or does not go.
@@ -32,7 +33,12 @@ class DisplacedFill:
 
 
 def displace_without_faults(
-    filled: FilledMesh, displacement: FloatArray, wanted: BoolArray, before: Faults, obstacles: Triangles | None
+    filled: FilledMesh,
+    displacement: FloatArray,
+    wanted: BoolArray,
+    before: Faults,
+    obstacles: Triangles | None,
+    pool: ProcessPool | None = None,
 ) -> DisplacedFill:
     """Move new vertices, and take that back in loops where it brought in folds or crossings.
 
@@ -47,12 +53,14 @@ def displace_without_faults(
         Of the fill as it is.
     obstacles : (k, 3) int64, optional
         Triangles of the file that the mesh leaves out.
+    pool : ProcessPool, optional
+        Its processes look for crossings.
     """
     undone = np.zeros(len(wanted), bool)
     while True:
         moved = wanted & ~undone
         displaced = filled.displaced(np.where(moved[filled.vertex_hole][:, None], displacement, 0.0))
-        faults = find_faults(displaced, obstacles=obstacles)
+        faults = find_faults(displaced, obstacles=obstacles, pool=pool)
         worse = moved & (faults.severity > before.severity)
         if not worse.any():
             return DisplacedFill(displaced, faults, undone)

@@ -205,7 +205,7 @@ def _repair(task: _Task, part: RepairRegion, stages: Stages) -> Repair:
         found = calibration.record
         reach = stages.part(0.0 if calibration.is_reused else share, 1.0)
         checked = fill_checked(mesh, wanted, lambda *_: filling.finish(reach), obstacles, stages.pool)
-        checked = with_creases(checked, found.crease_share, obstacles)
+        checked = with_creases(checked, found.crease_share, obstacles, stages.pool)
     completion, warnings, by_model = None, [], task.by_model
     if inpainter is not None and by_model[checked.filled.vertex_hole].any():
         try:
@@ -218,7 +218,7 @@ def _repair(task: _Task, part: RepairRegion, stages: Stages) -> Repair:
     with stages.stage("judge"):
         if completion and not by_model.all():
             completion = replace(completion.limited_to(by_model, checked.filled), left_out=~by_model)
-        completion, filled, faults = without_faults(completion, checked, obstacles)
+        completion, filled, faults = without_faults(completion, checked, obstacles, stages.pool)
         of_model = completion.error_model if completion else None
         error_model, size = of_model or found.error_model, diagonal(task.mesh)
         results = assess(task.holes, task.closed, checked.filled, completion, error_model, size)

@@ -21,12 +21,13 @@ from quadpatch.patches.folding import is_unfolded
 from quadpatch.patches.layout import Sampled, lay_out, pick, seeds_near, take
 from quadpatch.patches.scale import PatchScale, choose_scale
 from quadpatch.patches.seeds import Seeds
+from quadpatch.processes import ProcessPool, Shared
 from quadpatch.recipes.assessment import agreeing_holes, measure_agreement
 from quadpatch.recipes.patch_surfaces import CoarseCopy, PatchSurface, PatchSurfaces
 from quadpatch.recipes.result import Completion, PatchAgreement, Trial
 from quadpatch.reconstruction.displacement import displace, join_at_rim, rim_vertices
 from quadpatch.stages import Stages
-from quadpatch.types import BoolArray, FloatArray, Patches
+from quadpatch.types import BoolArray, FloatArray, Patches, Vertices
 
 # Blend factor of a model where the mesh has no room for calibration.
 PRIOR_BLEND_FACTOR = 0.0
@@ -126,6 +127,7 @@ def complete(
     with stages.stage("patchify"):
         near = seeds_near(seeds, filled.mesh.vertices[filled.n_measured_vertices :], scale.length)
         wanted = near | _some(len(near), np.random.default_rng([options.seed, 2]))
+        around_calibration = _begin_to_sample(stages.pool, surfaces.calibration, fill, seeds, scale)
         everywhere = surfaces.filled.patchify(base_surface, take(seeds, wanted), scale)
         sampled = pick(everywhere, near[wanted] & is_unfolded(everywhere.patches))
     with stages.stage("learn"):
@@ -136,8 +138,8 @@ def complete(
             return None
         competitors = fitted if isinstance(fitted, FittedCompetitors) else FittedCompetitors({"": fitted}, {"": 1.0})
         choice = _Choice(competitors)
-        if calibration.holes is not None and fill is not None and surfaces.calibration is not None:
-            near_calibration = _sample_calibration(fill, surfaces.calibration, seeds, scale)
+        if calibration.holes is not None and fill is not None and around_calibration is not None:
+            (near_calibration,) = around_calibration.finish()
             choice = _calibrate_models(calibration.holes, fill, near_calibration, competitors)
     with stages.stage("inpaint"):
         # A model with a blend factor of 0 need not be asked.
@@ -193,9 +195,23 @@ def _some(count: int, rng: np.random.Generator) -> BoolArray:
     return chosen
 
 
-def _sample_calibration(filled: FilledMesh, surface: PatchSurface, seeds: Seeds, scale: PatchScale) -> Sampled:
+# New vertices of a fill, the surface that they belong to, and the patches that may be cut from it.
+_Cutting = tuple[Vertices, PatchSurface, Seeds, PatchScale]
+
+
+def _begin_to_sample(
+    pool: ProcessPool, surface: PatchSurface | None, fill: FilledMesh | None, seeds: Seeds, scale: PatchScale
+) -> Shared[_Cutting, Sampled] | None:
+    """Let a helper cut the patches that show the calibration holes, while this process cuts those of the real ones."""
+    if fill is None or surface is None:
+        return None
+    new = fill.mesh.vertices[fill.n_measured_vertices :]
+    return pool.begin(_sample_calibration, [(new, surface, seeds, scale)])
+
+
+def _sample_calibration(cutting: _Cutting) -> Sampled:
     """Cut the patches that show the calibration holes."""
-    new = filled.mesh.vertices[filled.n_measured_vertices :]
+    new, surface, seeds, scale = cutting
     near = take(seeds, seeds_near(seeds, new, scale.length))
     sampled = surface.patchify(surface.smoothed(scale), near, scale)
     return pick(sampled, is_unfolded(sampled.patches))

@@ -14,6 +14,7 @@ from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.filling.islands import JoinedRims
 from quadpatch.filling.ribs import Ribs
 from quadpatch.mesh.holes import Hole
+from quadpatch.processes import ProcessPool
 from quadpatch.recipes.assessment import confidence, count_new
 from quadpatch.recipes.result import Completion, HoleResult, Repair
 from quadpatch.types import Triangles
@@ -26,7 +27,7 @@ _NO_PLANE_PATCH = "no_plane_patch", "in its plane the rim crosses itself, or enc
 
 
 def without_faults(
-    completion: Completion | None, checked: CheckedFill, obstacles: Triangles | None
+    completion: Completion | None, checked: CheckedFill, obstacles: Triangles | None, pool: ProcessPool | None = None
 ) -> tuple[Completion | None, FilledMesh, Faults]:
     """Take the displacement back in holes where it brought in folds or crossings.
 
@@ -37,6 +38,8 @@ def without_faults(
         The fill before it was displaced.
     obstacles : (k, 3) int64, optional
         Triangles of the file that the mesh leaves out.
+    pool : ProcessPool, optional
+        Its processes look for crossings.
 
     Returns
     -------
@@ -49,7 +52,7 @@ def without_faults(
     if completion is None or not completion.displaced_holes.any():
         return completion, checked.filled, checked.faults
     displaced = displace_without_faults(
-        checked.filled, completion.displacement, completion.displaced_holes, checked.faults, obstacles
+        checked.filled, completion.displacement, completion.displaced_holes, checked.faults, obstacles, pool
     )
     if displaced.undone.any():
         completion = replace(completion.limited_to(~displaced.undone, checked.filled), undone=displaced.undone)
