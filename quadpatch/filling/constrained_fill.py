@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from quadpatch.filling.fairing import THIN_PLATE, triangles_around
-from quadpatch.filling.faults import Faults, find_faults
+from quadpatch.filling.faults import Faults, Folds, find_faults
 from quadpatch.filling.fill import fair_refined
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.filling.refinement import Refined, refine, relax
@@ -19,11 +19,13 @@ from quadpatch.filling.rim_neighbourhood import RimNeighbourhood
 from quadpatch.filling.triangulation import Forbidden
 from quadpatch.mesh.distance import nearest_points
 from quadpatch.mesh.intersections import heights, touching_boxes
+from quadpatch.mesh.normals import length, unit
 from quadpatch.mesh.raycast import RayScene
+from quadpatch.mesh.topology import edge_keys
 from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Triangles, Vertices
 
 # Triangulations that are tried for one rim.
-_MAX_TRIANGULATIONS = 32
+_MAX_TRIANGULATIONS = 64
 # Times that the ways of vertices are halved; at the end of them a thousandth is left.
 _MAX_HALVINGS = 10
 # From this one on, the neighbours of a triangle that folds or crosses are held back with it.
@@ -152,11 +154,14 @@ class _OneHole:
             return None
         near = self._near
         refined = refine(patch, near.edges, near.adjacent_triangles)
-        if not self._holds(refined):
-            return self._with(patch)
+        if self._faults(refined).crossings[self._position]:
+            refined = refine(patch, near.edges, flip=False)
         refined = self._moved(
             refined, fair_refined(refined, near.adjacent_triangles, THIN_PLATE, uniform=True).vertices
         )
+        refined = self._moved(refined, self._turned_outwards(refined))
+        if not self._holds(refined):
+            return self._with(patch)
         denser = refine(refined, near.edges, near.adjacent_triangles)
         for start in (relax(denser, near.adjacent_triangles, near.edges, near.adjacent_triangles), denser):
             if self._holds(start):
@@ -173,6 +178,24 @@ class _OneHole:
         nearest = nearest_points(points[new] + self._near.centre, self._first) - self._near.centre
         is_near = np.linalg.norm(nearest - points[new], axis=1) <= _NEAR * patch.spacing[new]
         points[new[is_near]] = nearest[is_near]
+        return points
+
+    def _turned_outwards(self, patch: Refined) -> Vertices:
+        """Give places (n, 3) for new vertices whose triangles fold at the rim: beyond it, where the surface points."""
+        points, filled, folds = patch.vertices.copy(), self._with(patch), self._faults(patch).folds
+        vertices, triangles = filled.mesh.vertices, filled.mesh.triangles
+        pairs, edges = np.sort(folds.pairs, axis=1), folds.edges
+        at_rim = pairs[:, 0] < filled.n_measured_triangles
+        (measured, new), edges = pairs[at_rim].T, edges[at_rim]
+        is_opposite = (triangles[new][:, :, None] != edges[:, None]).all(axis=2)
+        apex = patch.triangles[new - len(self._filled.mesh.triangles)][is_opposite]
+        behind = triangles[measured][(triangles[measured][:, :, None] != edges[:, None]).all(axis=2)]
+        start, along = vertices[edges[:, 0]], unit(vertices[edges[:, 1]] - vertices[edges[:, 0]])
+        inwards, height = vertices[behind] - start, vertices[triangles[new][is_opposite]] - start
+        inwards, height = (rows - np.einsum("ij,ij->i", rows, along)[:, None] * along for rows in (inwards, height))
+        outwards = vertices[edges].mean(axis=1) - length(height)[:, None] * unit(inwards) - self._near.centre
+        is_new = patch.is_new[apex]
+        points[apex[is_new]] = outwards[is_new]
         return points
 
     def _triangulation(self) -> Refined | None:
@@ -207,13 +230,17 @@ class _OneHole:
         return np.stack([loop[first[blocked]], loop[second[blocked]]], axis=1)
 
     def _moved(self, patch: Refined, target: Vertices) -> Refined:
-        """Move new vertices towards their targets (n, 3), each as far as nothing at it folds, crosses or collapses."""
+        """Move new vertices towards their targets (n, 3), each as far as nothing at it folds, crosses or collapses.
+
+        What folds before may stay folded.
+        """
         is_low = heights(patch.vertices, patch.triangles) < _LEAST_HEIGHT
+        before = self._faults(patch).folds
         share = np.ones(len(patch.vertices))
         for halving in range(_MAX_HALVINGS):
             moved = _between(patch, target, share)
             collapsed = np.flatnonzero(~is_low & (heights(moved.vertices, moved.triangles) < _LEAST_HEIGHT))
-            faulty = np.union1d(self._new(self._faults(moved).doubtful_triangles, moved), collapsed)
+            faulty = np.union1d(self._new(_faulty_triangles(self._faults(moved), before), moved), collapsed)
             if not len(faulty):
                 return moved
             held = _corners(patch, faulty)
@@ -244,6 +271,13 @@ class _OneHole:
         """Triangles of the patch among those of the mesh that ends with it."""
         first = len(self._filled.mesh.triangles)
         return triangles[triangles >= first] - first
+
+
+def _faulty_triangles(faults: Faults, before: Folds) -> IntArray:
+    """Triangles (n,) that cross others, or fold where they did not before and the measured surface does not."""
+    pairs, n = faults.folds.pairs, 1 + int(max(faults.folds.pairs.max(initial=0), before.pairs.max(initial=0)))
+    is_new = ~faults.folds.is_tolerated & ~np.isin(edge_keys(pairs, n), edge_keys(before.pairs, n))
+    return np.union1d(pairs[is_new], faults.crossing_triangles)
 
 
 def _between(patch: Refined, target: Vertices, share: FloatArray) -> Refined:

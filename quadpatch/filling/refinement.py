@@ -99,7 +99,7 @@ class Refined:
         return np.arange(len(self.vertices)) >= self.n_measured
 
 
-def refine(patch: Refined, existing_edges: EdgeSet, rim: Triangles | None = None) -> Refined:
+def refine(patch: Refined, existing_edges: EdgeSet, rim: Triangles | None = None, *, flip: bool = True) -> Refined:
     """Split and flip until every triangle is about as large as the surface around its hole is dense.
 
     Parameters
@@ -108,13 +108,16 @@ def refine(patch: Refined, existing_edges: EdgeSet, rim: Triangles | None = None
     existing_edges : EdgeSet
     rim : (k, 3) int64, optional
         See `flip_to_delaunay`.
+    flip : bool
+        Without flips the surface stays where it is.
     """
-    patch = flip_to_delaunay(patch, existing_edges, rim)
+    patch = flip_to_delaunay(patch, existing_edges, rim) if flip else patch
     for _ in range(_MAX_ROUNDS):
         large = _too_large(patch)
         if not large.any():
             break
-        patch = flip_to_delaunay(_split_at_centroid(patch, large), existing_edges, rim)
+        patch = _split_at_centroid(patch, large)
+        patch = flip_to_delaunay(patch, existing_edges, rim) if flip else patch
     return patch
 
 

@@ -1,3 +1,5 @@
+from pathlib import Path
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -10,12 +12,15 @@ from quadpatch.filling.fill import close_holes, fair_holes
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.filling.refinement import MOST_TURN_DEG, refine
 from quadpatch.filling.rim_neighbourhood import RimNeighbourhood
+from quadpatch.formats.reading import read_scan
 from quadpatch.mesh.distance import distance_to_mesh
 from quadpatch.mesh.intersections import heights
-from quadpatch.mesh.normals import triangle_normals
+from quadpatch.mesh.normals import triangle_normals, vertex_normals
 from quadpatch.types import FloatArray, IntArray, TriangleMesh
 from tests.quadpatch.filling.fills import CLOSED, all_loops, assert_keeps
 from tests.quadpatch.shapes import is_oriented_manifold, joined, open_grid, punched, sphere
+
+PIZZA = Path(__file__).resolve().parents[4] / "shared" / "bench" / "meshes" / "pizza.ply"
 
 
 def plate(mesh: TriangleMesh, loops: list[IntArray]) -> FilledMesh:
@@ -187,3 +192,45 @@ def test_no_triangle_collapses_on_the_way_to_a_first_fill_that_is_crumpled(seed:
     assert not find_faults(filled).is_doubtful.any()
     low = heights(filled.mesh.vertices, filled.mesh.triangles[filled.n_measured_triangles :])
     assert low.min() > 0.01
+
+
+def tongue(turn: float, width: int = 4, size: int = 4) -> TriangleMesh:
+    """A sheet with a square hole, into which a tongue of surface reaches that is bent up by `turn` degrees."""
+    sheet = open_grid(17)
+    start, centroids = -5.0, sheet.vertices[sheet.triangles].mean(axis=1)
+    in_hole = (np.abs(centroids[:, :2]) < -start).all(axis=1)
+    is_tongue = (np.abs(centroids[:, 1]) < width / 2) & (centroids[:, 0] < start + size)
+    x, y, _ = sheet.vertices.T
+    bent = (np.abs(y) <= width / 2) & (x > start) & (x <= start + size)
+    vertices, curvature = sheet.vertices.copy(), np.radians(turn) / size
+    vertices[bent, 0] = start + np.sin(curvature * (x[bent] - start)) / curvature
+    vertices[bent, 2] = (1 - np.cos(curvature * (x[bent] - start))) / curvature
+    return TriangleMesh(vertices, sheet.triangles[~in_hole | is_tongue])
+
+
+@pytest.mark.parametrize("turn", [120, 150, 200, 240])
+def test_a_hole_with_a_tongue_bent_up_is_filled_as_densely_as_others(turn: float) -> None:
+    mesh = tongue(turn)
+    loops = sorted(all_loops(mesh), key=len)[:-1]
+    assert find_faults(plate(mesh, loops)).is_wrong.all()
+    filled = constrained(mesh, loops)
+    assert_keeps(filled, mesh)
+    assert not find_faults(filled).is_doubtful.any()
+    assert len(filled.vertex_hole) > len(mesh.vertices) - len(np.unique(mesh.triangles))
+
+
+@pytest.mark.skipif(not PIZZA.is_file(), reason="there is no ../shared/bench/meshes/pizza.ply beside this repository")
+def test_a_fill_that_folds_back_at_an_overhang_is_turned_outwards() -> None:
+    scan = read_scan(PIZZA)
+    truth = TriangleMesh(scan.vertices, scan.triangles)
+    centre, radius = np.array([0.37534, -0.01686, 0.09907]), 0.035
+    normals = vertex_normals(truth.vertices, truth.triangles)
+    distance = np.linalg.norm(truth.vertices - centre, axis=1)
+    removed = (distance < radius) & (normals @ normals[distance.argmin()] > 0)
+    mesh = TriangleMesh(truth.vertices, truth.triangles[~removed[truth.triangles].any(axis=1)])
+    loops = [loop for loop in all_loops(mesh) if np.linalg.norm(mesh.vertices[loop] - centre, axis=1).max() < 0.06]
+    assert find_faults(plate(mesh, loops)).is_wrong.any()
+    filled = constrained(mesh, loops)
+    assert not find_faults(filled).is_wrong.any()
+    new = invented(filled)
+    assert distance_to_mesh(new.vertices[filled.n_measured_vertices :], truth).mean() < 0.04 * radius
