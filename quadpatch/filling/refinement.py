@@ -13,11 +13,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from quadpatch.filling.edge_flips import delaunay
 from quadpatch.filling.triangulation import EdgeSet
-from quadpatch.mesh.edge_groups import group_edges
-from quadpatch.mesh.normals import cross, length, triangle_normals, unit, vertex_normals
+from quadpatch.mesh.normals import length, vertex_normals
 from quadpatch.mesh.smoothing import neighbour_average
-from quadpatch.mesh.topology import edge_keys
 from quadpatch.types import BoolArray, FloatArray, IntArray, Triangles, Vertices
 
 # Liepa's density factor: larger gives more vertices. With his sqrt(2) a fill has fewer vertices than were lost (0.60 to
@@ -25,12 +24,6 @@ from quadpatch.types import BoolArray, FloatArray, IntArray, Triangles, Vertices
 DENSITY = 2.0
 
 _MAX_ROUNDS = 24
-_MAX_FLIP_PASSES = 40
-# An edge counts as Delaunay while cot(alpha) + cot(beta) is above minus this.
-_DELAUNAY_SLACK = 1e-9
-# Flips that are asked to keep the surface from folding over leave a margin to `faults.FOLD_ANGLE_DEG`.
-MOST_TURN_DEG = 135.0
-
 
 # Grading: wanted edge lengths grow by this factor from vertex to vertex, up to this share of the hole's diameter. With
 # them, energies rank as on uniform fills (errors in relation to the best differ by 1 % on scans), at a seventh of the
@@ -181,20 +174,8 @@ def flip_to_delaunay(patch: Refined, existing_edges: EdgeSet, rim: Triangles | N
         Triangles of the input next to the holes. With them, no flip makes a turn beyond `MOST_TURN_DEG` or makes one
         sharper.
     """
-    triangles = patch.triangles.copy()
-    active = np.arange(len(triangles))
     shared = _in_several_holes(patch)
-    for _ in range(_MAX_FLIP_PASSES):
-        part = triangles[active]
-        flipped = _flip_once(part, patch.vertices, existing_edges, shared, rim)
-        if not len(flipped):
-            break
-        triangles[active] = part
-        # Edges of one hole never meet triangles of another: a hole without a flip is done.
-        busy = np.zeros(int(patch.hole.max()) + 1, bool)
-        busy[patch.hole[active[flipped]]] = True
-        active = active[busy[patch.hole[active]]]
-    return replace(patch, triangles=triangles)
+    return replace(patch, triangles=delaunay(patch.triangles, patch.vertices, shared, existing_edges, rim))
 
 
 def _in_several_holes(patch: Refined) -> BoolArray:
@@ -204,94 +185,3 @@ def _in_several_holes(patch: Refined) -> BoolArray:
     shared = np.zeros(len(patch.vertices), bool)
     shared[patch.triangles[last[patch.triangles] != patch.hole[:, None]]] = True
     return shared
-
-
-def _flip_once(
-    triangles: Triangles, vertices: Vertices, existing_edges: EdgeSet, shared: BoolArray, rim: Triangles | None
-) -> IntArray:
-    """Flip, in place, edges that are not Delaunay, no two in one triangle; return the triangles that changed."""
-    n_vertices = len(vertices)
-    edges = triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
-    keys = edge_keys(edges, n_vertices)
-    order = np.argsort(keys, kind="stable")
-    ranked = keys[order]
-    twin = np.flatnonzero(ranked[1:] == ranked[:-1])
-    left, right = order[twin], order[twin + 1]
-    a, b = edges[left].T
-    c, d = _opposite(triangles, left), _opposite(triangles, right)
-    excess = _cotangent(vertices[a], vertices[c], vertices[b]) + _cotangent(vertices[a], vertices[d], vertices[b])
-    bad = np.flatnonzero(excess < -_DELAUNAY_SLACK)
-    bad = bad[np.argsort(excess[bad], kind="stable")]
-    a, b, c, d, left, right = (row[bad] for row in (a, b, c, d, left, right))
-    allowed = _is_unfolded(*(vertices[row] for row in (a, b, c, d))) & (c != d)
-    allowed &= ~existing_edges.contains(np.stack([c, d], axis=1)) & ~(shared[c] & shared[d])
-    crossing = edge_keys(np.stack([c, d], axis=1), n_vertices)
-    allowed &= ranked[np.searchsorted(ranked, crossing).clip(max=max(len(ranked) - 1, 0))] != crossing
-    if rim is not None:
-        allowed &= _turns_little(np.concatenate([triangles, rim]), vertices, left, right)
-    allowed[allowed] = _is_first_everywhere(left[allowed] // 3, right[allowed] // 3, len(triangles))
-    first = np.unique(crossing[allowed], return_index=True)[1]
-    chosen = np.flatnonzero(allowed)[first]
-    a, b, c, d, left, right = (row[chosen] for row in (a, b, c, d, left // 3, right // 3))
-    triangles[left] = np.stack([a, d, c], axis=1)
-    triangles[right] = np.stack([d, b, c], axis=1)
-    return np.concatenate([left, right])
-
-
-def _opposite(triangles: Triangles, half_edges: IntArray) -> IntArray:
-    corners: IntArray = triangles[half_edges // 3, (half_edges % 3 + 2) % 3]
-    return corners
-
-
-def _is_unfolded(a: Vertices, b: Vertices, c: Vertices, d: Vertices) -> BoolArray:
-    """Whether the triangles (a, d, c) and (d, b, c), which the flip makes, look the same way."""
-    unfolded: BoolArray = np.einsum("ij,ij->i", cross(d - a, c - a), cross(b - d, c - d)) > 0
-    return unfolded
-
-
-def _turns_little(triangles: Triangles, vertices: Vertices, left: IntArray, right: IntArray) -> BoolArray:
-    """Whether flips (n,) keep the turns at their five edges within `MOST_TURN_DEG`, or below the sharpest before.
-
-    Flips are given by the two directions of their edges, a to b in a triangle (a, b, c) and back in (b, a, d); edge
-    ``3 t + k`` runs from corner k of triangle t.
-    """
-    groups = group_edges(triangles, len(vertices))
-    normals = triangle_normals(vertices, triangles)
-
-    def across(edges: IntArray, step: int) -> FloatArray:
-        """Look up the normals beyond the edge that follows each edge in its triangle after so many steps."""
-        edges = edges // 3 * 3 + (edges + step) % 3
-        start = groups.starts[groups.edge[edges]]
-        one, other = groups.order[start], groups.order[start + groups.count[groups.edge[edges]] - 1]
-        return np.asarray(normals[np.where(one == edges, other, one) // 3])
-
-    of_cb, of_ac, of_da, of_bd = across(left, 1), across(left, 2), across(right, 1), across(right, 2)
-    (a, b), c, d = groups.edges[left].T, _opposite(triangles, left), _opposite(triangles, right)
-    abc, bad = normals[left // 3], normals[right // 3]
-    adc, dbc = (unit(cross(vertices[p] - vertices[d], vertices[q] - vertices[d])) for p, q in ((c, a), (b, c)))
-    before = _least_cosine([(abc, bad), (abc, of_ac), (abc, of_cb), (bad, of_bd), (bad, of_da)])
-    after = _least_cosine([(adc, dbc), (adc, of_ac), (adc, of_da), (dbc, of_cb), (dbc, of_bd)])
-    return np.asarray(after >= np.minimum(before, np.cos(np.radians(MOST_TURN_DEG))))
-
-
-def _least_cosine(pairs: list[tuple[FloatArray, FloatArray]]) -> FloatArray:
-    return np.asarray(np.min([np.einsum("ij,ij->i", one, other) for one, other in pairs], axis=0))
-
-
-def _is_first_everywhere(left: IntArray, right: IntArray, n_triangles: int) -> BoolArray:
-    """Which of some edges, the most urgent first, come first in both of their triangles."""
-    position = np.arange(len(left))
-    rank = np.full(n_triangles, len(left))
-    # Later writes win: in reverse order the most urgent edge of a triangle stays.
-    rank[right[::-1]] = position[::-1]
-    rank_left = np.full(n_triangles, len(left))
-    rank_left[left[::-1]] = position[::-1]
-    rank = np.minimum(rank, rank_left)
-    first: BoolArray = (rank[left] == position) & (rank[right] == position)
-    return first
-
-
-def _cotangent(a: Vertices, apex: Vertices, b: Vertices) -> FloatArray:
-    u, v = a - apex, b - apex
-    cotangent: FloatArray = np.einsum("ij,ij->i", u, v) / np.maximum(length(cross(u, v)), 1e-300)
-    return cotangent

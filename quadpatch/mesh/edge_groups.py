@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from quadpatch.mesh.topology import directed_edges, edge_keys
+from quadpatch.mesh.topology import directed_edges, edge_keys, order_of
 from quadpatch.types import BoolArray, IntArray, Triangles
 
 
@@ -47,7 +47,7 @@ def group_edges(triangles: Triangles, n_vertices: int) -> EdgeGroups:
     """Sort the directed edges of triangles (m, 3) by the edge that they are."""
     edges = directed_edges(triangles)
     keys = edge_keys(edges, max(n_vertices, 1))
-    order = np.argsort(keys, kind="stable")
+    order = order_of(keys, max(n_vertices, 1) ** 2)
     begins = np.ones(len(keys), dtype=bool)
     begins[1:] = keys[order][1:] != keys[order][:-1]
     starts = np.flatnonzero(begins)

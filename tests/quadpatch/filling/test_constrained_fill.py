@@ -6,11 +6,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from quadpatch.filling.constrained_fill import fill_constrained
+from quadpatch.filling.edge_flips import MOST_TURN_DEG
 from quadpatch.filling.fairing import THIN_PLATE
 from quadpatch.filling.faults import find_faults
 from quadpatch.filling.fill import close_holes, fair_holes
 from quadpatch.filling.filled_mesh import FilledMesh
-from quadpatch.filling.refinement import MOST_TURN_DEG, refine
+from quadpatch.filling.refinement import refine
 from quadpatch.filling.rim_neighbourhood import RimNeighbourhood
 from quadpatch.formats.reading import read_scan
 from quadpatch.mesh.distance import distance_to_mesh

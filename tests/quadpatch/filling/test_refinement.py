@@ -113,6 +113,19 @@ def test_a_flat_fill_is_delaunay_when_it_is_done() -> None:
     assert (area_vectors(fine.vertices, fine.triangles)[:, 2] > 0).all()
 
 
+@pytest.mark.parametrize("name", MESHES)
+def test_no_edge_is_left_that_could_be_flipped(name: str) -> None:
+    patch, existing_edges = coarse(MESHES[name])
+    rng = np.random.default_rng(0)
+    fine = refine(patch, existing_edges)
+    shaken = fine.vertices + np.where(fine.is_new[:, None], rng.normal(0, 0.02, fine.vertices.shape), 0.0)
+    flipped = flip_to_delaunay(replace(fine, vertices=shaken), existing_edges)
+    assert (flipped.triangles != fine.triangles).any()
+    # The second time, all edges are looked at again.
+    again = flip_to_delaunay(flipped, existing_edges)
+    np.testing.assert_array_equal(again.triangles, flipped.triangles)
+
+
 def test_a_fill_that_is_fine_enough_gets_no_vertex() -> None:
     patch, existing_edges = coarse(punched(open_grid(9), (0, 0, 0), radius=0.5))
     patch = replace(patch, spacing=2 * patch.spacing)

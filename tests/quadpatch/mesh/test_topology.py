@@ -1,4 +1,5 @@
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -9,6 +10,7 @@ from quadpatch.mesh.topology import (
     edge_keys,
     edges_found,
     face_components,
+    order_of,
     with_marked_edge,
 )
 from tests.quadpatch.shapes import joined, moved, open_grid, sphere
@@ -78,3 +80,10 @@ def test_new_numbers_are_those_of_a_sort(indices: list[int]) -> None:
     used, numbers = compacted(np.array(indices, np.int64), 31)
     expected = np.unique(np.array(indices, np.int64), return_inverse=True)
     assert (used.tolist(), numbers.tolist()) == (expected[0].tolist(), expected[1].tolist())
+
+
+@pytest.mark.parametrize("bound", [7, 2**40, 2**62])
+def test_keys_are_sorted_as_by_a_stable_sort_whatever_their_bound(bound: int) -> None:
+    keys = np.random.default_rng(0).integers(0, 7, 1000) * (bound // 7)
+    np.testing.assert_array_equal(order_of(keys, bound), np.argsort(keys, kind="stable"))
+    assert len(order_of(keys[:0], bound)) == 0
