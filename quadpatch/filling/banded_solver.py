@@ -13,6 +13,7 @@ A. George, J. Liu, "Computer Solution of Large Sparse Positive Definite Systems"
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
+from typing import Any
 
 import numpy as np
 from scipy import sparse
@@ -45,7 +46,7 @@ class EliminationOrder:
     starts: IntArray
 
     @classmethod
-    def of(cls, pattern: "sparse.csr_array[np.float64]") -> "EliminationOrder":
+    def of(cls, pattern: "sparse.csr_array[Any]") -> "EliminationOrder":
         """Choose the order for symmetric matrices (n, n) with no other entries than this one."""
         n = pattern.shape[0]
         if not n:
@@ -63,9 +64,10 @@ class EliminationOrder:
         position[order] = np.arange(n)
         return cls(position, _groups(kind, np.bincount(block, minlength=n_blocks)))
 
-    def upper_part(self, matrix: "sparse.csc_array[np.float64]") -> "UpperPart":
+    def upper_part(self, matrix: "sparse.csr_array[np.float64]") -> "UpperPart":
         """Take the upper half of a symmetric matrix (n, n) whose unknowns are in this order."""
-        column = np.repeat(np.arange(matrix.shape[1]), np.diff(matrix.indptr))
+        # A row of it is a column as well.
+        column = np.repeat(np.arange(matrix.shape[0]), np.diff(matrix.indptr))
         offset = column - matrix.indices
         is_upper = offset >= 0
         column, offset = column[is_upper], offset[is_upper]
@@ -93,11 +95,11 @@ class EliminationOrder:
         if np.isfinite(solution).all():
             return solution
         # Rounding may leave a matrix that is not definite, and a band may be too wide.
-        whole = sparse.csc_array((len(right), len(right)))
+        whole = sparse.csr_array((len(right), len(right)))
         for weight, term in terms:
             whole = whole + weight * term.matrix
         factors = splu(
-            whole,
+            sparse.csc_array(whole),
             permc_spec="MMD_AT_PLUS_A",
             options={"SymmetricMode": True},
             diag_pivot_thresh=0.0,
@@ -120,7 +122,7 @@ class UpperPart:
         Where the entries of the groups begin.
     """
 
-    matrix: "sparse.csc_array[np.float64]"
+    matrix: "sparse.csr_array[np.float64]"
     column: IntArray
     offset: IntArray
     values: FloatArray

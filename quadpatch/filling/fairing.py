@@ -18,9 +18,8 @@ import numpy as np
 from scipy import sparse
 
 from quadpatch.errors import StageError
-from quadpatch.filling.banded_solver import EliminationOrder, UpperPart
-from quadpatch.mesh.normals import cross, length
-from quadpatch.mesh.topology import directed_edges
+from quadpatch.filling.banded_solver import UpperPart
+from quadpatch.filling.laplacian import Connectivity, cotangent_weights
 from quadpatch.types import BoolArray, FloatArray, IntArray, Triangles, Vertices
 
 
@@ -41,9 +40,6 @@ class Energy:
 
 
 THIN_PLATE = Energy(plate=1.0)
-
-# Cotangents beyond this come from slivers and would drown every other weight.
-_MAX_COTANGENT = 50.0
 
 
 def fair(
@@ -72,7 +68,7 @@ def fair(
     StageError
         If all triangles around a free vertex are too small to have an area.
     """
-    return FairingEquations(vertices, triangles, free, uniform=uniform).minimise(energy)
+    return FairingEquations(vertices, Connectivity(triangles, free), uniform=uniform).minimise(energy)
 
 
 class FairingEquations:
@@ -80,98 +76,108 @@ class FairingEquations:
 
     Parameters
     ----------
-    vertices, triangles, free, uniform
+    vertices : (n, 3) float64
+    connectivity : Connectivity
+        Of its triangles: those of the fill and around its rim, as for `fair`.
+    uniform : bool
         As for `fair`.
-    order : EliminationOrder, optional
-        That of an earlier shape of the same triangles.
     unit_area : float, optional
         Area whose square root is the unit of lengths in energies, in mesh units squared; without, the mean area at the
         free vertices.
-
-    Attributes
-    ----------
-    order : EliminationOrder
-        In which vertices are eliminated; fit for all energies on these triangles.
     """
 
     def __init__(
         self,
         vertices: Vertices,
-        triangles: Triangles,
-        free: BoolArray,
+        connectivity: Connectivity,
         *,
         uniform: bool = False,
-        order: EliminationOrder | None = None,
         unit_area: float | None = None,
     ) -> None:
-        self._vertices, self._free = vertices, free
-        self.order = EliminationOrder.of(_links(triangles, free)) if order is None else order
-        self._n_fixed = int((~free).sum())
-        if not free.any():
+        self._vertices, self.connectivity = vertices, connectivity
+        if not connectivity.free.any():
             return
-        # Fixed vertices first, then the free ones as they are eliminated.
-        number = np.empty(len(free), np.int64)
-        number[~free] = np.arange(self._n_fixed)
-        number[free] = self._n_fixed + self.order.position
-        self._numbered = np.empty_like(vertices)
-        self._numbered[number] = vertices
-        self._triangles, self._is_uniform = number[triangles], uniform
-        self._laplacian, area = _laplacian(self._numbered, self._triangles, uniform=uniform)
-        unit = area[self._n_fixed :].mean() if unit_area is None else unit_area
-        self._inverse_area = sparse.diags_array(unit / area)
+        triangles, n_fixed = connectivity.triangles, connectivity.n_fixed
+        if uniform:
+            self._weights, area = np.full((len(triangles), 3), 0.5), np.ones(len(vertices))
+        else:
+            self._weights, area = cotangent_weights(vertices, triangles)
+        area = area[connectivity.place]
+        self._inverse_area = (area[n_fixed:].mean() if unit_area is None else unit_area) / area
+        self._fixed_places = vertices[connectivity.place]
+        self._fixed_places[n_fixed:] = 0.0
         self._powers: dict[float, _Powers] = {}
         self._terms: dict[tuple[float, int], _Term] = {}
 
     def minimise(self, energy: Energy) -> Vertices:
         """Return the vertices (n, 3) of least energy, as `fair` does."""
-        result = self._vertices.copy()
-        if not self._free.any():
+        result, connectivity = self._vertices.copy(), self.connectivity
+        if not connectivity.free.any():
             return result
         weights = (energy.membrane, energy.plate, energy.variation)
-        terms = [(weight, self._term(energy.slope, power)) for power, weight in enumerate(weights) if weight]
-        right = np.zeros((len(self._free) - self._n_fixed, 3))
+        # The widest first: the others are steps on the way to it.
+        used = [power for power in (2, 1, 0) if weights[power]]
+        terms = [(weights[power], self._term(energy.slope, power)) for power in used]
+        right = np.zeros((len(result) - connectivity.n_fixed, 3))
         for weight, term in terms:
             right -= weight * term.fixed_part
         try:
-            solution = self.order.solve([(weight, term.matrix) for weight, term in terms], right)
+            solution = connectivity.order.solve([(weight, term.matrix) for weight, term in terms], right)
         except RuntimeError as error:
             raise StageError("the surface around a hole is so small that its areas vanish in float64") from error
-        result[self._free] = solution[self.order.position]
+        result[connectivity.place[connectivity.n_fixed :]] = solution
         return result
 
     def _term(self, slope: float, power: int) -> "_Term":
         if (slope, power) not in self._terms:
-            columns, n = sparse.csc_array(self._powers_of(slope).rows(power)), self._n_fixed
-            fixed_part = np.asarray(columns[:, :n] @ self._numbered[:n])
-            self._terms[slope, power] = _Term(self.order.upper_part(columns[:, n:]), fixed_part)
+            powers, n_fixed = self._powers_of(slope), self.connectivity.n_fixed
+            fixed_part = self._fixed_places
+            for _ in range(power):
+                fixed_part = powers.step @ fixed_part
+            matrix = self.connectivity.order.upper_part(powers.of_free(power, n_fixed))
+            self._terms[slope, power] = _Term(matrix, powers.known[0] @ fixed_part)
         return self._terms[slope, power]
 
     def _powers_of(self, slope: float) -> "_Powers":
         if slope not in self._powers:
-            laplacian = self._laplacian
+            connectivity, weights = self.connectivity, self._weights
             if slope != 1.0:
                 # At a rim, curvature is how the slopes on both sides differ; the measured one counts for more.
-                measured = self._triangles[(self._triangles < self._n_fixed).all(axis=1)]
-                of_measured = _laplacian(self._numbered, measured, uniform=self._is_uniform)[0]
-                laplacian = sparse.csr_array(laplacian + (slope - 1.0) * of_measured)
+                is_measured = np.asarray(~connectivity.free[connectivity.triangles].any(axis=1))
+                weights = np.where(is_measured[:, None], slope, 1.0) * weights
+            laplacian = connectivity.laplacian(weights)
+            step = laplacian.copy()
+            step.data *= np.repeat(self._inverse_area, np.diff(step.indptr))
             # Rows of free vertices only: those of the outermost ring have lost triangles at the cut.
-            rows = sparse.csr_array(laplacian[self._n_fixed :])
-            self._powers[slope] = _Powers([rows], sparse.csr_array(self._inverse_area @ laplacian))
+            rows, n_fixed = sparse.csr_array(laplacian[connectivity.n_fixed :]), connectivity.n_fixed
+            self._powers[slope] = _Powers([rows], step, sparse.csr_array(step[:, n_fixed:]))
         return self._powers[slope]
 
 
 @dataclass(frozen=True)
 class _Powers:
-    """Rows of the free vertices of ``L``, ``L M^-1 L`` and ``L M^-1 L M^-1 L``, as far as they were asked for."""
+    """Rows of the free vertices of ``L``, ``L M^-1 L`` and ``L M^-1 L M^-1 L``, as far as they were asked for.
+
+    Attributes
+    ----------
+    known : list of (n_free, n) sparse float64
+    step : (n, n) sparse float64
+        ``M^-1 L``
+    to_free : (n, n_free) sparse float64
+        Its columns of free vertices.
+    """
 
     known: list["sparse.csr_array[np.float64]"]
     step: "sparse.csr_array[np.float64]"
+    to_free: "sparse.csr_array[np.float64]"
 
-    def rows(self, power: int) -> "sparse.csr_array[np.float64]":
-        """Multiply as often as needed."""
-        while len(self.known) <= power:
+    def of_free(self, power: int, n_fixed: int) -> "sparse.csr_array[np.float64]":
+        """Give the columns (n_free, n_free) of free vertices; multiply as often as needed."""
+        if len(self.known) > power:
+            return sparse.csr_array(self.known[power][:, n_fixed:])
+        while len(self.known) < power:
             self.known.append(self.known[-1] @ self.step)
-        return self.known[power]
+        return sparse.csr_array(self.known[power - 1] @ self.to_free)
 
 
 @dataclass(frozen=True)
@@ -188,54 +194,6 @@ class _Term:
 
     matrix: UpperPart
     fixed_part: FloatArray
-
-
-def _links(triangles: Triangles, free: BoolArray) -> "sparse.csr_array[np.float64]":
-    """Find which free vertices the widest term links: up to three edges apart, whatever shape the triangles have.
-
-    The term itself would not do: a link may have the weight 0 in one shape, and another one in the next.
-    """
-    n, (start, end) = len(free), directed_edges(triangles).T
-    edges = sparse.csr_array((np.ones(len(start)), (start, end)), shape=(n, n))
-    step = sparse.csr_array(edges + edges.T + sparse.eye_array(n))
-    return sparse.csr_array((step[free] @ step @ step)[:, free])
-
-
-def _laplacian(vertices: Vertices, triangles: Triangles, *, uniform: bool) -> tuple[sparse.csr_array, FloatArray]:
-    """Cotangent (or graph) Laplacian (n, n), rows summing to zero, and vertex areas (n,)."""
-    n = len(vertices)
-    corners = vertices[triangles]
-    double_area = length(cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]))
-    weight = np.full((len(triangles), 3), 0.5) if uniform else 0.5 * _cotangents(corners, double_area)
-    rows, columns, weights = [], [], []
-    for k in range(3):
-        i, j = triangles[:, (k + 1) % 3], triangles[:, (k + 2) % 3]
-        rows += [i, j]
-        columns += [j, i]
-        weights += [weight[:, k], weight[:, k]]
-    adjacency = sparse.csr_array(
-        (np.concatenate(weights), (np.concatenate(rows), np.concatenate(columns))), shape=(n, n)
-    )
-    laplacian = sparse.csr_array(sparse.diags_array(adjacency.sum(axis=1)) - adjacency)
-    if uniform:
-        return laplacian, np.ones(n)
-    area = np.asarray(np.bincount(triangles.ravel(), np.repeat(double_area / 6, 3), minlength=n), np.float64)
-    return laplacian, np.maximum(area, 1e-6 * area[area > 0].mean())
-
-
-def _cotangents(corners: FloatArray, double_area: FloatArray) -> FloatArray:
-    """Cotangents (m, 3) at the corners (m, 3, 3) of triangles; those of a sliver are scaled down together.
-
-    Cut off one by one, the large weights of a sliver would no longer cancel out, and one needle at a rim would crumple
-    the fill.
-    """
-    tiny = 1e-12 * double_area.mean() + 1e-300
-    cotangents = np.zeros((len(corners), 3))
-    for k in range(3):
-        u, v = corners[:, (k + 1) % 3] - corners[:, k], corners[:, (k + 2) % 3] - corners[:, k]
-        cotangents[:, k] = np.einsum("ij,ij->i", u, v) / np.maximum(double_area, tiny)
-    largest = np.abs(cotangents).max(axis=1, keepdims=True, initial=0.0)
-    return np.asarray(cotangents * (_MAX_COTANGENT / np.maximum(largest, _MAX_COTANGENT)))
 
 
 def triangles_around(triangles: Triangles, core: IntArray, n_vertices: int, n_rings: int) -> IntArray:

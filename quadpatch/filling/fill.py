@@ -8,9 +8,9 @@ from functools import cached_property
 
 import numpy as np
 
-from quadpatch.filling.banded_solver import EliminationOrder
 from quadpatch.filling.fairing import THIN_PLATE, Energy, FairingEquations
 from quadpatch.filling.filled_mesh import FilledMesh, rim_diagonals
+from quadpatch.filling.laplacian import Connectivity
 from quadpatch.filling.refinement import Grading, Refined, refine, relax
 from quadpatch.filling.rim_neighbourhood import RimNeighbourhood
 from quadpatch.mesh.averages import mean_by
@@ -91,7 +91,7 @@ def close_holes(mesh: TriangleMesh, loops: list[IntArray], *, graded: bool = Fal
     patch = near.with_flat_corners(patch)
     equations = equations_of(patch, near.adjacent_triangles)
     plate = replace(patch, vertices=equations.minimise(THIN_PLATE))
-    equations = equations_of(plate, near.adjacent_triangles, equations.order)
+    equations = equations_of(plate, near.adjacent_triangles, equations.connectivity)
     # Both on the same shape: else their distance is that from a shape which has not settled.
     both = (equations.minimise(energy) for energy in (THIN_PLATE, ALTERNATIVE_ENERGY))
     disagreement = _mean_by_hole(plate, length(np.subtract(*both)), len(loops))
@@ -135,7 +135,8 @@ def _fair_patch(closed: ClosedMesh, energy: Energy) -> Refined:
     """Fair twice, since the weights depend on the shape."""
     plate, adjacent_triangles, n_holes = closed.plate, closed.near.adjacent_triangles, closed.n_holes
     first = replace(plate, vertices=closed.equations.minimise(energy))
-    faired = replace(plate, vertices=equations_of(first, adjacent_triangles, closed.equations.order).minimise(energy))
+    second = equations_of(first, adjacent_triangles, closed.equations.connectivity)
+    faired = replace(plate, vertices=second.minimise(energy))
     hole = _hole_of_new(plate)
     new = hole >= 0
     furthest = np.zeros(n_holes)
@@ -169,7 +170,7 @@ def _mean_by_hole(patch: Refined, values: FloatArray, n_holes: int) -> FloatArra
 
 
 def equations_of(
-    patch: Refined, adjacent_triangles: Triangles, order: EliminationOrder | None = None, *, uniform: bool = False
+    patch: Refined, adjacent_triangles: Triangles, connectivity: Connectivity | None = None, *, uniform: bool = False
 ) -> FairingEquations:
     """Set up the equations of the new vertices of a patch, see `quadpatch.filling.fairing.FairingEquations`.
 
@@ -178,14 +179,15 @@ def equations_of(
     patch : Refined
     adjacent_triangles : (k, 3) int64
         Triangles of the input next to the holes.
-    order : EliminationOrder, optional
+    connectivity : Connectivity, optional
         That of an earlier shape of this patch.
     uniform : bool
         See `quadpatch.filling.fairing.fair`.
     """
-    triangles = np.concatenate([adjacent_triangles, patch.triangles])
+    if connectivity is None:
+        connectivity = Connectivity(np.concatenate([adjacent_triangles, patch.triangles]), patch.is_new)
     unit_area = None if uniform else _uniform_area(patch)
-    return FairingEquations(patch.vertices, triangles, patch.is_new, uniform=uniform, order=order, unit_area=unit_area)
+    return FairingEquations(patch.vertices, connectivity, uniform=uniform, unit_area=unit_area)
 
 
 def _uniform_area(patch: Refined) -> float | None:

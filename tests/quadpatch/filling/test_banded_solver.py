@@ -30,10 +30,10 @@ def solved(
     return np.asarray(solution[order.position])
 
 
-def numbered(matrix: "sparse.csr_array[np.float64]", order: EliminationOrder) -> "sparse.csc_array[np.float64]":
+def numbered(matrix: "sparse.csr_array[np.float64]", order: EliminationOrder) -> "sparse.csr_array[np.float64]":
     """The matrix with its unknowns in some order."""
     by_position = np.argsort(order.position)
-    return sparse.csc_array(matrix[by_position][:, by_position])
+    return sparse.csr_array(matrix[by_position][:, by_position])
 
 
 def right_sides(n: int) -> FloatArray:
