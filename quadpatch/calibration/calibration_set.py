@@ -158,16 +158,27 @@ def choose_blend_factor(calibration: CalibrationSet, filled: FilledMesh, displac
     It is 0 where that gains less than two percent, or less than 1.64 standard errors: a few dozen holes can't tell
     more. Where hardly any hole loses, the rare ones that gain much are enough.
     """
-    new = filled.mesh.vertices[filled.n_measured_vertices :]
-    errors = np.array(
-        [error_per_hole(calibration, filled.with_vertices(new + share * displacement)) for share in SHARES]
-    )
+    errors = _error_by_share(calibration, filled, displacement)
     best = int(errors.mean(axis=1).argmin())
     gains = errors[0] - errors[best]
     is_sure = float(gains.mean()) > _LEAST_GAIN_IN_ERRORS * float(gains.std()) / np.sqrt(len(gains))
     is_harmless = float(-gains[gains < 0].sum()) < _MOST_LOST * float(gains[gains > 0].sum())
     is_worth_it = float(gains.mean()) > _LEAST_GAIN * float(errors[0].mean())
     return SHARES[best] if is_worth_it and (is_sure or is_harmless) else 0.0
+
+
+def may_gain(calibration: CalibrationSet, filled: FilledMesh, displacement: FloatArray) -> bool:
+    """Whether any share of displacements (k, 3) gains more than 1.64 standard errors, be it as little as it may."""
+    errors = _error_by_share(calibration, filled, displacement)
+    gains = errors[0] - errors[1:]
+    least = _LEAST_GAIN_IN_ERRORS * gains.std(axis=1) / np.sqrt(gains.shape[1])
+    return bool((gains.mean(axis=1) > least).any())
+
+
+def _error_by_share(calibration: CalibrationSet, filled: FilledMesh, displacement: FloatArray) -> FloatArray:
+    """Errors (n_shares, n_holes) with each of the shares of displacements (k, 3)."""
+    new = filled.mesh.vertices[filled.n_measured_vertices :]
+    return np.array([error_per_hole(calibration, filled.with_vertices(new + share * displacement)) for share in SHARES])
 
 
 def error_per_hole(calibration: CalibrationSet, filled: FilledMesh) -> FloatArray:

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from quadpatch.calibration.calibration_set import CalibrationSet, choose_blend_factor
+from quadpatch.calibration.calibration_set import CalibrationSet, choose_blend_factor, may_gain
 from quadpatch.calibration.energy_selection import EnergyBlend
 from quadpatch.filling.creases import crease_displacement, crease_share
 from quadpatch.filling.filled_mesh import FilledMesh
@@ -32,6 +32,9 @@ def calibrate_creases(holes: CalibrationSet, blend: EnergyBlend, filled: FilledM
     if crease_share(holes.truth) < _LEAST_CREASE_SHARE:
         return CreaseCalibration()
     uniform = fill_uniformly(holes, blend, filled)
+    # Where faces meet in creases, the first round gains already.
+    if not may_gain(holes, uniform, crease_displacement(uniform, rounds=1)):
+        return CreaseCalibration()
     displacement = crease_displacement(uniform)
     share = choose_blend_factor(holes, uniform, displacement)
     return CreaseCalibration(share, uniform.displaced(share * displacement)) if share else CreaseCalibration()

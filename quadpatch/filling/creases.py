@@ -32,7 +32,7 @@ _CROWDED = 40
 # Rings of measured triangles whose normals are looked at.
 _RINGS = 3
 # Rounds of filtering and moving, and the steps of each; weights of normals are renewed every few steps.
-_ROUNDS = 10
+ROUNDS = 10
 _NORMAL_STEPS = 30
 _STEPS_PER_WEIGHT = 10
 _VERTEX_STEPS = 30
@@ -54,13 +54,15 @@ def crease_share(mesh: TriangleMesh) -> float:
     return float((cosines < np.cos(np.radians(CREASE_ANGLE_DEG))).mean())
 
 
-def crease_displacement(filled: FilledMesh) -> FloatArray:
+def crease_displacement(filled: FilledMesh, rounds: int = ROUNDS) -> FloatArray:
     """Work out how far to move the new vertices so that the faces of the object around the holes meet in creases.
 
     Parameters
     ----------
     filled : FilledMesh
         With faired fills.
+    rounds : int
+        Of filtering and moving; the first few go a good part of the way.
 
     Returns
     -------
@@ -73,7 +75,7 @@ def crease_displacement(filled: FilledMesh) -> FloatArray:
     surroundings = _Surroundings.of(filled)
     vertices = surroundings.vertices.copy()
     normals = triangle_normals(vertices, surroundings.triangles)
-    for _ in range(_ROUNDS):
+    for _ in range(rounds):
         surroundings.filter_normals(vertices, normals)
         surroundings.fit_vertices(vertices, normals)
     moved = np.zeros((len(new), 3))

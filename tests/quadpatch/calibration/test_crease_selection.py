@@ -1,9 +1,10 @@
 import numpy as np
 import pytest
 
-from quadpatch.calibration.calibration_set import CalibrationSet, cut_calibration_set, error_per_hole
+from quadpatch.calibration.calibration_set import CalibrationSet, cut_calibration_set, error_per_hole, may_gain
 from quadpatch.calibration.crease_selection import calibrate_creases
 from quadpatch.calibration.energy_selection import EnergyBlend
+from quadpatch.filling.creases import crease_displacement, crease_share
 from quadpatch.filling.fairing import THIN_PLATE
 from quadpatch.filling.fill import fair_holes
 from quadpatch.filling.filled_mesh import FilledMesh
@@ -46,6 +47,14 @@ def test_creases_are_not_believed_on_other_surfaces(depth: float) -> None:
     holes, filled = calibration(relief(101, 2.0, depth, 8), 0.2)
     creases = calibrate_creases(holes, BLEND, filled)
     assert (creases.share, creases.filled) == (0.0, None)
+
+
+@pytest.mark.parametrize(("mesh", "expected"), [(PAPER, True), (relief(101, 2.0, 0.1, 8), False)])
+def test_the_first_round_tells_whether_creases_may_gain(mesh: TriangleMesh, expected: bool) -> None:
+    holes, filled = calibration(mesh, 0.2)
+    assert crease_share(holes.truth) > 0.01
+    assert may_gain(holes, filled, crease_displacement(filled, rounds=1)) == expected
+    assert not may_gain(holes, filled, np.zeros_like(filled.mesh.vertices[filled.n_measured_vertices :]))
 
 
 def test_a_repair_of_a_surface_with_creases_names_them_and_has_a_smaller_error() -> None:
