@@ -9,10 +9,10 @@ of a hole are blended by weights that fall with the expected error, a product of
 from collections.abc import Sequence
 from concurrent.futures import Future
 from dataclasses import dataclass, replace
+from math import erfc, sqrt
 
 import numpy as np
 from scipy.spatial import cKDTree
-from scipy.special import ndtr
 
 from quadpatch.calibration.calibration_set import ROUNDING, CalibrationSet, choose_energy, error_per_hole
 from quadpatch.calibration.synthetic_holes import new_loops
@@ -178,7 +178,8 @@ def learn_energy_blend(
     blended = _blended(fills, blend.weights(misses))
     gains = errors[best] - error_per_hole(calibration, blended)
     rounding = ROUNDING * calibration.diameter
-    belief = float(ndtr(gains.mean() / (gains.std() / np.sqrt(len(gains)) + rounding)))
+    in_errors = float(gains.mean() / (gains.std() / np.sqrt(len(gains)) + rounding))
+    belief = erfc(-in_errors / sqrt(2)) / 2
     blend = replace(blend, best=best, belief=belief)
     if belief < _LEAST_BELIEF or errors[best].mean() <= rounding:
         return _without_weighing(blend, fills)

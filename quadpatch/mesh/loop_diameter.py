@@ -5,7 +5,6 @@ Tested in `tests/quadpatch/mesh/test_hole_measures.py`.
 
 import numpy as np
 from scipy.spatial import ConvexHull, QhullError
-from scipy.spatial.distance import cdist
 
 from quadpatch.types import FloatArray, Vertices
 
@@ -37,7 +36,7 @@ def loop_diameter(points: Vertices) -> float:
         return _diameter_by_directions(points)
     # In pieces: a loop on a ball has every vertex on its hull, and all pairs of a long one would fill the memory.
     pieces = range(0, len(points), _SMALL_LOOP)
-    return max(float(cdist(points[i : i + _SMALL_LOOP], points).max()) for i in pieces)
+    return max(float(_distances(points[i : i + _SMALL_LOOP], points).max()) for i in pieces)
 
 
 def hull_corners(points: Vertices) -> Vertices:
@@ -61,8 +60,14 @@ def _diameter_by_directions(points: Vertices) -> float:
         along = directions @ points.T
         ends += [along.argmin(axis=1), along.argmax(axis=1)]
     extremes = points[np.unique(np.concatenate(ends))]
-    furthest = extremes[np.argsort(-cdist(extremes, extremes).max(axis=1), kind="stable")[:_N_SWEEPS]]
-    return float(cdist(furthest, points).max())
+    furthest = extremes[np.argsort(-_distances(extremes, extremes).max(axis=1), kind="stable")[:_N_SWEEPS]]
+    return float(_distances(furthest, points).max())
+
+
+def _distances(points: Vertices, others: Vertices) -> FloatArray:
+    """Measure the distances (n, m) of points (n, 3) from others (m, 3)."""
+    x, y, z = points.T[:, :, None] - others.T[:, None, :]
+    return np.asarray(np.sqrt(x * x + y * y + z * z))
 
 
 def _directions() -> FloatArray:

@@ -28,7 +28,13 @@ NOT_FOR_GEOMETRY = {
     *PICTURES,
     *("constriction", "embreex", "manifold3d", "networkx", "onnxruntime", "pandas", "pymeshlab", "safetensors"),
     *("torch", "trimesh", "xml.parsers.expat", "rich.progress", "scipy.optimize"),
-    *("numpy.f2py.crackfortran", "numpy.testing._private", "quadpatch.preview", "quadpatch.formats.gltf"),
+    *(
+        "numpy.f2py.crackfortran",
+        "numpy.testing._private",
+        "scipy.special",
+        "quadpatch.preview",
+        "quadpatch.formats.gltf",
+    ),
 }
 
 
@@ -68,7 +74,11 @@ def test_what_was_put_off_is_there_when_it_is_asked_for() -> None:
         "import sys; from quadpatch.cli.scipy_start import prepare_libraries as prepare; prepare(); prepare()\n"
         "import scipy.spatial, numpy; assert 'numpy.testing._private' not in sys.modules\n"
         "from numpy.testing import assert_allclose; assert_allclose(1.0, 1.0); assert numpy.f2py.get_include()\n"
-        "prepare(); assert 'numpy.testing._private' in sys.modules"
+        "prepare(); assert 'numpy.testing._private' in sys.modules\n"
+        "assert 'scipy.special' not in sys.modules\n"
+        "from numpy import eye; from scipy.spatial import geometric_slerp as slerp, transform\n"
+        "assert scipy.spatial.distance.pdist(eye(2))[0] ** 2 > 1.9; assert slerp(*eye(2), [0.5])[0, 0] > 0.7\n"
+        "assert transform.Rotation.identity().magnitude() == 0; assert 'scipy.special' in sys.modules"
     )
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, timeout=GUARD_S, check=False)
     assert done.returncode == 0, done.stderr
