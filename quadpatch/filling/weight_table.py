@@ -57,13 +57,14 @@ def best_triangulations(
             turn = np.minimum(turn, _dot(normal, rim[:, :, -1:, None]))
         bend = np.maximum(1.0 - turn, np.maximum(left[0], right[0]))
         area = double_area / 2 + left[1] + right[1]
-        bend[forbidden_chords[:, start, start + gap]] = np.inf
+        bend[forbidden_chords.diagonal(gap, axis1=1, axis2=2)] = np.inf
         if is_forbidden is not None:
             bend[is_forbidden(start[:, None], start[:, None] + np.arange(1, gap), start[:, None] + gap)] = np.inf
-        best = np.argmin(np.round(bend / _ANGLE_STEP) + 1e-3 * area / size, axis=-1)[..., None]
-        apex[:, : n - gap, gap] = start + 1 + best[..., 0]
+        best = np.argmin(np.round(bend / _ANGLE_STEP) + 1e-3 * area / size, axis=-1)
+        apex[:, : n - gap, gap] = start + 1 + best
+        at = np.arange(best.size).reshape(best.shape) * (gap - 1) + best
         for row, values in enumerate((bend, area, *normal)):
-            chosen = np.take_along_axis(values, best, axis=-1)[..., 0]
+            chosen = values.ravel()[at]
             from_start[row, :, : n - gap, gap] = from_end[row, :, gap:, gap] = chosen
     return _read_off(apex), np.isfinite(from_start[0, :, 0, n - 1])
 
