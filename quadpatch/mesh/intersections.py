@@ -1,5 +1,8 @@
 """Triangles that run through each other; the adapter of libigl's exact predicates (CGAL's)."""
 
+from collections.abc import Iterator
+from itertools import chain
+
 import numpy as np
 from igl.copyleft.cgal import remesh_self_intersections
 from scipy.spatial import cKDTree
@@ -17,6 +20,8 @@ _SHRINKAGE = 1e-5
 _ON_SURFACE = 1e-6
 _LEAST_HEIGHT_ON_SURFACE = 1e-3
 _PAIRS_AT_A_TIME = 1_000_000
+# Triangles that are looked at to estimate how many pairs there are.
+_SAMPLE = 256
 _BOXES_AT_A_TIME = 4096
 # Triangles larger than so many mean radii count as large.
 _LARGE = 4.0
@@ -57,33 +62,37 @@ def _overlapping_pairs(corners: FloatArray, n_first: int) -> IntArray:
     """
     centres = corners.mean(axis=1)
     radii = length(corners - centres[:, None]).max(axis=1)
+    normals = cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    # Edges are up to twice as long as the radius.
+    reach = 2 * (2 * _ON_SURFACE) * radii * length(normals)
     first, others = np.arange(n_first), np.arange(n_first, len(corners))
-    found = _near_centres(corners, centres, radii, first, len(corners))
-    found += _near_centres(corners, centres, radii, others, n_first)
-    return np.concatenate([np.zeros((0, 2), np.int64), *found])
+    found = [np.zeros((0, 2), np.int64)]
+    for pairs in chain(
+        _near_centres(centres, radii, first, len(corners)), _near_centres(centres, radii, others, n_first)
+    ):
+        # Most neighbours are off the plane.
+        height = np.einsum("ij,ij->i", centres[pairs[:, 1]] - centres[pairs[:, 0]], normals[pairs[:, 0]])
+        flat = pairs[np.abs(height) <= reach[pairs[:, 0]]]
+        found.append(flat[_lies_on(centres[flat[:, 1]], corners[flat[:, 0]])])
+    return np.concatenate(found)
 
 
-def _near_centres(
-    corners: FloatArray, centres: FloatArray, radii: FloatArray, lower: IntArray, n_upper: int
-) -> list[IntArray]:
-    """Find the centroids of the first so many triangles that lie on some others (k,), in pieces of pairs (n, 2)."""
-    if not len(lower) or not n_upper:
-        return []
-    tree, found = cKDTree(centres[:n_upper]), []
-    n_near = tree.query_ball_point(centres[lower], radii[lower], return_length=True)
-    # Most have no centroid near them but their own.
-    has_others = n_near > (lower < n_upper)
-    lower, n_near = lower[has_others], np.cumsum(n_near[has_others])
-    if not len(lower):
-        return []
-    # Few triangles may hold the centroids of all others: as many at a time as memory has room for.
-    for part in np.split(lower, np.flatnonzero(np.diff(n_near // _PAIRS_AT_A_TIME)) + 1):
-        near = tree.query_ball_point(centres[part], radii[part])
-        below = np.repeat(part, [len(row) for row in near])
-        above = np.concatenate(near).astype(np.int64)
-        on_it = (below != above) & _lies_on(centres[above], corners[below])
-        found.append(np.stack([below[on_it], above[on_it]], axis=1))
-    return found
+def _near_centres(centres: Vertices, radii: FloatArray, lower: IntArray, n_upper: int) -> Iterator[IntArray]:
+    """Find the centres of the first so many triangles within the radii of some (k,): pairs (n, 2), in pieces.
+
+    Triangles up to twice as large are looked up together, in two trees: many times faster than one by one.
+    """
+    upper, size = cKDTree(centres[:n_upper]), np.frexp(radii[lower])[1]
+    for part in (lower[size == s] for s in np.unique(size)):
+        sample = part[:: len(part) // _SAMPLE + 1]
+        n_near = upper.query_ball_point(centres[sample], radii[part].max(), return_length=True).mean()
+        # Few triangles may hold the centres of all others: as many at a time as memory has room for.
+        n_pieces = min(int(len(part) * n_near) // _PAIRS_AT_A_TIME + 1, len(part))
+        for piece in (part[start::n_pieces] for start in range(n_pieces)):
+            own = cKDTree(centres[piece])
+            near = own.sparse_distance_matrix(upper, radii[piece].max(), output_type="ndarray")
+            pairs = np.stack([piece[near["i"]], near["j"]], axis=1)
+            yield pairs[(near["v"] <= radii[pairs[:, 0]]) & (pairs[:, 0] != pairs[:, 1])]
 
 
 def _lies_on(points: Vertices, corners: FloatArray) -> BoolArray:
