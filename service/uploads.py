@@ -14,7 +14,7 @@ from starlette.concurrency import run_in_threadpool
 
 from jobkit.errors import TooLargeError
 from jobkit.storage.base import ObjectStore, ObjectWriter, StoredObject
-from service.digests import CheckedBody, StatedDigests, refuse_coding
+from service.digests import CheckedBody, StatedDigests, decoder_of, refuse_coding
 from service.multipart import PartData, PartStart, malformed_multipart, read_parts
 from service.problems import ProblemError, invalid_request
 
@@ -67,11 +67,12 @@ async def receive_upload(request: Request, store: ObjectStore, rules: UploadRule
     TooLargeError
         If the file is larger than the limit; at once where the client has stated its size.
     ProblemError
-        415 for a body of another type, or a body or part with a coding, 400 for an empty file, a broken
-        multipart body or a digest that does not fit, 422 for missing or unknown parts.
+        415 for a body of another type or coding, or a part with a coding, 400 for an empty file, a broken
+        multipart body, bytes that are not in their coding or a digest that does not fit, 422 for missing or unknown
+        parts.
     """
-    refuse_coding(request.headers)
-    body = CheckedBody(request)
+    decoder = decoder_of(request.headers)
+    body = CheckedBody(request, decoder)
     kind, _ = parse_options_header(request.headers.get("content-type", ""))
     is_multipart = kind == b"multipart/form-data"
     stated = request.headers.get("content-length", "")
@@ -91,6 +92,15 @@ async def receive_upload(request: Request, store: ObjectStore, rules: UploadRule
     return await _receive_raw(request, body, store, rules)
 
 
+def upload_of(request: Request, stored: StoredObject) -> Upload:
+    """Return stored bytes with what a request, whose body they are, says of them."""
+    _, options = parse_options_header(request.headers.get("content-disposition", ""))
+    filename = options.get(b"filename")
+    media_type, _ = parse_options_header(request.headers.get("content-type", ""))
+    name = None if filename is None else unquote(filename.decode("utf-8", "replace"))
+    return Upload(stored, name, media_type.decode("latin-1"))
+
+
 async def _receive_raw(request: Request, body: CheckedBody, store: ObjectStore, rules: UploadRules) -> Upload:
     is_empty = True
     with store.writer(rules.prefix, rules.max_bytes) as writer:
@@ -101,11 +111,7 @@ async def _receive_raw(request: Request, body: CheckedBody, store: ObjectStore, 
             raise _empty_file()
         body.check()
         stored = await run_in_threadpool(writer.commit)
-    _, options = parse_options_header(request.headers.get("content-disposition", ""))
-    filename = options.get(b"filename")
-    media_type, _ = parse_options_header(request.headers.get("content-type", ""))
-    name = None if filename is None else unquote(filename.decode("utf-8", "replace"))
-    return Upload(stored, name, media_type.decode("latin-1"))
+    return upload_of(request, stored)
 
 
 async def _receive_multipart(request: Request, body: CheckedBody, store: ObjectStore, rules: UploadRules) -> Upload:

@@ -3,16 +3,21 @@
 from http import HTTPStatus
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Header, Query, Request
+from fastapi import APIRouter, Depends, Header, Query, Request
 from starlette.concurrency import run_in_threadpool
 from starlette.responses import Response
 
 from jobkit.database.idempotency import note_request, refuse_conflict
 from jobkit.database.searching import CURSOR_PATTERN
 from jobkit.database.tenancy import mesh_id_of
+from jobkit.errors import MeshNotFoundError, ObjectNotFoundError
+from jobkit.meshes import MESH_DAMAGED, MESH_MISSING
 from jobkit.schema import Format, Mesh, MeshPage, MeshState
+from jobkit.storage.base import StoredObject
 from jobkit.storage.removals import assure
+from service.body_limit import has_body
 from service.content import Content, content_response
+from service.digests import announced_sha256
 from service.finding import Limit, MeshSearchDep
 from service.formats import clean_filename, stated_format
 from service.idempotency import note_replayed
@@ -32,7 +37,7 @@ from service.routes.common import (
 from service.services import Services, ServicesDep
 from service.strict_validation import StrictRoute
 from service.submission import request_analysis
-from service.uploads import Upload, UploadRules, receive_upload
+from service.uploads import Upload, UploadRules, receive_upload, upload_of
 from service.waiting import PreferHeader, note_applied, preferred_wait_s
 
 router = APIRouter(tags=["meshes"], route_class=StrictRoute)
@@ -41,7 +46,8 @@ MESH_PREFIX = "meshes"
 _UPLOAD_BODY: dict[str, Any] = {
     "requestBody": {
         "required": True,
-        "description": "The file itself, or a form with the file in its part `file`.",
+        "description": "The file itself, or a form with the file in its part `file`. It may come in gzip or zstd "
+        "(`Content-Encoding`).",
         "content": {
             "application/octet-stream": {"schema": FILE},
             "multipart/form-data": {
@@ -76,6 +82,21 @@ WaitQuery = Annotated[
 ]
 
 
+def _file_headers(
+    disposition: Annotated[
+        str | None, Header(alias="Content-Disposition", description="May name the file: `attachment; filename=…`.")
+    ] = None,
+    digest: Annotated[
+        str | None,
+        Header(
+            alias="Repr-Digest",
+            description="sha-256 of the file (RFC 9530): bytes that are there already need not be sent.",
+        ),
+    ] = None,
+) -> None:
+    """Document the headers that `service.uploads` and `service.digests` read."""
+
+
 @router.post(
     "/v1/meshes",
     status_code=201,
@@ -83,9 +104,10 @@ WaitQuery = Annotated[
     responses={
         201: {"description": "The mesh is new; a worker will analyse it.", **_UPLOADED},
         200: {"model": Mesh, "description": "The same bytes were uploaded before.", **_UPLOADED},
-        **problems(400, 409, 413, 415),
+        **problems(400, 404, 409, 413, 415),
     },
     openapi_extra=_UPLOAD_BODY,
+    dependencies=[Depends(_file_headers)],
 )
 async def upload_mesh(
     request: Request,
@@ -93,13 +115,21 @@ async def upload_mesh(
     caller: CallerDep,
     filename: FilenameQuery = None,
     format: FormatQuery = None,  # noqa: A002 - the name of the query parameter
-    disposition: Annotated[
-        str | None, Header(alias="Content-Disposition", description="May name the file: `attachment; filename=…`.")
-    ] = None,
 ) -> Response:
-    """Upload a mesh. The same bytes are the same mesh, however often they come."""
-    rules = UploadRules("file", frozenset(), MESH_PREFIX, services.settings.max_upload_mb << 20)
-    upload = await receive_upload(request, services.store, rules)
+    """Upload a mesh. The same bytes are the same mesh, however often they come.
+
+    With the sha-256 of the file in `Repr-Digest`, of bytes that are there already, the body is not read, and may be
+    empty. Where they are not there, a request without a body is answered with 404, `mesh_not_found`.
+    """
+    sha256 = announced_sha256(request.headers)
+    known = None if sha256 is None else await run_in_threadpool(_known_bytes, services, sha256)
+    if known is not None:
+        upload = upload_of(request, known)
+    elif sha256 is not None and not has_body(request.scope):
+        raise MeshNotFoundError(f"there is no mesh {sha256} with its bytes; send them")
+    else:
+        rules = UploadRules("file", frozenset(), MESH_PREFIX, services.settings.max_upload_mb << 20)
+        upload = await receive_upload(request, services.store, rules)
     request_parts = ("upload_mesh", upload.stored.sha256, filename or upload.filename or "", format or "")
     idempotency = caller.idempotency(*request_parts)
     await run_in_threadpool(refuse_conflict, services.database, idempotency)
@@ -154,6 +184,17 @@ def get_mesh_content(
     source = services.meshes.source(mesh_id)
     name = mesh.filename or f"mesh-{mesh_id[:12]}"
     return content_response(request, services, Content(source.key, source.sha256, mesh.size_bytes, name))
+
+
+def _known_bytes(services: Services, sha256: str) -> StoredObject | None:
+    """Return the bytes of a mesh where they are there and sound, as far as that is known without reading them."""
+    try:
+        mesh, key = services.meshes.get(sha256), services.meshes.source(sha256).key
+        size = services.store.size(key)
+    except (MeshNotFoundError, ObjectNotFoundError):
+        return None
+    is_lost = mesh.problem is not None and mesh.problem.code in (MESH_MISSING, MESH_DAMAGED)
+    return None if is_lost or size != mesh.size_bytes else StoredObject(key, size, sha256)
 
 
 def register_mesh(services: Services, upload: Upload, filename: str | None, given: Format | None) -> tuple[Mesh, bool]:

@@ -222,14 +222,15 @@ def test_a_digest_that_cannot_be_read_is_refused(client: TestClient, value: str)
     assert (answer.status_code, answer.json()["code"]) == (400, "malformed_digest")
 
 
-@pytest.mark.parametrize("coding", ["gzip", "GZIP", "br", "deflate", "gzip, gzip", "zstd", "identity, gzip"])
+@pytest.mark.parametrize("coding", ["br", "deflate", "gzip, gzip", "x-gzip", "identity, gzip"])
 @pytest.mark.parametrize("path", ["/v1/meshes", "/v1/models/ripples/versions"])
 def test_a_coded_body_is_refused_and_never_stored(
     client: TestClient, store: ObjectStore, coding: str, path: str
 ) -> None:
     answer = client.post(path, content=gzip.compress(DATA), headers={"Content-Encoding": coding})
     assert answer.status_code == 415, answer.text
-    assert (answer.json()["code"], answer.headers["accept-encoding"]) == ("unsupported_encoding", "identity")
+    assert answer.json()["code"] == "unsupported_encoding"
+    assert answer.headers["accept-encoding"] == "gzip, zstd, identity"
     assert list(store.keys("meshes")) == []
 
 

@@ -1,5 +1,6 @@
 """Also tests `service.uploads`."""
 
+import gzip
 import hashlib
 from collections.abc import Callable, Iterator
 from typing import Any
@@ -7,9 +8,12 @@ from typing import Any
 import pytest
 from starlette.testclient import TestClient
 
+from jobkit.database.session import Database
+from jobkit.database.tables import MeshRow
 from jobkit.schema import MeshProblem
 from jobkit.settings import Settings
 from jobkit.storage.base import ObjectStore
+from jobkit.storage.digests import digest_field
 from service.app import create_app
 from service.services import Services
 
@@ -159,3 +163,47 @@ def test_while_the_database_is_away_clients_are_told_to_come_again(
     for answer in (client.get(f"/v1/meshes/{mesh_id}"), client.post("/v1/jobs", json={"mesh_id": mesh_id})):
         assert (answer.status_code, answer.json()["code"]) == (503, "database_unavailable")
         assert answer.headers["retry-after"] == "2"
+
+
+def test_bytes_that_are_there_need_not_be_sent(client: TestClient, mesh_id: str) -> None:
+    headers = {"Repr-Digest": digest_field(mesh_id)}
+    answer = client.post("/v1/meshes?filename=other.ply", headers=headers)
+    assert (answer.status_code, answer.json()["id"], answer.json()["filename"]) == (200, mesh_id, "other.ply")
+    assert answer.headers["location"] == f"/v1/meshes/{mesh_id}"
+    # A client that waits for 100 (Continue) gets the answer before it sends: the body is not read.
+    unread = client.post("/v1/meshes", content=b"anything", headers=headers)
+    assert (unread.status_code, unread.json()["id"]) == (200, mesh_id)
+
+
+def test_bytes_that_are_not_there_are_asked_for(client: TestClient) -> None:
+    headers = {"Repr-Digest": digest_field(hashlib.sha256(b"new").hexdigest())}
+    answer = client.post("/v1/meshes", headers=headers)
+    assert (answer.status_code, answer.json()["code"]) == (404, "mesh_not_found")
+    assert client.post("/v1/meshes", content=b"new", headers=headers).status_code == 201
+
+
+def test_bytes_that_the_store_has_lost_are_asked_for(client: TestClient, services: Services, mesh_id: str) -> None:
+    services.store.delete(services.meshes.source(mesh_id).key)
+    headers = {"Repr-Digest": digest_field(mesh_id)}
+    assert client.post("/v1/meshes", headers=headers).status_code == 404
+
+
+def test_bytes_that_are_known_to_be_damaged_are_asked_for(
+    client: TestClient, services: Services, database: Database, mesh_id: str
+) -> None:
+    with database.write() as session:
+        row = session.get_one(MeshRow, mesh_id)
+        row.state, row.problem = "rejected", {"code": "mesh_damaged", "message": "damaged"}
+    headers = {"Repr-Digest": digest_field(mesh_id)}
+    assert client.post("/v1/meshes", headers=headers).status_code == 404
+    data = b"".join(services.store.read(services.meshes.source(mesh_id).key))
+    again = client.post("/v1/meshes", content=data, headers=headers)
+    assert (again.status_code, again.json()["state"]) == (200, "analysing")
+
+
+def test_a_digest_under_a_coding_names_no_file(client: TestClient, mesh_id: str) -> None:
+    sha256 = digest_field(mesh_id)
+    coded = {"Content-Encoding": "gzip", "Repr-Digest": sha256}
+    assert client.post("/v1/meshes", content=gzip.compress(b"x"), headers=coded).json()["code"] == "digest_mismatch"
+    known = client.post("/v1/meshes", headers={"Content-Encoding": "gzip", "Unencoded-Digest": sha256})
+    assert (known.status_code, known.json()["id"]) == (200, mesh_id)
