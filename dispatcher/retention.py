@@ -1,7 +1,8 @@
 """Periodic tasks that remove what is past its retention, and compare database and store."""
 
+import logging
 from collections.abc import Callable
-from datetime import timedelta
+from datetime import datetime, timedelta
 
 from dispatcher.missing_objects import MissingCounts, MissingObjects
 from dispatcher.unreferenced_objects import SweepResult, sweep_objects
@@ -9,20 +10,38 @@ from jobkit.access.audit import AuditLog
 from jobkit.database.clock import shared_now
 from jobkit.database.idempotency import forget_keys
 from jobkit.database.session import Database
+from jobkit.errors import StoreUnavailableError
 from jobkit.retention import expire_jobs, expire_meshes
 from jobkit.settings import Settings
 from jobkit.storage.base import ObjectStore
+from jobkit.uploads.uploads import EXPIRED_AT_ONCE, expire_uploads
+
+_log = logging.getLogger("quadpatch.retention")
 
 
 def remove_expired(settings: Settings, database: Database, store: ObjectStore, is_over: Callable[[], bool]) -> str:
-    """Remove jobs and meshes past their retention; return how many were removed, in words."""
+    """Remove jobs, meshes and resumable uploads past their retention; return how many were removed, in words."""
     with database.read() as session:
         now = shared_now(session)
     jobs = expire_jobs(database, store, settings.job_retention_days, now, is_over)
     # After the jobs: a mesh is kept as long as a job names it.
     meshes = expire_meshes(database, settings.mesh_retention_days, now, is_over)
+    uploads = _remove_uploads(database, store, now, is_over)
     forget_keys(database, now)
-    return f"removed {jobs} jobs and {meshes} meshes" if jobs or meshes else ""
+    return f"removed {jobs} jobs, {meshes} meshes and {uploads} uploads" if jobs or meshes or uploads else ""
+
+
+def _remove_uploads(database: Database, store: ObjectStore, now: datetime, is_over: Callable[[], bool]) -> int:
+    n_removed, n_last = 0, EXPIRED_AT_ONCE
+    while n_last == EXPIRED_AT_ONCE and not is_over():
+        n_last, keys = expire_uploads(database, now)
+        n_removed += n_last
+        try:
+            for key in keys:
+                store.delete(key)
+        except StoreUnavailableError as error:
+            _log.warning("parts of uploads are left to the sweep: %s", error)
+    return n_removed
 
 
 def forget_audit(database: Database, days: float, is_over: Callable[[], bool]) -> str:

@@ -15,6 +15,7 @@ from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from datetime import datetime, timedelta
+from functools import partial
 from itertools import islice
 
 from sqlalchemy import func, select
@@ -25,6 +26,7 @@ from jobkit.errors import ObjectNotFoundError
 from jobkit.schema import JobState
 from jobkit.storage.base import ListedObject, ObjectStore, result_key
 from jobkit.storage.removals import START_S, claim, named_keys, release
+from jobkit.uploads.parts import PART_PREFIX, named_parts
 
 GRACE = timedelta(hours=24)
 CONTENT_PREFIXES = ("meshes", "models")
@@ -45,6 +47,9 @@ class SweepResult:
 
     def __add__(self, other: "SweepResult") -> "SweepResult":
         return SweepResult(self.objects + other.objects, self.size_bytes + other.size_bytes)
+
+
+_Sweep = Callable[[Database, ObjectStore, list[ListedObject]], SweepResult]
 
 
 def sweep_objects(
@@ -70,15 +75,16 @@ def sweep_objects(
         _log.info("nothing is swept: the oldest row of the database is younger than %s", GRACE)
         return SweepResult()
     deleted = SweepResult()
-    for batch in _old_objects(store, RESULT_PREFIX, before):
-        if is_over():
-            return deleted
-        deleted += _sweep_results(database, store, batch)
-    for prefix in CONTENT_PREFIXES:
+    sweeps: dict[str, Callable[[Database, ObjectStore, list[ListedObject]], SweepResult]] = {
+        RESULT_PREFIX: _sweep_results,
+        PART_PREFIX: _sweep_parts,
+    }
+    sweeps |= dict.fromkeys(CONTENT_PREFIXES, partial(_sweep_contents, before=before))
+    for prefix, sweep in sweeps.items():
         for batch in _old_objects(store, prefix, before):
             if is_over():
                 return deleted
-            deleted += _sweep_contents(database, store, batch, before)
+            deleted += sweep(database, store, batch)
     return deleted
 
 
@@ -119,6 +125,12 @@ def _wanted_results(database: Database, job_ids: set[str]) -> dict[str, set[str]
 def _is_wanted(key: str, wanted: dict[str, set[str]]) -> bool:
     names = wanted.get(_job_of(key), set())
     return key in names or key.rpartition("/")[0] + "/" in names
+
+
+def _sweep_parts(database: Database, store: ObjectStore, batch: list[ListedObject]) -> SweepResult:
+    """Delete parts that no resumable upload names. They need no claims: the key of a part is never written again."""
+    named = named_parts(database, {listed.key for listed in batch})
+    return _delete(store, (listed for listed in batch if listed.key not in named))
 
 
 def _sweep_contents(database: Database, store: ObjectStore, batch: list[ListedObject], before: datetime) -> SweepResult:

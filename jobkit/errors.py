@@ -9,6 +9,7 @@
     │   ├── JobNotFoundError        job_not_found
     │   ├── ModelNotFoundError      model_not_found       no such name, version or alias
     │   ├── WebhookNotFoundError    webhook_not_found     no subscription has that id
+    │   ├── UploadNotFoundError     upload_not_found      no upload has that id, or it has expired
     │   ├── DeliveryNotFoundError   delivery_not_found    the subscription has no such delivery, or no longer
     │   ├── KeyNotFoundError        key_not_found
     │   ├── ResultMissingError      result_missing        the job has a result, but the store has lost its file
@@ -27,6 +28,8 @@
     │   ├── ModelKindError          model_kind_mismatch   the model is of the other kind or for the other recipe
     │   ├── NameTakenError          name_taken            a model and an alias can't share a name
     │   ├── IdempotencyError        idempotency_conflict  the key came before with another request
+    │   ├── UploadOffsetError       upload_offset_conflict   bytes come for another offset than the upload has
+    │   ├── UploadNotFinishedError  upload_not_finished   a partial upload that is to be joined is not whole
     │   ├── TooManyWebhooksError    too_many_webhooks     as many subscriptions as there may be
     │   ├── WebhookDisabledError    webhook_disabled      nothing is sent to a subscription that is switched off
     │   ├── KeyRevokedError         key_revoked           the key was revoked; it can't be rotated
@@ -36,6 +39,9 @@
     ├── TlsRequiredError            webhook_needs_tls     nothing is sent there unencrypted
     ├── OverLimitError              over_service_limit    more time or memory than the service grants
     ├── TooLargeError               body_too_large        more bytes than the limit
+    ├── UploadFinalError            upload_is_final       bytes come for an upload that joins others
+    ├── TooManyUploadsError         too_many_uploads      as many open uploads as there may be
+    ├── StoreFullError              store_full            the disk has no room for an upload of that size
     ├── UnusableModelError          unusable_model        the artifact is no model
     ├── OptionsConflictError        options_conflict      options of a job exclude each other
     ├── ObjectDamagedError          object_damaged        the bytes under a key are not those that were stored
@@ -136,6 +142,12 @@ class WebhookNotFoundError(NotFoundError):
     code = "webhook_not_found"
 
 
+class UploadNotFoundError(NotFoundError):
+    """No upload has that id, or it has expired."""
+
+    code = "upload_not_found"
+
+
 class DeliveryNotFoundError(NotFoundError):
     """The subscription has no such delivery, or no longer."""
 
@@ -226,6 +238,18 @@ class IdempotencyError(ConflictError):
     code = "idempotency_conflict"
 
 
+class UploadOffsetError(ConflictError):
+    """Bytes come for another offset than the upload has."""
+
+    code = "upload_offset_conflict"
+
+
+class UploadNotFinishedError(ConflictError):
+    """A partial upload that is to be joined is not whole."""
+
+    code = "upload_not_finished"
+
+
 class TooManyWebhooksError(ConflictError):
     """There are as many subscriptions as there may be."""
 
@@ -278,6 +302,24 @@ class TooLargeError(JobkitError):
     """More bytes than the limit."""
 
     code = "body_too_large"
+
+
+class UploadFinalError(JobkitError):
+    """Bytes come for an upload that joins others."""
+
+    code = "upload_is_final"
+
+
+class TooManyUploadsError(JobkitError):
+    """There are as many open uploads as there may be."""
+
+    code = "too_many_uploads"
+
+
+class StoreFullError(JobkitError):
+    """The disk has no room for an upload of that size."""
+
+    code = "store_full"
 
 
 class UnusableModelError(JobkitError):

@@ -5,6 +5,7 @@ import time
 
 JOB_ID_PATTERN = r"^job_[0-9a-hjkmnp-tv-z]{26}$"
 WEBHOOK_ID_PATTERN = r"^wh_[0-9a-hjkmnp-tv-z]{26}$"
+UPLOAD_ID_PATTERN = r"^upl_[0-9a-hjkmnp-tv-z]{26}$"
 MESSAGE_ID_PATTERN = r"^msg_[0-9a-hjkmnp-tv-z]{26}$"
 KEY_ID_PATTERN = r"^key_[0-9a-hjkmnp-tv-z]{26}$"
 AUDIT_ID_PATTERN = r"^aud_[0-9a-hjkmnp-tv-z]{26}$"
@@ -40,6 +41,11 @@ def new_key_id() -> str:
 def new_audit_id() -> str:
     """Return a fresh id of an entry of the audit log."""
     return _new_id("aud")
+
+
+def new_upload_id() -> str:
+    """Return a fresh id of an upload."""
+    return _new_id("upl")
 
 
 def _new_id(kind: str) -> str:

@@ -72,6 +72,10 @@ class Settings(BaseSettings):
     max_bodies: int = Field(
         default=256, ge=1, description="Most bodies of requests under way at the same time, of each process of the API."
     )
+    max_uploads: int = Field(default=1000, ge=0, description="Most open resumable uploads at the same time.")
+    upload_hours: float = Field(
+        default=24.0, gt=0, le=8_760, description="Hours that a resumable upload is kept after its last bytes came."
+    )
     job_time_limit_s: float = Field(default=900.0, ge=1, description="Most wall-clock seconds of one attempt.")
     job_memory_limit_mb: int = Field(default=4096, ge=256, description="Most memory of one attempt, in MiB.")
     job_processes: int = Field(

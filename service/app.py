@@ -36,10 +36,12 @@ from service.routes import (
     repairs,
     results,
     retention,
+    uploads,
     webhooks,
 )
 from service.scopes import check_scope
 from service.services import open_services
+from service.tus import TusMiddleware
 
 
 def create_app(settings: Settings, telemetry: Telemetry | None = None) -> FastAPI:
@@ -74,7 +76,7 @@ def create_app(settings: Settings, telemetry: Telemetry | None = None) -> FastAP
     app.state.documents = {}
     app.state.telemetry = telemetry or Telemetry()
     about_access = (keys, audit)
-    about_jobs = (meshes, jobs, events, results, repairs, retention)
+    about_jobs = (meshes, uploads, jobs, events, results, repairs, retention)
     modules = (*about_jobs, models, model_lifetime, webhooks, deliveries, *about_access, health, metrics)
     routers = [module.router for module in modules]
     for router in routers:
@@ -86,6 +88,7 @@ def create_app(settings: Settings, telemetry: Telemetry | None = None) -> FastAP
     app.add_middleware(BodyLimitMiddleware, most=settings.max_bodies)
     app.add_middleware(AuthMiddleware, settings=settings)
     app.add_middleware(AuditMiddleware)
+    app.add_middleware(TusMiddleware)
     app.add_middleware(RequestContextMiddleware)
     app.add_middleware(RequestTelemetryMiddleware, registry=app.state.registry, telemetry=app.state.telemetry)
     app.add_middleware(PacingMiddleware, pacer=Pacer())

@@ -6,6 +6,7 @@ Tested in `tests/service/test_handlers.py`.
 """
 
 from collections.abc import Mapping, Sequence
+from enum import IntEnum
 from http import HTTPStatus
 from typing import Any
 
@@ -26,6 +27,9 @@ STATUS_BY_ERROR: Mapping[type[errors.JobkitError], HTTPStatus] = {
     errors.OverLimitError: HTTPStatus.FORBIDDEN,
     errors.AddressRefusedError: HTTPStatus.FORBIDDEN,
     errors.TlsRequiredError: HTTPStatus.FORBIDDEN,
+    errors.UploadFinalError: HTTPStatus.FORBIDDEN,
+    errors.TooManyUploadsError: HTTPStatus.SERVICE_UNAVAILABLE,
+    errors.StoreFullError: HTTPStatus.INSUFFICIENT_STORAGE,
     errors.TooLargeError: HTTPStatus.REQUEST_ENTITY_TOO_LARGE,
     errors.UnusableModelError: HTTPStatus.UNPROCESSABLE_ENTITY,
     errors.OptionsConflictError: HTTPStatus.UNPROCESSABLE_ENTITY,
@@ -36,16 +40,29 @@ STATUS_BY_ERROR: Mapping[type[errors.JobkitError], HTTPStatus] = {
 _RETRY_LATER = (
     errors.MeshNotReadyError,
     errors.JobNotFinishedError,
+    errors.TooManyUploadsError,
     model_errors.ModelNotProvenError,
     errors.QueueUnavailableError,
     errors.DatabaseUnavailableError,
     errors.StoreUnavailableError,
 )
 RETRY_AFTER_S = "2"
+
 # A body of a megabyte may hold a hundred thousand wrong fields; its sender corrects some and tries again.
 MOST_FIELD_ERRORS = 50
 # Fields of a spec that hold one of several models, told apart by a tag.
 _UNIONS = (("method",), ("restore", "missing"), ("denoise", "region"))
+
+
+class TusStatus(IntEnum):
+    """The status of the protocol tus that HTTP does not know."""
+
+    CHECKSUM_MISMATCH = 460
+
+    @property
+    def phrase(self) -> str:
+        """The status in words."""
+        return self.name.replace("_", " ").title()
 
 
 class ProblemError(Exception):
@@ -53,7 +70,7 @@ class ProblemError(Exception):
 
     Parameters
     ----------
-    status : HTTPStatus
+    status : HTTPStatus or TusStatus
     code : str
         Stable, meant for programs.
     detail : str
@@ -64,7 +81,7 @@ class ProblemError(Exception):
 
     def __init__(
         self,
-        status: HTTPStatus,
+        status: HTTPStatus | TusStatus,
         code: str,
         detail: str,
         headers: Mapping[str, str] | None = None,

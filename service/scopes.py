@@ -33,7 +33,17 @@ OPERATIONS: Mapping[Scope, tuple[str, ...]] = {
         "list_deliveries",
         "get_delivery",
     ),
-    Scope.UPLOAD: ("upload_mesh", "delete_mesh", "pin_mesh", "unpin_mesh"),
+    Scope.UPLOAD: (
+        "upload_mesh",
+        "describe_uploads",
+        "create_upload",
+        "get_upload",
+        "continue_upload",
+        "delete_upload",
+        "delete_mesh",
+        "pin_mesh",
+        "unpin_mesh",
+    ),
     Scope.REPAIR: (
         "create_job",
         "cancel_job",

@@ -25,10 +25,12 @@ from jobkit.queue import TaskQueue
 from jobkit.settings import Settings
 from jobkit.storage.base import ObjectStore
 from jobkit.storage.open import open_store
+from jobkit.uploads.uploads import Uploads
 from jobkit.webhooks.deliveries import Deliveries
 from jobkit.webhooks.subscriptions import Webhooks
 from service.audit import AuditTrail
 from service.job_cache import JobCache, OwnJobs
+from service.single_flight import SingleFlight
 from service.streams import EventStreams
 from service.waiting import Waiters
 
@@ -44,6 +46,8 @@ class Services:
     jobs: Jobs
     attempts: Attempts
     meshes: Meshes
+    uploads: Uploads
+    completions: SingleFlight
     registry: Registry
     proofs: Proofs
     webhooks: Webhooks
@@ -64,6 +68,7 @@ class Services:
             database=database,
             jobs=Jobs(database, settings.job_retention_days),
             meshes=Meshes(database, settings.mesh_retention_days),
+            uploads=self.uploads.of(database),
             registry=Registry(database, self.store),
             webhooks=self.webhooks.of(database),
             deliveries=Deliveries(database),
@@ -102,6 +107,8 @@ def open_services(settings: Settings) -> Services:
         jobs,
         Attempts(database),
         meshes,
+        Uploads(database, settings.upload_hours, settings.max_uploads, settings.max_upload_mb << 20),
+        SingleFlight(),
         registry,
         proofs,
         Webhooks(database, partial(check_url, allowed=settings.webhook_networks)),

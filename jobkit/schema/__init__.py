@@ -88,6 +88,7 @@ from jobkit.schema.tasks import (
     RegionByProperty,
     Restoring,
 )
+from jobkit.schema.uploads import Upload, UploadKind, UploadLinks, UploadProblem, UploadState
 from jobkit.schema.webhooks import (
     Delivery,
     DeliveryDetail,
@@ -212,6 +213,11 @@ __all__ = [
     "Scope",
     "SmoothMethod",
     "Task",
+    "Upload",
+    "UploadKind",
+    "UploadLinks",
+    "UploadProblem",
+    "UploadState",
     "Webhook",
     "WebhookChange",
     "WebhookEvent",

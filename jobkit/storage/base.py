@@ -43,6 +43,11 @@ class ObjectWriter(Protocol):
         """Append bytes; raise TooLargeError beyond the limit, StoreUnavailableError where there is no room."""
         ...
 
+    @property
+    def sha256(self) -> str:
+        """The sha256 of what was written so far, in hex."""
+        ...
+
     def commit(self, key: str | None = None) -> StoredObject:
         """Keep the bytes under that key; None: under one that follows from their sha256."""
         ...
@@ -87,6 +92,10 @@ class ObjectStore(Protocol):
 
     def check(self) -> None:
         """Raise StoreUnavailableError if objects can't be written."""
+        ...
+
+    def has_room(self, n_bytes: int) -> bool:
+        """Tell whether the disk has room for an object that comes in parts, and is put together from them."""
         ...
 
     def delete(self, key: str) -> None:

@@ -78,6 +78,11 @@ class LocalStore:
             writer.write(b"0")
             writer.sync()
 
+    def has_room(self, n_bytes: int) -> bool:
+        """Compare with the free bytes of the disk; the parts lie there until the whole does."""
+        with translated_os_errors():
+            return 2 * n_bytes <= shutil.disk_usage(self._folder).free
+
     def delete(self, key: str) -> None:
         """Remove the object."""
         with translated_os_errors():

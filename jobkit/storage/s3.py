@@ -6,6 +6,7 @@ those of roles and web identities), or the metadata service of the machine. They
 
 import logging
 import os
+import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from datetime import UTC, timedelta
@@ -117,6 +118,11 @@ class S3Store:
         with self.writer("") as writer:
             writer.write(b"0")
             writer.commit(_CHECK_KEY)
+
+    def has_room(self, n_bytes: int) -> bool:
+        """Compare with the free bytes of the scratch folder, where the whole is spooled; a bucket is never full."""
+        with translated_os_errors():
+            return n_bytes <= shutil.disk_usage(self._scratch.folder).free
 
     def delete(self, key: str) -> None:
         """Remove the object."""

@@ -52,9 +52,14 @@ class SpoolingWriter:
         self._hash.update(chunk)
         self._size += len(chunk)
 
+    @property
+    def sha256(self) -> str:
+        """The sha256 of what was written so far, in hex."""
+        return self._hash.hexdigest()
+
     def commit(self, key: str | None = None) -> StoredObject:
         """Sync and keep."""
-        digest = self._hash.hexdigest()
+        digest = self.sha256
         final_key = checked_key(key or content_key(self._prefix, digest))
         self.sync()
         self._store_file(self._path, final_key)

@@ -103,13 +103,15 @@ _MEANING = {
     404: "There is no such thing.",
     409: "Not possible in the present state.",
     410: "It was there, and the store has lost it.",
-    412: "If-Match names other bytes.",
+    412: "If-Match names other bytes, or the version of the protocol is another one.",
     413: "The body is over the limit.",
     415: "The body is of a type that is not read here.",
     416: "The range lies outside.",
     422: "The request is not valid.",
+    460: "The checksum is not that of the bytes.",
     500: "A fault of the service.",
     503: "Database, store or queue do not answer.",
+    507: "The disk has no room for it.",
 }
 
 

@@ -18,7 +18,7 @@ import psutil
 from client.sdk import Client
 from jobkit.schema import JobSpec
 from onebox.demo import running_stack
-from tests.contract.running import HEADERS, KEY, Known, command, run, write_configuration
+from tests.contract.running import HEADERS, KEY, Known, command, run, start_upload, write_configuration
 from tests.quadpatch.shapes import open_grid, punched, write_ply
 from tests.servers import free_port
 from tests.waiting import GUARD_S
@@ -82,7 +82,7 @@ def furnish(url: str, folder: Path) -> Known:
         hook = {"url": f"http://127.0.0.1:{free_port()}/hook"}
         webhook = http.post("/v1/webhooks", json=hook).raise_for_status().json()
         delivery = http.post(webhook["links"]["test"]).raise_for_status().json()
-    return Known(job.id, _MODEL, webhook["id"], delivery["id"])
+    return Known(job.id, _MODEL, webhook["id"], delivery["id"], start_upload(url))
 
 
 def answered(url: str) -> int:

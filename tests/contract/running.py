@@ -1,9 +1,12 @@
 """How schemathesis is run against a live service: its settings, and what exists there for it to find."""
 
+import os
 import subprocess
 import sys
 from dataclasses import dataclass
 from pathlib import Path
+
+import httpx
 
 from tests.waiting import GUARD_S
 
@@ -20,6 +23,7 @@ class Known:
     model: str
     webhook_id: str
     delivery_id: str
+    upload_id: str
 
 
 def write_configuration(path: Path, known: Known) -> Path:
@@ -39,9 +43,20 @@ parameters = {{ "path.name" = "{known.model}", "path.version" = 1 }}
 [[operations]]
 include-path-regex = "^/v1/webhooks/{{webhook_id}}/(deliveries|test|rotate)"
 parameters = {{ "path.webhook_id" = "{known.webhook_id}", "path.delivery_id" = "{known.delivery_id}" }}
+
+[[operations]]
+include-path-regex = "^/v1/uploads/{{upload_id}}$"
+include-method = ["GET", "PATCH"]
+parameters = {{ "path.upload_id" = "{known.upload_id}" }}
 """
     )
     return path
+
+
+def start_upload(url: str) -> str:
+    """Start a resumable upload; return its id."""
+    headers = {**HEADERS, "Tus-Resumable": "1.0.0", "Upload-Length": "1000"}
+    return str(httpx.post(f"{url}/v1/uploads", headers=headers, timeout=GUARD_S).raise_for_status().json()["id"])
 
 
 def command(url: str, configuration: Path, n_examples: int, seed: int | None = None) -> list[str]:
@@ -66,5 +81,13 @@ def run(words: list[str], folder: Path, timeout_s: float | None) -> tuple[int, s
     """Run schemathesis in a folder; return its exit code and what it says, which stays in `schemathesis.log` there."""
     path = folder / "schemathesis.log"
     with path.open("w") as log:
-        found = subprocess.run(words, cwd=folder, stdout=log, stderr=subprocess.STDOUT, timeout=timeout_s, check=False)
+        found = subprocess.run(
+            words,
+            cwd=folder,
+            env={**os.environ, "SCHEMATHESIS_HOOKS": str(Path(__file__).with_name("schemathesis_hooks.py"))},
+            stdout=log,
+            stderr=subprocess.STDOUT,
+            timeout=timeout_s,
+            check=False,
+        )
     return found.returncode, path.read_text()

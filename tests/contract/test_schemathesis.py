@@ -14,7 +14,7 @@ from jobkit.schema import JobResult, ResultFile
 from jobkit.settings import Settings
 from jobkit.storage.base import result_key
 from jobkit.storage.open import open_store
-from tests.contract.running import HEADERS, KEY, Known, command, run, write_configuration
+from tests.contract.running import HEADERS, KEY, Known, command, run, start_upload, write_configuration
 from tests.waiting import GUARD_S
 
 
@@ -32,7 +32,7 @@ def test_schemathesis_finds_nothing(
         job_id = furnish(service.url, settings, dictionary_bytes(1))
         webhook_id, delivery_id = subscribe(service.url)
         document = httpx.get(f"{service.url}/openapi.json", timeout=GUARD_S).json()
-        known = Known(job_id, "general-dictionary", webhook_id, delivery_id)
+        known = Known(job_id, "general-dictionary", webhook_id, delivery_id, start_upload(service.url))
         configuration = write_configuration(tmp_path / "schemathesis.toml", known)
         code, said = run(command(service.url, configuration, 4), tmp_path, 2 * GUARD_S)
     assert code == 0, said[-20_000:]

@@ -13,10 +13,12 @@ from jobkit.jobs.jobs import Jobs, NewJob
 from jobkit.meshes import Meshes
 from jobkit.models.registry import MODEL_PREFIX, Registry
 from jobkit.retention import delete_mesh
-from jobkit.schema import Job, Mesh
+from jobkit.schema import Job, Mesh, UploadKind
 from jobkit.storage.base import ObjectStore, result_key
 from jobkit.storage.open import open_store
 from jobkit.storage.removals import START_S, assure, claim, release
+from jobkit.uploads.parts import PART_PREFIX, UploadPart
+from jobkit.uploads.uploads import NewUpload, Uploads
 from tests.jobkit.fixtures import AgingStore, KilledError, age_rows, fail, finish, keys_in, put, upload
 
 SOON = timedelta(minutes=1)
@@ -188,3 +190,18 @@ def test_a_job_that_was_accepted_keeps_its_mesh_from_the_sweep(database: Databas
     aging.wait(99 * GRACE)
     assert sweep(database, aging) == SweepResult()
     assert aging.size(Meshes(database).source(job.mesh_id).key) == 4
+
+
+def test_parts_that_no_upload_names_go_after_a_day_and_the_others_stay(
+    database: Database, store: ObjectStore, aging: AgingStore
+) -> None:
+    uploads = Uploads(database, hours=100, most=10, max_bytes=1000)
+    upload = uploads.create(NewUpload(UploadKind.WHOLE, 1000), None)[0]
+    named = put(aging, b"acknowledged", key=f"{PART_PREFIX}/{upload.id}-0-a")
+    uploads.acknowledge(upload.id, 0, [UploadPart(0, named.size_bytes, named.key, named.sha256)])
+    orphan = put(aging, b"of a process that was killed", key=f"{PART_PREFIX}/{upload.id}-12-b")
+    aging.wait(GRACE - SOON)
+    assert sweep(database, aging) == SweepResult()
+    aging.wait(2 * SOON)
+    assert sweep(database, aging) == SweepResult(1, orphan.size_bytes)
+    assert [found.key for found in store.keys(PART_PREFIX)] == [named.key]

@@ -152,6 +152,9 @@ class AgingStore:
     def check(self) -> None:
         self._store.check()
 
+    def has_room(self, n_bytes: int) -> bool:
+        return self._store.has_room(n_bytes)
+
     def delete(self, key: str) -> None:
         self.on_delete(key)
         with self._killing():
@@ -185,6 +188,10 @@ class _RecordingWriter:
 
     def write(self, chunk: bytes) -> None:
         self._writer.write(chunk)
+
+    @property
+    def sha256(self) -> str:
+        return self._writer.sha256
 
     def commit(self, key: str | None = None) -> StoredObject:
         stored = self._writer.commit(key)
