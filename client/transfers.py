@@ -30,10 +30,11 @@ def sent_name(path: Path) -> str:
     return _CONTROL.sub("", path.name).encode("utf-8", "replace").decode("utf-8")[-_LONGEST_NAME:]
 
 
-def file_chunks(path: Path, progress: ByteProgress) -> Iterator[bytes]:
-    """Yield the bytes of a file, telling how far it is."""
-    total, done = path.stat().st_size, 0
+def file_chunks(path: Path, progress: ByteProgress, start: int = 0) -> Iterator[bytes]:
+    """Yield the bytes of a file from `start` on, telling how far it is."""
+    total, done = path.stat().st_size, start
     with path.open("rb") as file:
+        file.seek(start)
         while chunk := file.read(CHUNK_BYTES):
             yield chunk
             done += len(chunk)

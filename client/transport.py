@@ -83,14 +83,23 @@ class Transport:
         AnswerError
             If it answers with an error that is no problem document.
         """
+        return self.patiently(
+            lambda: self.send(method, path, content=None if content is None else content(), **options)
+        )
 
-        def attempt() -> httpx.Response:
-            body = None if content is None else content()
-            response = self._client.request(method, path, content=body, **options)
-            _raise_for_problem(response)
-            return response
+    def send(self, method: str, path: str, *, content: Iterator[bytes] | None = None, **options: Any) -> httpx.Response:
+        """Send a request once, as for `patiently`, and return a successful answer.
 
-        return self.patiently(attempt)
+        Raises
+        ------
+        TryAgainError
+            If the service asks to come back later.
+        RefusedError, AnswerError
+            If it answers with another error.
+        """
+        response = self._client.request(method, path, content=content, **options)
+        _raise_for_problem(response)
+        return response
 
     @contextmanager
     def stream(self, path: str, headers: Mapping[str, str], silence_s: float = _SILENCE_S) -> Iterator[httpx.Response]:
@@ -175,10 +184,10 @@ class Transport:
 class TryAgainError(Exception):
     """The service asks to come back later; `final` is what to raise when there is no later."""
 
-    def __init__(self, response: httpx.Response, final: Exception) -> None:
+    def __init__(self, final: Exception, retry_after_s: float | None) -> None:
         super().__init__(str(final))
         self.final = final
-        self.retry_after_s = retry_after_s(response)
+        self.retry_after_s = retry_after_s
 
 
 def retry_after_s(response: httpx.Response) -> float | None:
@@ -201,7 +210,7 @@ def _raise_for_problem(response: httpx.Response) -> None:
         return
     error = _error_of(response)
     if response.status_code in _TRY_AGAIN:
-        raise TryAgainError(response, error)
+        raise TryAgainError(error, retry_after_s(response))
     raise error
 
 
