@@ -6,7 +6,7 @@ READY  := $(VENV)/.ready
 # Twice quiet: errors only.
 PIP    := $(BIN)/python -m pip --quiet --quiet --disable-pip-version-check
 
-.PHONY: demo test coverage test-slow test-postgres test-lowest explore faults fuzz mutants flood contract check serve openapi samples lock sbom bench bench-stages bench-quality bench-scans clean
+.PHONY: demo test coverage test-slow test-postgres test-lowest explore faults resumption fuzz mutants flood contract check serve openapi samples lock sbom bench bench-stages bench-quality bench-scans clean
 
 $(READY): pyproject.toml constraints.txt
 	@echo "setting up $(VENV); this takes a few minutes the first time ..." >&2
@@ -58,6 +58,9 @@ test-lowest:              ## the tests with the lowest versions that pyproject.t
 
 explore: $(READY)         ## the property tests with other examples than `make test` has: make explore ARGS="tests/quadpatch"
 	@TEST_EXAMPLES=explore $(TEST) -m hypothesis $(ARGS)
+
+resumption: $(READY)      ## large uploads while the server is killed: make resumption ARGS="--node-modules PATH --store s3"
+	@$(BIN)/python -m tests.resumption $(ARGS)
 
 # Network namespaces and disks that fill up need root; without it the suite says what it left out.
 faults: $(READY)          ## kill, cut off and starve a cluster of real processes: make faults ARGS="--seed 7 --backend sqlite-local"
