@@ -21,6 +21,7 @@ from service.app import create_app
 from service.auth import check_exposure
 from service.connections import ConnectionLimits, limited_protocol, raise_descriptor_limit
 from service.document import to_yaml
+from service.malloc import return_large_buffers
 
 # As of `uvicorn.run`.
 _START_FAILED = 3
@@ -57,6 +58,7 @@ def _with_settings(run: Callable[[Settings], int]) -> int:
 def _start(settings: Settings) -> int:
     check_exposure(settings)
     set_up_logs(settings)
+    return_large_buffers()
     _serve(create_app(settings, open_telemetry("api")), settings)
     return 0
 
