@@ -14,6 +14,7 @@ from jobkit.access.keys import Keys
 from jobkit.database.clock import utc_now
 from jobkit.database.idempotency import KEEP_FOR, Idempotency, forget_keys, note_request
 from jobkit.database.tables import DeliveryRow, IdempotencyRow, JobRow, WebhookRow
+from jobkit.database.upload_tables import UploadRow
 from jobkit.schema import NewKey, Scope
 from service.services import Services
 
@@ -62,7 +63,12 @@ def requests(  # noqa: PLR0917 - fixtures
         # No worker proves the models here.
         return lambda headers: client.post(path, headers={"Prefer": "wait=0", **headers}, **content)
 
+    def start(size: int) -> Ask:
+        tus = {"Tus-Resumable": "1.0.0", "Upload-Length": str(size)}
+        return lambda headers: client.post("/v1/uploads", headers={**tus, **headers})
+
     return {
+        "create_upload": (start(10), start(11)),
         "upload_mesh": (post("/v1/meshes?filename=a.ply", content=MESH), post("/v1/meshes", content=MESH + b"\n")),
         "create_job": (post("/v1/jobs", json=job), post("/v1/jobs", json={**job, "seed": 1})),
         "rerun_job": (post(f"/v1/jobs/{job_id}/rerun"), post(f"/v1/jobs/{job_id}/rerun", json={"seed": 1})),
@@ -93,7 +99,7 @@ def count(services: Services) -> dict[str, int]:
     with services.database.read() as session:
         return {
             table.__tablename__: session.scalars(select(func.count()).select_from(table)).one()
-            for table in (JobRow, WebhookRow, DeliveryRow)
+            for table in (JobRow, WebhookRow, DeliveryRow, UploadRow)
         }
 
 

@@ -114,16 +114,8 @@ LISTS = {
     "list_keys": "items",
     "list_audit": "items",
 }
-MAKES = {
-    "describe_uploads",
-    "create_upload",
-    "upload_mesh",
-    "repair",
-    "create_key",
-    "create_webhook",
-    "publish_model",
-    "metrics",
-}
+MAKES = {"describe_uploads", "create_upload", "upload_mesh", "repair", "publish_model", "metrics"}
+MAKES |= {"create_key", "create_webhook"}
 
 
 @dataclass(frozen=True)
