@@ -35,7 +35,9 @@ class Surroundings:
     region: Region
 
     @classmethod
-    def of_fills(cls, filled: FilledMesh, edges: EdgeStatistics, rng: np.random.Generator) -> "Surroundings":
+    def of_fills(
+        cls, filled: FilledMesh, edges: EdgeStatistics, rng: np.random.Generator, spacing: float | None = None
+    ) -> "Surroundings":
         """Cut out what lies around the fills, and places for calibration; the whole where there are too few places.
 
         Parameters
@@ -44,13 +46,16 @@ class Surroundings:
         edges : EdgeStatistics
             Of the scan.
         rng : numpy.random.Generator
+        spacing : float, optional
+            Mean distance of places that have a colour, in mesh units; without, that of the vertices.
         """
+        spacing = edges.mean if spacing is None else spacing
         centres, radii = _balls(filled)
         if not len(centres):
             return cls(filled, Region.all_of(filled.mesh))
-        cell = min(float(np.percentile(radii, 75)), WIDEST_CELL * edges.mean)
-        around = _PATCHES * 2 * (cell + MARGIN * edges.mean)
-        room = cell + MARGIN_EDGES * edges.mean + around
+        cell = min(float(np.percentile(radii, 75)), WIDEST_CELL * spacing)
+        around = _PATCHES * 2 * (cell + MARGIN * spacing)
+        room = cell + MARGIN_EDGES * spacing + around
         new = filled.mesh.triangles[filled.n_measured_triangles :]
         rim = np.unique(new[new < filled.n_measured_vertices])
         sites = pick_sites(filled.measured, rim, room, MAX_HOLES, rng)

@@ -32,16 +32,19 @@ class Region:
     whole : TriangleMesh
     vertices : (n,) int64
         Vertex of the whole that each vertex is, ascending.
+    triangles : (m,) int64
+        Triangle of the whole that each triangle is, ascending.
     """
 
     mesh: TriangleMesh
     whole: TriangleMesh
     vertices: IntArray
+    triangles: IntArray
 
     @classmethod
     def all_of(cls, mesh: TriangleMesh) -> "Region":
         """Take a whole mesh for a region."""
-        return cls(mesh, mesh, np.arange(len(mesh.vertices)))
+        return cls(mesh, mesh, np.arange(len(mesh.vertices)), np.arange(len(mesh.triangles)))
 
     def local(self, indices: IntArray) -> IntArray:
         """Translate vertices of the whole, all of which the region has, into its own: any shape."""
@@ -94,7 +97,8 @@ def region_around(
         wanted |= _long(mesh, slack)
     if wanted.sum() > MOST_OF_MESH * len(mesh.triangles):
         return Region.all_of(mesh)
-    triangles = mesh.triangles[wanted]
+    rows = np.flatnonzero(wanted)
+    triangles = mesh.triangles[rows]
     is_used = near
     is_used[triangles] = True
     if obstacles is not None and len(obstacles):
@@ -102,7 +106,7 @@ def region_around(
     vertices = np.flatnonzero(is_used)
     number = np.zeros(len(is_used), np.int64)
     number[vertices] = np.arange(len(vertices))
-    return Region(TriangleMesh(mesh.vertices[vertices], number[triangles]), mesh, vertices)
+    return Region(TriangleMesh(mesh.vertices[vertices], number[triangles]), mesh, vertices, rows)
 
 
 def _near(points: Vertices, centres: Vertices, radii: FloatArray) -> BoolArray:
