@@ -119,7 +119,7 @@ OverwriteOption = Annotated[
 ColoursOption = Annotated[
     Colours | None,
     typer.Option(
-        help="Colours of new vertices: the texture around a hole carried on, or just spread from its rim.",
+        help="Colours of new vertices and texels: the texture around a hole carried on, or just spread from its rim.",
         show_default="auto",
         rich_help_panel=OUTPUT,
     ),

@@ -13,6 +13,10 @@
     │   ├── PrecisionError      precision_lost        a format whose numbers are too short for the mesh
     │   ├── IndexRangeError     index_out_of_range    a face names a vertex that is not there
     │   └── TooLargeError       mesh_too_large        over a limit of the reader
+    ├── TextureError            unusable_texture      a texture image that can't be carried on; no repair ends by it
+    │   ├── ImageMissingError   image_missing         it is not there
+    │   ├── ImageUnreadableError  image_unreadable    its bytes are no image that is read
+    │   └── ImageTooLargeError  image_too_large       over a limit of bytes or pixels
     ├── OptionError             invalid_option        an option outside its range, an unknown hole id
     ├── ModelError              unusable_model        a model file that is broken or of the wrong kind
     ├── TorchMissingError       torch_missing         a network is to be fitted, and torch is not installed
@@ -101,6 +105,30 @@ class TooLargeError(MeshError):
     """Over a limit of the reader."""
 
     code = "mesh_too_large"
+
+
+class TextureError(QuadpatchError):
+    """A texture image that can't be carried on. It is told in a warning, and the repair goes on without it."""
+
+    code = "unusable_texture"
+
+
+class ImageMissingError(TextureError):
+    """An image that is not where the mesh says, or that the mesh names in no way that is understood."""
+
+    code = "image_missing"
+
+
+class ImageUnreadableError(TextureError):
+    """Bytes that are no image of a format that is read, or broken ones."""
+
+    code = "image_unreadable"
+
+
+class ImageTooLargeError(TextureError):
+    """An image of more bytes or pixels than are read."""
+
+    code = "image_too_large"
 
 
 class OptionError(QuadpatchError):

@@ -211,8 +211,8 @@ class RepairOptions:
     effort : str
         How much the model `auto` tries: `fast`, `standard` or `best`.
     colours : str
-        Of new vertices where measured ones have colours: `auto` carries their texture on where calibration says that
-        this is better, `harmonic` only spreads the colours of the rim.
+        Of new vertices where measured ones have colours, and of texture pages where there are images: `auto` carries
+        the texture on where calibration says that this is better, `harmonic` only spreads the colours of the rim.
     """
 
     holes: HoleOptions = field(default_factory=HoleOptions)

@@ -38,6 +38,7 @@ from quadpatch.report import (
     number_holes,
 )
 from quadpatch.stages import Stages, harmless
+from quadpatch.textured_fill import texture_fill
 from shared_rules.hole_selection import Choice, choose_holes, join_islands
 
 # Formats whose lengths have a unit by definition, or by the default that our writer leaves standing.
@@ -122,11 +123,14 @@ def repair_and_keep(  # noqa: PLR0913, PLR0917  the same arguments as every task
         precision = check_precision(scan, named)
     repair = _inpaint(welded, inpainter, options, stages, kept)
     coloured = colour_fill(scan, welded, repair.filled, named, options, stages)
+    fill = replace(_fill(scan, welded, repair), vertex_colours=coloured.colours)
+    textured = texture_fill(scan, welded, repair.filled, fill, output, options, stages)
     with stages.stage("write"):
-        losses = write_scan(output, scan, replace(_fill(scan, welded, repair), vertex_colours=coloured.colours))
+        losses = write_scan(output, scan, replace(fill, page=textured.page))
     warnings = [
         *repair.warnings,
         *coloured.warnings,
+        *textured.warnings,
         *describe_redundancy(welded.counts),
         *precision,
         *losses,
@@ -134,7 +138,7 @@ def repair_and_keep(  # noqa: PLR0913, PLR0917  the same arguments as every task
     ]
     repair = replace(repair, warnings=warnings)
     report = build_report(scan, welded, repair, options, card, stages)
-    report["colours"] = coloured.described()
+    report["colours"], report["texture"] = coloured.described(), textured.report
     number_holes(report, scan.next_hole_id if named.suffix.lower() in NUMBERED else None)
     return RepairedFile(report, repair)
 

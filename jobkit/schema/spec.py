@@ -175,8 +175,9 @@ class RepairSpec(Request):
     )
     colours: Colours = Field(
         default="auto",
-        description="Colours of new vertices, where the mesh has colours of vertices. `auto`: the texture around a "
-        "hole is carried on where calibration finds that better; `harmonic`: the colours of the rim are spread.",
+        description="Colours of new vertices, where the mesh has colours of vertices, and of the texture page of new "
+        "triangles, where it has texture images. `auto`: the texture around a hole is carried on where calibration "
+        "finds that better; `harmonic`: the colours of the rim are spread.",
         examples=["auto"],
     )
     output: Output = Field(default_factory=Output, description="What is handed back.")

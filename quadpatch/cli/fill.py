@@ -117,8 +117,8 @@ def fill(  # noqa: PLR0913, PLR0917  one argument per flag
     colours: Annotated[
         Colours,
         typer.Option(
-            help="Colours of new vertices: the texture around a hole carried on where calibration finds that better, "
-            "or just spread from its rim."
+            help="Colours of new vertices and texels: the texture around a hole carried on where calibration finds "
+            "that better, or just spread from its rim."
         ),
     ] = "auto",
     seed: Seed = 0,

@@ -1,12 +1,14 @@
 """OBJ: reading.
 
 Read are `v` (with colours behind the coordinates), `vt`, `vn` and `f` with polygons, negative indices, line
-continuations and any text encoding that has a byte order mark. Materials are names only; no other file is opened.
+continuations and any text encoding that has a byte order mark. Materials are names; their libraries are opened where a
+repair asks for images (`quadpatch.formats.obj_materials`).
 Lines of other keywords mean nothing to a repair and come back as they were (see `obj_source`).
 """
 
 import re
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
@@ -16,6 +18,7 @@ from quadpatch.formats.lines import Lines
 from quadpatch.formats.obj_source import ObjSource
 from quadpatch.formats.obj_statements import (
     FACE,
+    LIBRARY,
     MATERIAL,
     NORMAL,
     TEXTURE,
@@ -41,7 +44,7 @@ class _Corners:
     sizes: IntArray
 
 
-def read_obj(data: bytes, limits: ReadLimits) -> Scan:
+def read_obj(data: bytes, limits: ReadLimits, folder: Path | None = None) -> Scan:
     """Read an OBJ file.
 
     Parameters
@@ -49,6 +52,8 @@ def read_obj(data: bytes, limits: ReadLimits) -> Scan:
     data : bytes
         The whole file.
     limits : ReadLimits
+    folder : Path, optional
+        Where material libraries and images may lie; None allows none.
 
     Raises
     ------
@@ -65,7 +70,7 @@ def read_obj(data: bytes, limits: ReadLimits) -> Scan:
     corners = _parse_faces(statements, (len(vertices), len(texture), len(normals)))
     triangles, places, face = _cut(vertices, corners)
     check_triangles(triangles, limits)
-    materials = statements.of(MATERIAL)
+    materials, libraries = statements.of(MATERIAL), statements.of(LIBRARY)
     source = ObjSource(
         data=data,
         codec=codec,
@@ -76,6 +81,8 @@ def read_obj(data: bytes, limits: ReadLimits) -> Scan:
         corner_normal=corners.normal[places],
         materials=[materials.text(line).strip() for line in range(len(materials.starts))],
         triangle_material=(statements.count_before(MATERIAL) - 1)[face],
+        libraries=[libraries.text(line).strip() for line in range(len(libraries.starts))],
+        folder=folder,
     )
     return Scan(vertices, triangles, "obj", source=source)
 

@@ -2,7 +2,8 @@
 
 All lines stay. Behind them come the new `v`, `vt` and `vn` lines and a group `quadpatch_filled` with the new faces,
 which use the material of the nearest measured face. New vertices have colours where the measured ones do; new faces
-have texture coordinates and normals where the faces around their hole do.
+have texture coordinates and normals where the faces around their hole do. With a texture page they use copies of the
+materials, in a library of their own.
 
 Where vertices move, the numbers of their `v` lines change, and those of the `vn` lines that a corner at one of them
 names: they become the mean normal of all faces whose corners name them.
@@ -10,14 +11,24 @@ names: they become the mean normal of all faces whose corners name them.
 Tested in `tests/quadpatch/formats/test_obj.py`.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
 
 import numpy as np
 
 from quadpatch.formats.attributes import extend_colours, nearest_rim_triangle, normals_at
 from quadpatch.formats.moved_normals import normals_of_groups
+from quadpatch.formats.obj_materials import (
+    ObjMaterial,
+    coordinates_in_images,
+    library_with_page,
+    page_name,
+    read_materials,
+)
 from quadpatch.formats.obj_statements import NORMAL, VERTEX, split_statements
 from quadpatch.formats.scan import Fill, Moved, Scan, VertexAttributes
+from quadpatch.formats.surface_texture import SurfaceTexture, TexturePage
 from quadpatch.formats.text import decode_text, encode_like, line_end_of, to_lines
 from quadpatch.formats.texture import extend_over_corners
 from quadpatch.formats.words import replace_numbers, words_from
@@ -46,6 +57,10 @@ class ObjSource:
         Names, one for each `usemtl` line.
     triangle_material : (m,) int64
         Into `materials`, -1 for none.
+    libraries : list of bytes
+        What stands in each `mtllib` line.
+    folder : Path or None
+        Where these may lie; None allows none.
     """
 
     data: bytes
@@ -57,6 +72,8 @@ class ObjSource:
     corner_normal: IntArray
     materials: list[bytes]
     triangle_material: IntArray
+    libraries: list[bytes] = field(default_factory=list)
+    folder: Path | None = None
 
     def vertex_attributes(self, scan: Scan) -> VertexAttributes:
         """Colours, normals of the first corner that names each vertex, and texture coordinates."""
@@ -91,6 +108,28 @@ class ObjSource:
         first[vertex[normal >= 0]] = normal[normal >= 0]
         return first
 
+    def surface_texture(self, scan: Scan) -> SurfaceTexture | None:
+        """Images of the materials' colours; a material is one name."""
+        if not len(self.texture) or not self.materials or not self.libraries:
+            return None
+        found = [material for _, material in self._materials_by_number]
+        number = {name: i for i, (name, _) in enumerate(self._materials_by_number)}
+        of_line = np.array([number.get(name, -1) for name in self.materials] + [-1])
+        material = of_line[self.triangle_material]
+        coordinates = coordinates_in_images(self._texture_of_corners(), material, found)
+        return SurfaceTexture(coordinates, material, tuple(entry.image for entry in found))
+
+    @cached_property
+    def _materials_by_number(self) -> list[tuple[bytes, ObjMaterial]]:
+        """Materials of the libraries that the file uses, in the order in which it does."""
+        known = read_materials(self.libraries, self.folder)
+        return [(name, known[name]) for name in dict.fromkeys(self.materials) if name in known]
+
+    def side_files(self, page: TexturePage) -> dict[str, bytes]:
+        """Return the page, and a library with the materials that have it."""
+        used = [self._materials_by_number[i] for i in sorted({*page.material.tolist()} - {-1})]
+        return {f"{page.stem}.png": page.png, f"{page.stem}.mtl": library_with_page(used, page)}
+
     def move(self, scan: Scan, moved: Moved) -> bytes:
         """Replace the numbers of vertices that moved, and those of their normals."""
         text, codec = decode_text(self.data)
@@ -123,8 +162,10 @@ class ObjSource:
         texture_lines, texture = self._texture(scan, fill, line_end)
         normal_lines, normal = self._normals(scan, fill, line_end)
         faces = face_lines(fill.triangles + 1, texture, normal, line_end)
-        materials = [self.materials[i] if i >= 0 else b"" for i in self._materials(scan, fill)]
+        materials = self._materials(scan, fill)
         text = [self._vertex_lines(fill, line_end).encode(), texture_lines.encode(), normal_lines.encode()]
+        if fill.page is not None:
+            text.append(f"mtllib {fill.page.stem}.mtl{line_end}".encode())
         text.append(f"g {GROUP}{line_end}".encode())
         current = b""
         for face, material in zip(faces, materials, strict=True):
@@ -141,8 +182,15 @@ class ObjSource:
         encoded = text if self.codec == "utf-8" else text.decode().encode(self.codec)
         return self.data + gap + encoded
 
-    def _materials(self, scan: Scan, fill: Fill) -> IntArray:
-        return self.triangle_material[nearest_rim_triangle(scan, fill)]
+    def _materials(self, scan: Scan, fill: Fill) -> list[bytes]:
+        """Name of the material of each new triangle, empty for none."""
+        nearest = self.triangle_material[nearest_rim_triangle(scan, fill)].tolist()
+        names = [self.materials[i] if i >= 0 else b"" for i in nearest]
+        if fill.page is None:
+            return names
+        painted = fill.page.material.tolist()
+        copies = {i: page_name(self._materials_by_number[i][0], fill.page) for i in {*painted} - {-1}}
+        return [copies.get(i, name) for i, name in zip(painted, names, strict=True)]
 
     def _vertex_lines(self, fill: Fill, line_end: str) -> str:
         if self.colours is None:
@@ -156,6 +204,8 @@ class ObjSource:
         if not (self.corner_texture >= 0).any():
             return "", index
         extended = extend_over_corners(scan, fill, self._texture_of_corners())
+        if fill.page is not None:
+            extended = np.where(np.isfinite(fill.page.coordinates), fill.page.coordinates, extended)
         has = np.asarray(np.isfinite(extended).all(axis=2))
         keys = np.column_stack([fill.triangles[has].astype(np.float64), extended[has]])
         points, inverse = np.unique(keys, axis=0, return_inverse=True)

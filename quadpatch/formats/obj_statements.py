@@ -8,8 +8,8 @@ import numpy as np
 from quadpatch.formats.lines import Lines, split_lines
 from quadpatch.types import IntArray
 
-VERTEX, TEXTURE, NORMAL, FACE, MATERIAL = 1, 2, 3, 4, 5
-_KEYWORDS = {VERTEX: b"v", TEXTURE: b"vt", NORMAL: b"vn", FACE: b"f", MATERIAL: b"usemtl"}
+VERTEX, TEXTURE, NORMAL, FACE, MATERIAL, LIBRARY = 1, 2, 3, 4, 5, 6
+_KEYWORDS = {VERTEX: b"v", TEXTURE: b"vt", NORMAL: b"vn", FACE: b"f", MATERIAL: b"usemtl", LIBRARY: b"mtllib"}
 _CONTINUATION = re.compile(rb"\\[ \t]*(\r\n|\n|\r)")
 
 
@@ -33,7 +33,7 @@ def split_statements(text: bytes) -> ObjStatements:
     """Find the lines of an OBJ text, continued ones joined; every byte keeps its place."""
     if b"\\" in text:
         text = _CONTINUATION.sub(lambda match: b" " * len(match[0]), text)
-    lines = split_lines(text, keep_comments_of=(b"usemtl",))
+    lines = split_lines(text, keep_comments_of=(b"usemtl", b"mtllib"))
     kinds = np.zeros(len(lines.starts), dtype=np.int64)
     for kind, keyword in _KEYWORDS.items():
         kinds[lines.begin_with(keyword)] = kind

@@ -18,7 +18,7 @@ from quadpatch.formats.limits import ReadLimits, check_indices, check_triangles,
 from quadpatch.formats.lines import Lines, split_lines
 from quadpatch.formats.moved_normals import moved_vertex_normals
 from quadpatch.formats.polygons import list_range, triangulate_polygons
-from quadpatch.formats.scan import Fill, Moved, Scan, VertexAttributes
+from quadpatch.formats.scan import Fill, Moved, Scan, VertexAttributes, WithoutImages
 from quadpatch.formats.text import decode_text, encode_like, line_end_of, to_integers, to_lines, to_words
 from quadpatch.formats.words import replace_numbers, words_from
 from quadpatch.types import FloatArray, IntArray
@@ -31,7 +31,7 @@ _COLOUR_WIDTHS = (3, 4)
 
 
 @dataclass(frozen=True)
-class OffSource:
+class OffSource(WithoutImages):
     """An OFF file as it was read.
 
     Attributes

@@ -18,7 +18,9 @@ from quadpatch.formats.stl import read_stl
 
 __all__ = ["ReadLimits", "read_bytes", "read_scan"]
 
-_READERS = {"ply": read_ply, "stl": read_stl, "obj": read_obj, "off": read_off}
+_READERS = {"stl": read_stl, "off": read_off}
+# Those that may name further files.
+_READERS_OF_FOLDERS = {"ply": read_ply, "obj": read_obj}
 
 
 def read_scan(path: Path, limits: ReadLimits | None = None, *, allow_missing: bool = False) -> Scan:
@@ -50,7 +52,7 @@ def read_scan(path: Path, limits: ReadLimits | None = None, *, allow_missing: bo
         data = path.read_bytes()
     except OSError as error:
         raise ReadError(f"{path.name} can't be read: {error.strerror}") from error
-    # Buffers of glTF in files of their own may lie beside the mesh.
+    # Buffers of glTF, and images of textures, may lie beside the mesh.
     return read_bytes(data, detect_format(data, path.suffix.lower().lstrip(".")), limits, path.parent)
 
 
@@ -80,4 +82,6 @@ def read_bytes(data: bytes, kind: str, limits: ReadLimits, folder: Path | None =
         from quadpatch.formats.threemf.reader import read_threemf  # noqa: PLC0415
 
         return read_threemf(data, limits)
+    if kind in _READERS_OF_FOLDERS:
+        return _READERS_OF_FOLDERS[kind](data, limits, folder)
     return _READERS[kind](data, limits)

@@ -13,6 +13,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from quadpatch.formats.surface_texture import SurfaceTexture, TexturePage
 from quadpatch.types import BoolArray, FloatArray, IntArray, Triangles, Vertices
 
 
@@ -35,6 +36,17 @@ class VertexAttributes:
     texture: FloatArray | None = None
 
 
+class WithoutImages:
+    """A source that has no texture images, and no files beside it."""
+
+    def surface_texture(self, scan: "Scan") -> SurfaceTexture | None:
+        """None; see `Source`."""
+
+    def side_files(self, page: TexturePage) -> dict[str, bytes]:
+        """None; see `Source`."""
+        return {}
+
+
 class Source(Protocol):
     """What a reader leaves for the writer of its format."""
 
@@ -49,6 +61,12 @@ class Source(Protocol):
 
     def vertex_attributes(self, scan: "Scan") -> VertexAttributes:
         """Say how the surface looks, for writing it in another format."""
+
+    def surface_texture(self, scan: "Scan") -> SurfaceTexture | None:
+        """Say what images lie on the surface; None for none. Raises TextureError where no page could be added."""
+
+    def side_files(self, page: TexturePage) -> dict[str, bytes]:
+        """Files, by name, that have to lie beside one that was handed back with a page."""
 
 
 @dataclass(frozen=True)
@@ -96,6 +114,8 @@ class Fill:
         The same of every new triangle.
     vertex_colours : (k, 3) float64 or None
         Red, green, blue of every new vertex, 0..255; NaN where it gets those that its rim extends, None where all do.
+    page : TexturePage or None
+        Image for new triangles; the others get texture coordinates that their rim extends.
     """
 
     vertices: Vertices
@@ -105,6 +125,7 @@ class Fill:
     triangle_hole_id: IntArray
     triangle_confidence: FloatArray
     vertex_colours: FloatArray | None = None
+    page: TexturePage | None = None
 
 
 @dataclass(frozen=True)

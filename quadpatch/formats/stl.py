@@ -22,7 +22,7 @@ from quadpatch.errors import EmptyMeshError, ReadError
 from quadpatch.formats.attributes import joined_vertices, triangle_normals
 from quadpatch.formats.limits import ReadLimits, check_vertices, to_float64
 from quadpatch.formats.moved_normals import NORMAL_DIGITS
-from quadpatch.formats.scan import Fill, Moved, Scan, VertexAttributes
+from quadpatch.formats.scan import Fill, Moved, Scan, VertexAttributes, WithoutImages
 from quadpatch.formats.stl_layout import FACET, HEADER_SIZE, check_layout, is_ascii_stl
 from quadpatch.formats.text import line_end_of, parse_numbers, to_words
 from quadpatch.formats.words import replace_numbers, words_from
@@ -42,7 +42,7 @@ _NAME = re.compile(
 
 
 @dataclass(frozen=True)
-class BinaryStl:
+class BinaryStl(WithoutImages):
     """A binary STL file as it was read."""
 
     data: bytes
@@ -73,7 +73,7 @@ class BinaryStl:
 
 
 @dataclass(frozen=True)
-class AsciiStl:
+class AsciiStl(WithoutImages):
     """An ascii STL file as it was read."""
 
     data: bytes

@@ -7,7 +7,7 @@ from quadpatch.errors import FormatError
 from quadpatch.formats.conversion import encode_as_obj, encode_as_off, encode_as_ply, encode_as_stl
 from quadpatch.formats.merged_scene import MergedScene, merge_scene
 from quadpatch.formats.output_files import is_stream, write_whole
-from quadpatch.formats.scan import Fill, Scan
+from quadpatch.formats.scan import Fill, Scan, Source
 from quadpatch.stages import failure_of
 
 
@@ -38,6 +38,10 @@ ENCODERS = {
     "gltf": _encode_as_gltf,
     "3mf": _encode_as_threemf,
 }
+
+
+# Formats that have images in files of their own.
+_WITH_SIDE_FILES = ("obj", "ply")
 
 
 def check_suffix(path: Path) -> None:
@@ -79,8 +83,28 @@ def write_scan(path: Path, scan: Scan, fill: Fill) -> list[str]:
     check_suffix(path)
     suffix = written_as(path, scan).suffix.lower().lstrip(".")
     data, warnings = _encode(suffix, scan, fill)
+    if fill.page is not None and scan.source is not None and not warnings:
+        for name, side in scan.source.side_files(fill.page).items():
+            write_whole(path.resolve().parent / name, side)
     write_whole(path, data)
     return warnings
+
+
+def takes_page(scan: Scan, path: Path) -> bool:
+    """Whether an output can be given a texture page: the scan's own format, and where the files beside it may lie."""
+    suffix = written_as(path, scan).suffix.lower().lstrip(".")
+    return _own_format(suffix, scan) and (suffix not in _WITH_SIDE_FILES or not is_stream(path))
+
+
+def _own_format(suffix: str, scan: Scan) -> bool:
+    """Whether a format is that of the scan, or the binary form of it."""
+    return suffix == scan.format or (suffix == "glb" and scan.format == "gltf")
+
+
+def _as_binary(source: Source) -> Source:
+    from quadpatch.formats.gltf.source import GltfSource  # noqa: PLC0415  see above
+
+    return source.as_binary() if isinstance(source, GltfSource) else source
 
 
 def _encode(suffix: str, scan: Scan, fill: Fill) -> tuple[bytes, list[str]]:
@@ -88,8 +112,9 @@ def _encode(suffix: str, scan: Scan, fill: Fill) -> tuple[bytes, list[str]]:
     encoded: list[bytes] = []
 
     def with_attributes() -> None:
-        if suffix == scan.format and scan.source is not None:
-            encoded.append(scan.source.append(scan, fill))
+        if _own_format(suffix, scan) and scan.source is not None:
+            source = scan.source if suffix == scan.format else _as_binary(scan.source)
+            encoded.append(source.append(scan, fill))
         else:
             encoded.append(ENCODERS[suffix](merge_scene(scan, fill)))
 

@@ -22,6 +22,7 @@ import quadpatch.inpainters.dictionary
 import quadpatch.inpainters.onnx_network
 import quadpatch.inpainters.paper_dictionary
 import quadpatch.recipes.paper
+import quadpatch.textures.painting
 
 # What Pillow loads before it writes its first file.
 PIL.Image.preinit()

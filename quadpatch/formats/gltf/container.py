@@ -1,7 +1,7 @@
 """glTF 2.0 containers: the JSON document and its buffers, as `.glb` or as `.gltf`.
 
 Nothing is fetched from the network. A buffer in a file of its own is read only from the folder of the mesh or below
-it; images are never opened.
+it; images are looked at where a hole lies in one (`quadpatch.formats.gltf.images`).
 
 Tested in `tests/quadpatch/formats/gltf/test_reader.py`.
 """
@@ -10,7 +10,7 @@ import base64
 import binascii
 import json
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, NoReturn
 from urllib.parse import unquote, urlsplit
@@ -38,6 +38,8 @@ class GltfFile:
         Whether it is a `.glb`.
     data : bytes
         The file as it was read.
+    folder : Path or None
+        Where further files of it may lie; None allows none.
     """
 
     document: dict[str, Any]
@@ -45,6 +47,17 @@ class GltfFile:
     chunks: list[tuple[int, bytes]]
     is_binary: bool
     data: bytes = b""
+    folder: Path | None = None
+
+    def as_binary(self) -> "GltfFile":
+        """Return the same as a `.glb`, its first buffer the binary chunk."""
+        if self.is_binary:
+            return self
+        listed = [dict(buffer) for buffer in self.document.get("buffers", [])]
+        if listed:
+            listed[0].pop("uri", None)
+        document = {**self.document, **({"buffers": listed} if listed else {})}
+        return replace(self, document=document, is_binary=True)
 
     @property
     def is_whole(self) -> bool:
@@ -82,7 +95,7 @@ def load_gltf(data: bytes, folder: Path | None, limits: ReadLimits) -> GltfFile:
         if isinstance(used, list) and extension in used:
             raise FormatError(f"glTF compressed by {extension} is not read: send it uncompressed")
     buffers = _load_buffers(document, binary, folder, limits)
-    return GltfFile(document, buffers, chunks, is_binary, data)
+    return GltfFile(document, buffers, chunks, is_binary, data, folder)
 
 
 def _split_chunks(data: bytes) -> tuple[bytes, bytes | None, list[tuple[int, bytes]]]:

@@ -3,6 +3,7 @@
 Tested in `tests/quadpatch/formats/gltf/test_reader.py`.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -78,24 +79,12 @@ class Store:
         The document states the range of each array, and JSON knows no NaN and no infinity: NaN becomes 0, and what
         float32 can't hold becomes its largest number.
         """
-        padding = bytes(-self._size % 4)
         table = _finite(values.reshape(len(values), -1)).astype("<" + code)
-        data = table.tobytes()
-        view = self.add(
-            "bufferViews",
-            {
-                "buffer": self._number,
-                "byteOffset": self._size + len(padding),
-                "byteLength": len(data),
-                "target": _ELEMENT_ARRAY_BUFFER if is_index else _ARRAY_BUFFER,
-            },
-        )
-        self._pieces += [padding, data]
-        self._size += len(padding) + len(data)
+        target = _ELEMENT_ARRAY_BUFFER if is_index else _ARRAY_BUFFER
         return self.add(
             "accessors",
             {
-                "bufferView": view,
+                "bufferView": self.add_bytes(table.tobytes(), {"target": target}),
                 "componentType": _COMPONENTS[code],
                 "count": len(table),
                 "type": _TYPES[table.shape[1]],
@@ -103,6 +92,15 @@ class Store:
                 "max": table.max(axis=0).tolist(),
             },
         )
+
+    def add_bytes(self, data: bytes, rest: Mapping[str, Any] | None = None) -> int:
+        """Append bytes to the buffer; returns the number of their view, which has the rest of its entry from `rest`."""
+        padding = bytes(-self._size % 4)
+        start = self._size + len(padding)
+        self._pieces += [padding, data]
+        self._size = start + len(data)
+        entry = {"buffer": self._number, "byteOffset": start, "byteLength": len(data), **(rest or {})}
+        return self.add("bufferViews", entry)
 
     def finished(self) -> GltfFile:
         """Return the file with all that was added."""

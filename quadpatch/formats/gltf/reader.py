@@ -4,7 +4,7 @@ All meshes of the default scene are placed by their nodes and joined; unit is th
 read, points and lines left out. Morph targets and skins are kept in the file and do not move the geometry.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -14,6 +14,7 @@ import numpy as np
 from quadpatch.errors import EmptyMeshError, FormatError, IndexRangeError, MeshError, ReadError
 from quadpatch.formats.gltf.accessors import get_count, get_entry, get_list, get_object, read_accessor
 from quadpatch.formats.gltf.container import GltfFile, load_gltf
+from quadpatch.formats.gltf.images import coordinate_sets
 from quadpatch.formats.gltf.moved_scene import SURFACE_MODES
 from quadpatch.formats.gltf.scene import placed_nodes
 from quadpatch.formats.gltf.source import GltfSource, Primitive
@@ -157,7 +158,8 @@ def _read_attributes(
     file: GltfFile, primitive: dict[str, Any], n_vertices: int, limits: ReadLimits
 ) -> dict[str, FloatArray]:
     """Read normals, first colours and texture coordinates; an attribute of another length counts as absent."""
-    wanted: Sequence[tuple[str, tuple[int, ...]]] = (("NORMAL", (3,)), ("COLOR_0", (3, 4)), ("TEXCOORD_0", (2,)))
+    wanted: list[tuple[str, tuple[int, ...]]] = [("NORMAL", (3,)), ("COLOR_0", (3, 4))]
+    wanted += [(name, (2,)) for name in coordinate_sets(file.document, primitive.get("material"))]
     attributes = get_object(primitive, "attributes")
     found: dict[str, FloatArray] = {}
     for name, width in wanted:

@@ -3,7 +3,8 @@
 The document, its buffers and everything in them stay. Each node whose mesh has a filled hole gets a child node and
 mesh called `quadpatch_filled`, in the node's own coordinates, with one primitive for each material around the holes.
 The new primitives have normals, colours and texture coordinates where their surroundings have them, and the attributes
-`_HOLE_ID` and `_CONFIDENCE` on every vertex. Rim vertices are repeated with the bits they have in the measured mesh.
+`_HOLE_ID` and `_CONFIDENCE` on every vertex. Those on a texture page have copies of the materials around, with the page
+for their base colour and without other images. Rim vertices are repeated with the bits they have in the measured mesh.
 """
 
 from dataclasses import dataclass, replace
@@ -13,10 +14,12 @@ import numpy as np
 
 from quadpatch.formats.attributes import extend_colours, nearest_rim_triangle
 from quadpatch.formats.gltf.container import GltfFile, dump_gltf
+from quadpatch.formats.gltf.images import add_page_materials, gltf_surface_texture
 from quadpatch.formats.gltf.moved_scene import move_in_gltf
 from quadpatch.formats.gltf.primitive import Corners, Store, build_primitive
-from quadpatch.formats.scan import Fill, Moved, Scan, VertexAttributes
+from quadpatch.formats.scan import Fill, Moved, Scan, VertexAttributes, WithoutImages
 from quadpatch.formats.scene_parts import Part, is_invertible, split_by_part
+from quadpatch.formats.surface_texture import SurfaceTexture
 from quadpatch.formats.texture import extend_over_corners
 from quadpatch.mesh.weld import weld
 from quadpatch.types import BoolArray, FloatArray, IntArray
@@ -56,7 +59,7 @@ class Primitive:
 
 
 @dataclass(frozen=True)
-class GltfSource:
+class GltfSource(WithoutImages):
     """A glTF file as it was read.
 
     Attributes
@@ -95,6 +98,14 @@ class GltfSource:
         """Return the normals (n, 3) in the scene, NaN where a primitive lacks them; None where all do."""
         return self._gather(scan, "NORMAL", 3, in_scene=True)
 
+    def surface_texture(self, scan: Scan) -> SurfaceTexture | None:
+        """Images of base colours."""
+        return gltf_surface_texture(self.file, self.primitives, scan)
+
+    def as_binary(self) -> "GltfSource":
+        """Return the same as a `.glb`."""
+        return replace(self, file=self.file.as_binary())
+
     def move(self, scan: Scan, moved: Moved) -> bytes:
         """Hand the file back with vertices at other positions."""
         return move_in_gltf(self, scan, moved)
@@ -121,18 +132,21 @@ class GltfSource:
             return dump_gltf(self.file)
         corners = self._corners(scan, fill)
         primitive_of_row = self._primitive_of(nearest_rim_triangle(scan, fill))
+        materials = [self.primitives[i].material for i in primitive_of_row.tolist()]
         store = Store.of(self.file)
+        if fill.page is not None:
+            painted = add_page_materials(store, fill.page)
+            materials = [painted.get(old, new) for old, new in zip(fill.page.material.tolist(), materials, strict=True)]
         for piece in split_by_part(scan, fill, self.parts):
             built = []
-            for material, rows in self._by_material(primitive_of_row[piece.rows]):
+            for material, rows in self._by_material([materials[row] for row in piece.rows.tolist()]):
                 entry = build_primitive(store, piece, rows, corners)
                 built.append(entry if material is None else {**entry, "material": material})
             self._attach(store, self.nodes[piece.part], built)
         return dump_gltf(store.finished())
 
-    def _by_material(self, primitive: IntArray) -> list[tuple[object, BoolArray]]:
+    def _by_material(self, materials: list[object]) -> list[tuple[object, BoolArray]]:
         """Materials and the rows that have each, in order of appearance."""
-        materials = [self.primitives[i].material for i in primitive.tolist()]
         different = list(dict.fromkeys(map(str, materials)))
         names = np.array(list(map(str, materials)), dtype=object)
         return [(materials[int(np.argmax(names == name))], np.asarray(names == name)) for name in different]
@@ -153,6 +167,10 @@ class GltfSource:
             welded = weld(scan.vertices, scan.triangles)
             joined = replace(scan, triangles=welded.to_file[welded.from_file[scan.triangles]])
             extended = extend_over_corners(joined, fill, texture[scan.triangles])
+            if fill.page is not None:
+                # glTF counts v downwards.
+                on_page = fill.page.coordinates * np.array([1.0, -1.0]) + np.array([0.0, 1.0])
+                extended = np.where(np.isfinite(on_page), on_page, extended)
         normals = self._gather(scan, "NORMAL", 3)
         return Corners(fill, len(scan.vertices), colours, extended, normals)
 

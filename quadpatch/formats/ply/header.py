@@ -187,7 +187,9 @@ def without_properties(header: Header, element: Element, names: set[str]) -> Hea
     return replace(header, lines=tuple(lines))
 
 
-def rewrite_header(header: Header, counts: dict[str, int], added: dict[str, list[tuple[str, str]]]) -> bytes:
+def rewrite_header(
+    header: Header, counts: dict[str, int], added: dict[str, list[tuple[str, str]]], comment: bytes = b""
+) -> bytes:
     """Write a header again with other counts and further properties.
 
     Parameters
@@ -197,6 +199,8 @@ def rewrite_header(header: Header, counts: dict[str, int], added: dict[str, list
         New row counts by element name.
     added : dict
         (type word, property name) pairs to append, by element name.
+    comment : bytes
+        A line to put in front of the last, with its line end.
 
     Returns
     -------
@@ -210,7 +214,7 @@ def rewrite_header(header: Header, counts: dict[str, int], added: dict[str, list
             lines[element.line] = re.sub(rb"[0-9]+(\s*)$", count + rb"\g<1>", lines[element.line])
         for type_word, name in added.get(element.name, []):
             lines[element.last_line] += f"property {type_word} {name}".encode() + header.line_end
-    return b"".join(lines)
+    return b"".join([*lines[:-1], comment, lines[-1]])
 
 
 def value_range(code: str) -> tuple[int, int]:

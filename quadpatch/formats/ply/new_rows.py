@@ -21,13 +21,17 @@ from quadpatch.formats.ply.encoding import Table
 from quadpatch.formats.ply.file import INDEX_NAMES, PlyFile
 from quadpatch.formats.ply.header import Property, value_range
 from quadpatch.formats.ply.rows import ListColumn, Rows, Values
+from quadpatch.formats.ply.texture_files import NUMBER, texture_names
 from quadpatch.formats.ply.vertex_attributes import colour_columns, wedge_texture
 from quadpatch.formats.scan import Fill, Scan
+from quadpatch.formats.surface_texture import TexturePage
 from quadpatch.formats.texture import extend_over_corners
 from quadpatch.types import FloatArray, IntArray
 
 # PLY type word, numpy code, name, and the value of a measured row.
 MARKS = (("uchar", "u1", "filled", 0), ("int", "i4", "hole_id", -1), ("float", "f4", "confidence", 1))
+# The number of a face's image: of files that name several, and of those that get a page.
+PAGE_MARK = ("int", "i4", NUMBER, 0)
 
 _COLOUR = re.compile(r"((diffuse|ambient|specular)_)?(red|green|blue|alpha|gray|grey|intensity|r|g|b|a)")
 _NORMALS = ("nx", "ny", "nz")
@@ -109,6 +113,9 @@ def new_carrier_rows(scan: Scan, file: PlyFile, fill: Fill) -> list[Table]:
     given: dict[str, Values] = {axis: normals[:, i] for i, axis in enumerate(_NORMALS)}
     given |= marks | {name: fill.triangles} | _texture(scan, file, rows, fill)
     like = np.maximum(file.triangle_row[nearest_rim_triangle(scan, fill)], 0)
+    if fill.page is not None:
+        numbers = _image_numbers(file, rows, fill.page, like)
+        given, marks = given | numbers, marks | numbers
     columns = [_column(rows, i, given, like) for i in range(len(rows.columns))]
     return [Table(len(fill.triangles), tuple(columns), marks)]
 
@@ -139,4 +146,13 @@ def _texture(scan: Scan, file: PlyFile, rows: Rows, fill: Fill) -> dict[str, Val
     if coordinates is None:
         return {}
     extended = extend_over_corners(scan, fill, coordinates)
+    if fill.page is not None:
+        extended = np.where(np.isfinite(fill.page.coordinates), fill.page.coordinates, extended)
     return {"texcoord": np.nan_to_num(extended.reshape(-1, 6))}
+
+
+def _image_numbers(file: PlyFile, rows: Rows, page: TexturePage, like: IntArray) -> dict[str, Values]:
+    """Return the number of each new triangle's image: that of the page, or of the row that it is like."""
+    column = rows.scalar(NUMBER)
+    old = np.zeros(len(like), np.int64) if column is None else to_float64(column[like]).astype(np.int64)
+    return {NUMBER: np.where(page.material >= 0, len(texture_names(file)), old).astype(np.int32)}

@@ -5,6 +5,7 @@ file holds them. Everything else in the file is kept as bytes, and the writer ha
 """
 
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
@@ -17,18 +18,21 @@ from quadpatch.formats.ply.file import INDEX_NAMES, PlyFile
 from quadpatch.formats.ply.header import Element, parse_header
 from quadpatch.formats.ply.moved_rows import move_in_ply
 from quadpatch.formats.ply.rows import Rows
+from quadpatch.formats.ply.texture_files import page_file, ply_surface_texture
 from quadpatch.formats.ply.vertex_attributes import ply_vertex_attributes, ply_vertex_colours
 from quadpatch.formats.ply.writer import append_to_ply
 from quadpatch.formats.polygons import triangulate_polygons, triangulate_strips
 from quadpatch.formats.scan import Fill, Moved, Scan, VertexAttributes
+from quadpatch.formats.surface_texture import SurfaceTexture, TexturePage
 from quadpatch.types import FloatArray, IntArray, Triangles, Vertices
 
 
 @dataclass(frozen=True)
 class PlySource:
-    """A PLY file as it was read."""
+    """A PLY file as it was read, and where its texture images may lie."""
 
     file: PlyFile
+    folder: Path | None = None
 
     def append(self, scan: Scan, fill: Fill) -> bytes:
         """Hand the file back with rows appended."""
@@ -46,8 +50,16 @@ class PlySource:
         """Say what colours, normals and texture coordinates the file has."""
         return ply_vertex_attributes(scan, self.file)
 
+    def surface_texture(self, scan: Scan) -> SurfaceTexture | None:
+        """Images that comments name."""
+        return ply_surface_texture(self.file, self.folder)
 
-def read_ply(data: bytes, limits: ReadLimits) -> Scan:
+    def side_files(self, page: TexturePage) -> dict[str, bytes]:
+        """Return the page."""
+        return {page_file(page): page.png}
+
+
+def read_ply(data: bytes, limits: ReadLimits, folder: Path | None = None) -> Scan:
     """Read a PLY file.
 
     Parameters
@@ -55,6 +67,8 @@ def read_ply(data: bytes, limits: ReadLimits) -> Scan:
     data : bytes
         The whole file.
     limits : ReadLimits
+    folder : Path, optional
+        Where texture images may lie; None allows none.
 
     Raises
     ------
@@ -72,7 +86,7 @@ def read_ply(data: bytes, limits: ReadLimits) -> Scan:
     check_triangles(triangles, limits)
     file = PlyFile(data, header, rows, carrier, triangle_row)
     marks = [column for read in rows if (column := read.scalar("hole_id")) is not None]
-    return Scan(vertices, triangles, "ply", source=PlySource(file), next_hole_id=next_hole_id(marks))
+    return Scan(vertices, triangles, "ply", source=PlySource(file, folder), next_hole_id=next_hole_id(marks))
 
 
 def _check_count(element: Element, limits: ReadLimits) -> None:

@@ -72,6 +72,12 @@ def _colours(rows: Rows) -> FloatArray | None:
     return np.concatenate([colours, opaque if alpha is None else alpha], axis=1) * (255.0 / top)
 
 
+def has_vertex_texture(file: PlyFile) -> bool:
+    """Whether vertices have texture coordinates."""
+    rows = file.element("vertex")
+    return rows is not None and _columns(rows, _TEXTURES) is not None
+
+
 def wedge_texture(rows: Rows, triangle_row: IntArray) -> FloatArray | None:
     """Texture coordinates of each corner, as MeshLab writes them: a list `texcoord` of six numbers a triangle.
 

@@ -11,7 +11,8 @@ hole_id     int     -1           id of the hole
 confidence  float   1            0..1
 =========== ======= ============ =====================
 
-They stand behind the old values of each row. A property of that name that is already there, as in a file that is
+With a texture page, faces also have `texnumber` (int; 0, and for faces on the page its number), and a comment names its
+file. They stand behind the old values of each row. A property of that name that is already there, as in a file that is
 repaired again, keeps its old values and takes the new rows'.
 
 Files of triangle strips get one further row of strips for each hole, each triangle its own strip: readers of strips
@@ -23,8 +24,9 @@ import numpy as np
 from quadpatch.formats.ply.encoding import encode_rows, insert_behind, insert_behind_equal
 from quadpatch.formats.ply.file import PlyFile
 from quadpatch.formats.ply.header import rewrite_header
-from quadpatch.formats.ply.new_rows import MARKS, new_carrier_rows, new_vertex_rows
+from quadpatch.formats.ply.new_rows import MARKS, PAGE_MARK, new_carrier_rows, new_vertex_rows
 from quadpatch.formats.ply.rows import Rows
+from quadpatch.formats.ply.texture_files import NUMBER, page_comment
 from quadpatch.formats.scan import Fill, Scan
 from quadpatch.formats.text import word_ends
 
@@ -47,6 +49,11 @@ def append_to_ply(scan: Scan, file: PlyFile, fill: Fill) -> bytes:
     """
     new = {"vertex": new_vertex_rows(scan, file, fill), file.carrier: new_carrier_rows(scan, file, fill)}
     added = {rows.element.name: _missing_marks(rows) for rows in file.rows if rows.element.name in new}
+    comment = b""
+    if fill.page is not None:
+        comment = page_comment(fill.page, file.header.line_end)
+        if all(rows.element.find(NUMBER) is None for rows in file.rows if rows.element.name == file.carrier):
+            added[file.carrier].append(("int", NUMBER))
     counts = {}
     tails: dict[str, bytes] = {}
     for rows in file.rows:
@@ -57,7 +64,7 @@ def append_to_ply(scan: Scan, file: PlyFile, fill: Fill) -> bytes:
             tails[name] = b"".join(
                 encode_rows(rows.element, table, [mark for _, mark in added[name]], file.header) for table in tables
             )
-    head = rewrite_header(file.header, counts, added)
+    head = rewrite_header(file.header, counts, added, comment)
     pieces = _ascii_pieces if file.header.is_ascii else _binary_pieces
     return b"".join([head, *pieces(file, added, tails)])
 
@@ -69,7 +76,7 @@ def _missing_marks(rows: Rows) -> list[tuple[str, str]]:
 def _suffix(file: PlyFile, added: list[tuple[str, str]]) -> bytes:
     """Encode the marks of a measured row."""
     names = [name for _, name in added]
-    values = [(code, value) for _, code, name, value in MARKS if name in names]
+    values = [(code, value) for _, code, name, value in (*MARKS, PAGE_MARK) if name in names]
     if file.header.is_ascii:
         return "".join(f" {value}" for _, value in values).encode()
     return b"".join(np.array(value, dtype=file.header.order + code).tobytes() for code, value in values)

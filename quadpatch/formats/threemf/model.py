@@ -6,7 +6,7 @@ Tested in `tests/quadpatch/formats/threemf/test_element_lists.py`.
 """
 
 from dataclasses import dataclass, field
-from typing import NoReturn
+from typing import NamedTuple, NoReturn
 from xml.parsers import expat
 
 import numpy as np
@@ -48,15 +48,33 @@ class ModelObject:
     triangles: Triangles = field(default_factory=lambda: np.zeros((0, 3), dtype=np.int64))
 
 
+class ModelImage(NamedTuple):
+    """A texture image: the path of its entry, and what stands beyond its border along u and v, in words of 3MF."""
+
+    path: str
+    tile_u: str
+    tile_v: str
+
+
+class TextureGroup(NamedTuple):
+    """A group of texture coordinates: the id of its image, and pairs of words."""
+
+    image_id: str
+    coordinates: list[tuple[str, str]]
+
+
 @dataclass
 class Model:
-    """A model part: unit, objects by id, build items, colours by property group, and where its lists end."""
+    """A model part: unit, objects by id, build items, what property groups hold, and where its lists end."""
 
     text: bytes
     unit: str = "millimeter"
     objects: dict[str, ModelObject] = field(default_factory=dict)
     items: list[Placed] = field(default_factory=list)
     colours: dict[str, list[str]] = field(default_factory=dict)
+    images: dict[str, ModelImage] = field(default_factory=dict)
+    texture_groups: dict[str, TextureGroup] = field(default_factory=dict)
+    resources_start: int = -1
     resources_end: int = -1
     build_end: int = -1
 
@@ -111,6 +129,7 @@ class _Handler:
         self._skipped = 0
         self._object: ModelObject | None = None
         self._group: list[str] | None = None
+        self._texture_group: TextureGroup | None = None
         self._starts = {
             _CORE + "model": self._start_model,
             _CORE + "object": self._start_object,
@@ -120,6 +139,10 @@ class _Handler:
             _CORE + "item": self._item,
             _CORE + "basematerials": self._start_group,
             _MATERIAL + "colorgroup": self._start_group,
+            _CORE + "resources": self._start_resources,
+            _MATERIAL + "texture2d": self._image,
+            _MATERIAL + "texture2dgroup": self._start_texture_group,
+            _MATERIAL + "tex2coord": self._coordinate,
             _CORE + "base": self._colour,
             _MATERIAL + "color": self._colour,
         }
@@ -193,6 +216,24 @@ class _Handler:
 
     def _start_group(self, attributes: dict[str, str]) -> None:
         self._group = self.model.colours.setdefault(attributes.get("id", ""), [])
+
+    def _start_resources(self, _: dict[str, str]) -> None:
+        if self.parser is not None:
+            start = self.parser.CurrentByteIndex + self._skipped
+            self.model.resources_start = self.model.text.index(b">", start) + 1
+
+    def _image(self, attributes: dict[str, str]) -> None:
+        get = attributes.get
+        image = ModelImage(get("path", ""), get("tilestyleu", "wrap"), get("tilestylev", "wrap"))
+        self.model.images[get("id", "")] = image
+
+    def _start_texture_group(self, attributes: dict[str, str]) -> None:
+        self._texture_group = TextureGroup(attributes.get("texid", ""), [])
+        self.model.texture_groups.setdefault(attributes.get("id", ""), self._texture_group)
+
+    def _coordinate(self, attributes: dict[str, str]) -> None:
+        if self._texture_group is not None:
+            self._texture_group.coordinates.append((attributes.get("u", ""), attributes.get("v", "")))
 
     def _colour(self, attributes: dict[str, str]) -> None:
         if self._group is not None:

@@ -21,6 +21,8 @@ from quadpatch.formats.limits import ReadLimits
 _RELATION = re.compile(rb"<(?:[\w.-]+:)?Relationship\b[^>]*>")
 _MODEL_TYPE = b"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"
 _MOST_ENTRIES = 100_000
+# Entries that are added have a fixed time, so that equal meshes are equal bytes.
+_TIME = (1980, 1, 1, 0, 0, 0)
 _UNREADABLE = (
     zipfile.BadZipFile,
     zlib.error,
@@ -57,7 +59,7 @@ class Package:
             return archive.read(name)
 
     def with_changed(self, changed: dict[str, bytes]) -> bytes:
-        """Pack again with some entries replaced; all others keep their content, names, order and times."""
+        """Pack again with some entries replaced or added; all others keep their content, names, order and times."""
         packed = io.BytesIO()
         with _archive(self.data) as archive, zipfile.ZipFile(packed, "w") as target:
             for info in archive.infolist():
@@ -66,6 +68,10 @@ class Package:
                 entry.compress_type = zipfile.ZIP_STORED if stored else zipfile.ZIP_DEFLATED
                 entry.external_attr, entry.create_system = info.external_attr, info.create_system
                 target.writestr(entry, changed.get(info.filename) or archive.read(info))
+            for name in [name for name in changed if name not in self.names]:
+                entry = zipfile.ZipInfo(name, _TIME)
+                entry.compress_type = zipfile.ZIP_DEFLATED
+                target.writestr(entry, changed[name])
         return packed.getvalue()
 
 

@@ -4,7 +4,7 @@ All entries stay, and in the models all text. A hole of an object that is built 
 `vertex` and `triangle` elements stand behind its own, so what was a solid with a hole is a solid. An object that is
 built several times can't be changed for one of its places; its fills become an object `quadpatch_filled` of type
 `surface`. New triangles carry `hole` and `confidence` in the namespace `urn:quadpatch`, which other programs skip, and
-the material or colour of the nearest measured triangle.
+the material or colour of the nearest measured triangle, or a place in a texture page.
 """
 
 import re
@@ -13,13 +13,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from quadpatch.formats.attributes import joined_vertices, nearest_rim_triangle
-from quadpatch.formats.scan import Fill, Moved, Scan, VertexAttributes
+from quadpatch.formats.scan import Fill, Moved, Scan, VertexAttributes, WithoutImages
 from quadpatch.formats.scene_parts import Part, PartFill, split_by_part
+from quadpatch.formats.surface_texture import SurfaceTexture, TexturePage
 from quadpatch.formats.text import to_words
+from quadpatch.formats.threemf.images import entries_of_page, free_id, page_resources, threemf_surface_texture
 from quadpatch.formats.threemf.model import Model, ModelObject
 from quadpatch.formats.threemf.moved_vertices import move_in_threemf
 from quadpatch.formats.threemf.package import Package
-from quadpatch.types import FloatArray, Triangles, Vertices
+from quadpatch.types import FloatArray, IntArray, Triangles, Vertices
 
 FILL_NAME = "quadpatch_filled"
 _CORE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
@@ -34,7 +36,7 @@ class Origin:
 
 
 @dataclass(frozen=True)
-class ThreemfSource:
+class ThreemfSource(WithoutImages):
     """A 3MF package as it was read.
 
     Attributes
@@ -72,6 +74,14 @@ class ThreemfSource:
             _colour_vertices(self._entry(number), groups, table)
         return None if np.isnan(colours).all() else colours
 
+    def surface_texture(self, scan: Scan) -> SurfaceTexture | None:
+        """Images of groups of texture coordinates."""
+        entries = [
+            (origin.path, self._entry(number), self.parts[number].is_mirrored)
+            for number, origin in enumerate(self.origins)
+        ]
+        return threemf_surface_texture(self.package, self.models, entries)
+
     def move(self, scan: Scan, moved: Moved) -> bytes:
         """Hand the package back with vertices at other positions."""
         return move_in_threemf(self, scan, moved)
@@ -80,14 +90,44 @@ class ThreemfSource:
         """Add the fill to the objects that have the holes."""
         inserts: dict[str, list[tuple[int, str]]] = {}
         properties = self._properties(scan, fill)
-        for piece in split_by_part(scan, fill, self.parts) if len(fill.triangles) else []:
-            path = self.origins[piece.part].path
-            if self.origins.count(self.origins[piece.part]) == 1:
-                inserts.setdefault(path, []).extend(self._in_object(piece, fill, properties))
-            else:
-                root = self.package.root
+        pieces = split_by_part(scan, fill, self.parts) if len(fill.triangles) else []
+        in_objects = [piece for piece in pieces if self.origins.count(self.origins[piece.part]) == 1]
+        added = {} if fill.page is None else self._add_page(in_objects, fill.page, inserts, properties)
+        for piece in in_objects:
+            inserts.setdefault(self.origins[piece.part].path, []).extend(self._in_object(piece, fill, properties))
+        root = self.package.root
+        for piece in pieces:
+            if self.origins.count(self.origins[piece.part]) > 1:
                 inserts.setdefault(root, []).extend(self._own_object(piece, scan, fill, len(inserts.get(root, []))))
-        return self.package.with_changed({path: _insert(self.models[path].text, at) for path, at in inserts.items()})
+        models = {path: _insert(self.models[path].text, at) for path, at in inserts.items()}
+        return self.package.with_changed({**models, **added})
+
+    def _add_page(
+        self,
+        pieces: list[PartFill],
+        page: TexturePage,
+        inserts: dict[str, list[tuple[int, str]]],
+        properties: list[str],
+    ) -> dict[str, bytes]:
+        """Add a page to the model parts whose objects have fills on it; returns the further entries of the package."""
+        is_on_page = page.material >= 0
+        paths = [self.origins[piece.part].path for piece in pieces if is_on_page[piece.rows].any()]
+        for path in dict.fromkeys(paths):
+            model = self.models[path]
+            group = free_id(model.text) + 1
+            rows, corners = self._on_page([p for p in pieces if self.origins[p.part].path == path], page)
+            places, index = np.unique(corners.reshape(-1, 2), axis=0, return_inverse=True)
+            inserts.setdefault(path, []).append((model.resources_start, page_resources(places, page, group - 1)))
+            for row, (p1, p2, p3) in zip(rows.tolist(), index.reshape(-1, 3).tolist(), strict=True):
+                properties[row] = f' pid="{group}" p1="{p1}" p2="{p2}" p3="{p3}"'
+        return entries_of_page(self.package, page, list(dict.fromkeys(paths))) if paths else {}
+
+    def _on_page(self, pieces: list[PartFill], page: TexturePage) -> tuple[IntArray, FloatArray]:
+        """Rows (k,) of fills that lie on a page, and their coordinates (k, 3, 2) as the parts turn their triangles."""
+        rows = [piece.rows[page.material[piece.rows] >= 0] for piece in pieces]
+        orders = [[0, 2, 1] if self.parts[piece.part].is_mirrored else [0, 1, 2] for piece in pieces]
+        corners = [page.coordinates[chosen][:, order] for chosen, order in zip(rows, orders, strict=True)]
+        return np.concatenate(rows), np.concatenate(corners)
 
     def _in_object(self, piece: PartFill, fill: Fill, properties: list[str]) -> list[tuple[int, str]]:
         part, entry = self.parts[piece.part], self._entry(piece.part)
@@ -103,7 +143,8 @@ class ThreemfSource:
 
     def _own_object(self, piece: PartFill, scan: Scan, fill: Fill, so_far: int) -> list[tuple[int, str]]:
         root = self.models[self.package.root]
-        number = 1 + so_far + max(int(name) for name in ["0", *root.objects, *root.colours] if name.isdecimal())
+        # Behind the ids of a page.
+        number = free_id(root.text) + 2 + so_far
         # In the coordinates of the scene, with the triangles turned as the fill has them.
         vertex, corners = np.unique(fill.triangles[piece.rows], return_inverse=True)
         positions = joined_vertices(scan, fill)[vertex]

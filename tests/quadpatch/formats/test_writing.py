@@ -8,7 +8,7 @@ import pytest
 
 from quadpatch.errors import FormatError
 from quadpatch.formats.reading import read_scan
-from quadpatch.formats.scan import Fill, Moved, Scan, VertexAttributes
+from quadpatch.formats.scan import Fill, Moved, Scan, VertexAttributes, WithoutImages
 from quadpatch.formats.writing import write_scan
 from tests.quadpatch.formats.fills import as_scan, cap_holes
 from tests.quadpatch.shapes import punched, sphere
@@ -17,7 +17,7 @@ BALL = as_scan(punched(sphere(2), (0.0, 0.0, 1.0), radius=0.5))
 
 
 @dataclass(frozen=True)
-class Broken:
+class Broken(WithoutImages):
     """The source of a scan whose attributes can't be carried on."""
 
     error: Exception
