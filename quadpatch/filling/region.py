@@ -6,8 +6,10 @@ balls hold, and a little more.
 """
 
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.mesh.measures import LONG_EDGE, EdgeStatistics
@@ -19,6 +21,8 @@ MOST_OF_MESH = 0.5
 _CELLS = 256
 # Vertices, and triangles, that are looked at together.
 _CHUNK = 1 << 18
+
+Number = TypeVar("Number", bound=np.generic)
 
 
 @dataclass(frozen=True)
@@ -32,19 +36,26 @@ class Region:
     whole : TriangleMesh
     vertices : (n,) int64
         Vertex of the whole that each vertex is, ascending.
-    triangles : (m,) int64
-        Triangle of the whole that each triangle is, ascending.
+    chosen : (m,) int64 or None
+        Triangle of the whole that each triangle is, ascending; None where all are.
     """
 
     mesh: TriangleMesh
     whole: TriangleMesh
     vertices: IntArray
-    triangles: IntArray
+    chosen: IntArray | None = None
 
     @classmethod
     def all_of(cls, mesh: TriangleMesh) -> "Region":
         """Take a whole mesh for a region."""
-        return cls(mesh, mesh, np.arange(len(mesh.vertices)), np.arange(len(mesh.triangles)))
+        return cls(mesh, mesh, np.arange(len(mesh.vertices)))
+
+    def of_triangles(self, values: NDArray[Number]) -> NDArray[Number]:
+        """Take the rows of the region's triangles out of a table for those of the whole, which may have fewer rows.
+
+        Triangles behind the last row, as invented ones are behind the measured ones, are left out.
+        """
+        return values if self.chosen is None else values[self.chosen[: np.searchsorted(self.chosen, len(values))]]
 
     def local(self, indices: IntArray) -> IntArray:
         """Translate vertices of the whole, all of which the region has, into its own: any shape."""

@@ -111,9 +111,9 @@ def _sampled(
     filled = measured.filled.without(np.flatnonzero(density == 0))
     texel = 1.0 / float(np.median(density[density > 0]))
     part = Surroundings.of_fills(filled, edge_statistics(filled.measured), rng, texel)
-    rows = part.region.triangles[: part.filled.n_measured_triangles]
-    given = measured.texture
-    texture = replace(given, coordinates=given.coordinates[rows], material=given.material[rows])
+    given, region = measured.texture, part.region
+    coordinates, material = region.of_triangles(given.coordinates), region.of_triangles(given.material)
+    texture = replace(given, coordinates=coordinates, material=material)
     near = MeasuredTexture(part.filled, texture, dict(measured.problems))
     return near, take_samples(near, texel)
 

@@ -24,6 +24,18 @@ def corners(mesh: TriangleMesh) -> set[bytes]:
     return {triangle.tobytes() for triangle in mesh.vertices[mesh.triangles]}
 
 
+def test_rows_of_triangles_are_those_of_the_region() -> None:
+    region = around(0.2)
+    middles = SHEET.vertices[SHEET.triangles].mean(axis=1)
+    assert 0 < len(region.mesh.triangles) < len(SHEET.triangles)
+    assert (region.of_triangles(middles) == region.mesh.vertices[region.mesh.triangles].mean(axis=1)).all()
+    # Of a table of the first triangles, those that the region has come back.
+    first = region.of_triangles(np.arange(len(SHEET.triangles) // 2))
+    assert 0 < len(first) < len(region.mesh.triangles)
+    assert (first == region.of_triangles(np.arange(len(SHEET.triangles)))[: len(first)]).all()
+    assert Region.all_of(SHEET).of_triangles(middles) is middles
+
+
 @pytest.mark.parametrize("radius", [0.05, 0.2, 0.35])
 def test_a_region_has_every_triangle_that_comes_near_and_few_others(radius: float) -> None:
     region = around(radius)
