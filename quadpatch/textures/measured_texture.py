@@ -8,14 +8,16 @@ from functools import cached_property
 
 import numpy as np
 
-from quadpatch.errors import TextureError
+from quadpatch.errors import ImageTooLargeError, TextureError
 from quadpatch.filling.filled_mesh import FilledMesh
-from quadpatch.formats.surface_texture import ImageProblem, SurfaceTexture
+from quadpatch.formats.surface_texture import ImageProblem, SurfaceTexture, TextureImage
 from quadpatch.mesh.normals import area_vectors, length
 from quadpatch.mesh.topology import directed_edges, edge_keys
 from quadpatch.textures.images import DecodedImage, size_of
 from quadpatch.types import BoolArray, FloatArray, IntArray
 
+# Pixels of all images of a scan that are decoded.
+MOST_PIXELS_IN_ALL = 1 << 29
 # How far from the border of a chart colours are read, in texels: beyond it an atlas may hold anything.
 _INSIDE = 0.75
 
@@ -122,13 +124,14 @@ class MeasuredTexture:
         """
         material = np.where(self.has_texture[triangle], self.texture.material[triangle], -1)
         colours = np.full((len(triangle), 4), np.nan)
-        has_alpha = False
+        has_alpha, n_pixels = False, 0
         on_border = (self._is_border[triangle] & (np.roll(weights, -2, axis=1) == 0)).any(axis=1)
         for number in np.unique(material[material >= 0]).tolist():
             image = self.texture.images[number]
             if image is None or number in self.problems:
                 continue
             try:
+                n_pixels = _counted(n_pixels, image)
                 decoded = DecodedImage(image)
             except TextureError as error:
                 self.note(number, error)
@@ -166,3 +169,13 @@ class MeasuredTexture:
         is_inner[order[1:][is_same]] = True
         is_inner[order[:-1][is_same]] = True
         return ~is_inner.reshape(-1, 3)
+
+
+def _counted(n_pixels: int, image: TextureImage) -> int:
+    """Add the pixels of an image to those of others; raise ImageTooLargeError where these are too many."""
+    width, height = size_of(image)
+    if n_pixels + width * height > MOST_PIXELS_IN_ALL:
+        raise ImageTooLargeError(
+            f"the images of the mesh have more than {MOST_PIXELS_IN_ALL:,} pixels in all, the limit"
+        )
+    return n_pixels + width * height

@@ -143,8 +143,8 @@ class ThreemfSource(WithoutImages):
 
     def _own_object(self, piece: PartFill, scan: Scan, fill: Fill, so_far: int) -> list[tuple[int, str]]:
         root = self.models[self.package.root]
-        # Behind the ids of a page.
-        number = free_id(root.text) + 2 + so_far
+        # A page has two ids.
+        number = free_id(root.text) + (0 if fill.page is None else 2) + so_far
         # In the coordinates of the scene, with the triangles turned as the fill has them.
         vertex, corners = np.unique(fill.triangles[piece.rows], return_inverse=True)
         positions = joined_vertices(scan, fill)[vertex]

@@ -13,7 +13,7 @@ from quadpatch.formats.surface_texture import SurfaceTexture, TextureImage
 from quadpatch.mesh.measures import mean_edge_length
 from quadpatch.options import RepairOptions
 from quadpatch.recipes.default import inpaint
-from quadpatch.textures import samples
+from quadpatch.textures import measured_texture, samples
 from quadpatch.textures.measured_texture import MeasuredTexture
 from quadpatch.textures.painting import PaintedFills, paint_fills
 from quadpatch.types import TriangleMesh
@@ -61,6 +61,18 @@ def test_without_any_image_there_is_no_page() -> None:
     nothing = SurfaceTexture(texture.coordinates, np.full(len(texture.material), -1), texture.images)
     result = painted(nothing)
     assert (result.page, result.method, result.problems) == (None, None, [])
+
+
+def test_images_are_decoded_until_they_are_too_many(monkeypatch: pytest.MonkeyPatch) -> None:
+    # Both halves have an image of 4096 texels.
+    monkeypatch.setattr(measured_texture, "MOST_PIXELS_IN_ALL", 5000)
+    whole = textured()
+    right = FILLED.mesh.vertices[FILLED.measured.triangles].mean(axis=1)[:, 0] > 0
+    both = SurfaceTexture(whole.coordinates, right.astype(np.int64), whole.images * 2)
+    result = painted(both)
+    assert [problem.code for problem in result.problems] == ["image_too_large"]
+    assert result.page is not None
+    assert set(result.page.material.tolist()) == {0}
 
 
 def test_samples_of_fills_lie_as_dense_as_measured_ones() -> None:
