@@ -100,8 +100,8 @@ def pick(sampled: Sampled, which: BoolArray) -> Sampled:
     return Sampled(pick_patches(sampled.patches, which), sampled.base_heights[which])
 
 
-def pick_patches(patches: Patches, which: BoolArray) -> Patches:
-    """Pick some of the patches (n_patches,), without a base surface."""
+def pick_patches(patches: Patches, which: BoolArray | IntArray) -> Patches:
+    """Pick some of the patches, without a base surface."""
     return Patches(
         patches.origins[which],
         patches.frames[which],
