@@ -59,7 +59,9 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--meshes", type=Path, help="folder of meshes of your own, in place of the bench's")
     parser.add_argument("--mesh", action="append", help="just this mesh; repeat for more")
     parser.add_argument("--radius", action="append", help=f"hole radius; repeat for more, or all: {', '.join(RADII)}")
-    parser.add_argument("--model", action="append", help="smooth, self, self-network, or a model; repeat for more")
+    parser.add_argument(
+        "--model", action="append", help="smooth, self, self-network, auto, best, or a model; repeat for more"
+    )
     parser.add_argument("--output", type=Path, default=Path("var/quality"), help="folder for meshes and results")
     parser.add_argument("--fresh", action="store_true", help="measure again; keep the paper's models and peers")
     parser.add_argument(

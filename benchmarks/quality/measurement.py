@@ -22,6 +22,9 @@ from quadpatch.options import RepairOptions
 from quadpatch.repair import repair_file
 from quadpatch.types import IntArray, Vertices
 
+# The effort of `auto` that may be named like a model.
+BEST = "best"
+
 
 @dataclass(frozen=True)
 class Method:
@@ -43,7 +46,9 @@ class Method:
 
     @classmethod
     def of(cls, model: str) -> "Method":
-        """Take a model with default options, named by its file's stem."""
+        """Take a model with default options, named by its file's stem; `best` stands for `auto` with that effort."""
+        if model == BEST:
+            return cls(BEST, AUTO, {"effort": BEST})
         return cls(Path(model).stem if Path(model).is_file() else model, model)
 
     def key(self) -> dict[str, str]:
