@@ -74,7 +74,7 @@ def repair(  # noqa: PLR0913 - one parameter per option of the command line
         Effort | None,
         typer.Option(
             help="How much the method auto tries: fast (geometry only), standard (also a dictionary of this mesh and "
-            "the shipped network: seconds), best (also a network fitted to this mesh: minutes).",
+            "the shipped network: seconds), best (also a network fitted to this mesh: a minute).",
             show_default="standard",
         ),
     ] = None,

@@ -175,18 +175,17 @@ class NetworkOptions:
     Attributes
     ----------
     steps : int
-        At most so many, of 64 patches each.
-    seconds : float
-        At most so long, cutting training pairs included. Where it ends before the steps do, another run may give other
-        bytes.
+        At most so many, of 64 patches each; fewer where calibration holes gain nothing more.
+    seconds : float, optional
+        At most so long, cutting training pairs included. Where this ends it, another run may give other bytes.
     """
 
-    steps: int = 1000
-    seconds: float = 600.0
+    steps: int = 800
+    seconds: float | None = None
 
     def __post_init__(self) -> None:
         _check_range("network.steps", self.steps, STEPS_RANGE)
-        if not (self.seconds > 0 and math.isfinite(self.seconds)):
+        if self.seconds is not None and not (self.seconds > 0 and math.isfinite(self.seconds)):
             raise OptionError(f"network.seconds must be finite and greater than 0; it is {self.seconds}")
 
 

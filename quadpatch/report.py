@@ -102,7 +102,7 @@ def build_report(
         "source": describe_mesh(scan, welded.mesh),
         "welded": asdict(welded.counts),
         "length_unit": scan.unit or UNKNOWN_UNIT,
-        "model": {**model, **_competition(completion)},
+        "model": {**model, **_competition(completion), **_fitting(completion)},
         "options": plain_options(options),
         "counts": {
             "found": len(repair.results),
@@ -133,6 +133,11 @@ def _competition(completion: Completion | None) -> dict[str, Any]:
         for trial in completion.trials
     ]
     return {"shares": completion.shares, "trials": trials}
+
+
+def _fitting(completion: Completion | None) -> dict[str, Any]:
+    """Say how a network was fitted to the mesh; nothing where none was."""
+    return {} if completion is None or completion.fitting is None else {"fitting": asdict(completion.fitting)}
 
 
 def describe_task(

@@ -1,4 +1,4 @@
-"""What a report says of the models that competed on a mesh, in words for people."""
+"""What a report says of the models that competed on a mesh, and of fitting one to it, in words for people."""
 
 from collections.abc import Iterable, Mapping
 from types import MappingProxyType
@@ -8,9 +8,20 @@ _IN_WORDS: Mapping[str, str] = MappingProxyType(
     {"self": "a dictionary of this mesh", "self-network": "a network fitted to this mesh"}
 )
 
+_WHY_FITTING_ENDED: Mapping[str, str] = MappingProxyType(
+    {
+        "steps": "all that were asked for",
+        "settled": "calibration holes gained nothing more",
+        "no_gain": "calibration holes gained nothing, so the network stays as it was",
+        "seconds": "the time for it was over, and another run may end elsewhere",
+        "no_room": "the surface has no room for training pairs, so the network stays as it was",
+        "no_calibration": "there are no calibration holes to judge it by",
+    }
+)
+
 
 def outcome(model: Mapping[str, Any]) -> str:
-    """Say what left the least error on calibration holes, and which models were not tried.
+    """Say what left the least error on calibration holes, how a network was fitted, and what was not tried.
 
     Parameters
     ----------
@@ -20,11 +31,15 @@ def outcome(model: Mapping[str, Any]) -> str:
     Returns
     -------
     str
-        Sentences; empty where nothing competed.
+        Sentences; empty where nothing competed, and nothing was fitted.
     """
     sentences = []
     if model.get("trials"):
         sentences.append(f"Least error on calibration holes: {_winner(model['shares'], model['trials'])}.")
+    fitting = model.get("fitting")
+    if fitting:
+        steps, why = f"{fitting['steps']} of {fitting['steps_asked']} steps", _WHY_FITTING_ENDED[fitting["end"]]
+        sentences.append(f"Fitting took {steps}: {why}.")
     not_tried: Mapping[str, str] = model.get("not_tried") or {}
     if not_tried:
         sentences.append(f"Not tried: {'; '.join(f'{_words(name)} ({why})' for name, why in not_tried.items())}.")

@@ -5,7 +5,7 @@ from typing import Literal
 # How a model's patches become surface: `default` is this project's own way, `paper` that of the paper, step by step.
 Recipe = Literal["default", "paper"]
 # How much the method `auto` tries: `fast` geometry alone, `standard` models that are ready in seconds, `best` also a
-# network that is fitted to the mesh, which takes minutes.
+# network that is fitted to the mesh, which takes a minute.
 Effort = Literal["fast", "standard", "best"]
 # The paper's two kinds of patches, in units of the object's longest side: 0.03 with 16 bins, 0.06 with 24.
 Preset = Literal["type1", "type2"]

@@ -105,7 +105,8 @@ def method_options(spec: JobSpec, time_s: float) -> dict[str, Any]:
         options["effort"] = spec.method.effort
     if fits_a_network(spec.method):
         fitting = spec.method.fitting
-        options["network"] = {"steps": fitting.steps, "seconds": min(fitting.seconds, _FITTING_SHARE * time_s)}
+        most = _FITTING_SHARE * time_s
+        options["network"] = {"steps": fitting.steps, "seconds": min(fitting.seconds or most, most)}
     return options
 
 

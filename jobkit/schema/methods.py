@@ -65,13 +65,17 @@ class DictionaryMethod(Request):
 class Fitting(Request):
     """How long a network is fitted to the mesh itself."""
 
-    steps: FittingSteps = Field(default=1000, description="At most so many steps, of 64 patches each.", examples=[1000])
-    seconds: float = Field(
-        default=600.0,
+    steps: FittingSteps = Field(
+        default=800,
+        description="At most so many steps, of 64 patches each; fewer where calibration holes gain nothing more.",
+        examples=[800],
+    )
+    seconds: float | None = Field(
+        default=None,
         gt=0,
         le=86_400,
-        description="At most so long, and at most two thirds of the job's time limit. Where this ends before the steps "
-        "do, another run may give other bytes.",
+        description="At most so long; null sets no limit but two thirds of the job's time limit. Where time ends the "
+        "fitting, the report says so (`model.fitting`), and another run may give other bytes.",
         examples=[300.0],
     )
 
@@ -84,7 +88,7 @@ class CnnMethod(Request):
         default=DEFAULT_NETWORK,
         pattern=REFERENCE_PATTERN,
         description="`name@version`, `name` (its latest version), an alias, or `self`: fit the shipped network to the "
-        "undamaged part of the uploaded mesh, which takes minutes.",
+        "undamaged part of the uploaded mesh, which takes about a minute.",
         examples=["self"],
     )
     recipe: Recipe = Field(
@@ -115,7 +119,7 @@ class AutoMethod(Request):
     effort: Effort = Field(
         default="standard",
         description="What is tried: `fast` geometry alone, `standard` also a dictionary learned from the mesh itself "
-        "and the network that ships (seconds), `best` also that network fitted to the mesh (minutes).",
+        "and the network that ships (seconds), `best` also that network fitted to the mesh (a minute).",
         examples=["standard"],
     )
     fitting: Fitting = Field(

@@ -47,7 +47,7 @@ def fill(  # noqa: PLR0913, PLR0917  one argument per flag
         str | None,
         typer.Option(
             help="auto (what is best on this very mesh: see --effort), self (learn a dictionary from it), "
-            "self-network (fit a network to it: minutes), smooth (geometry only), a shipped model, or a model file.",
+            "self-network (fit a network to it: a minute), smooth (geometry only), a shipped model, or a model file.",
             show_default="auto; self with the recipe paper",
         ),
     ] = None,
@@ -55,7 +55,7 @@ def fill(  # noqa: PLR0913, PLR0917  one argument per flag
         Effort,
         typer.Option(
             help="How much auto tries: fast (geometry only), standard (also a dictionary of this mesh and the shipped "
-            "network: seconds), best (also a network fitted to this mesh: minutes)."
+            "network: seconds), best (also a network fitted to this mesh: a minute)."
         ),
     ] = "standard",
     recipe: Annotated[
@@ -111,7 +111,7 @@ def fill(  # noqa: PLR0913, PLR0917  one argument per flag
         int, typer.Option(help="Fit at most so many steps (self-network, effort best).")
     ] = FITTING.steps,
     fit_seconds: Annotated[
-        float, typer.Option(help="Fit at most so long (self-network, effort best).")
+        float | None, typer.Option(help="Fit at most so long (self-network, effort best).", show_default="no limit")
     ] = FITTING.seconds,
     weld_tolerance: WeldTolerance = "auto",
     colours: Annotated[

@@ -5,9 +5,9 @@ Tested in `tests/quadpatch/inpainters/test_dictionary.py`.
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Literal, Protocol, runtime_checkable
 
-from quadpatch.calibration.training_pairs import TrainingSurface
+from quadpatch.calibration.training_pairs import TrainingPairs, TrainingSurface
 from quadpatch.types import FloatArray, Patches
 
 
@@ -22,11 +22,44 @@ class UndamagedSurface:
     base_heights : (n_patches, N, N) float64
     training_surface : callable
         Returns the same surface to cut training pairs from; calibration holes are open.
+    held_out : callable or None
+        Returns pairs of the calibration holes, which nothing is learned from; None without any.
     """
 
     patches: Patches
     base_heights: FloatArray
     training_surface: Callable[[], TrainingSurface]
+    held_out: Callable[[], TrainingPairs] | None = None
+
+
+# Why fitting ended: all `steps` were done; the error of the calibration holes `settled`; it never became less
+# (`no_gain`); the `seconds` were over; there is `no_room` for training pairs; or there is `no_calibration`, without
+# which no model is believed.
+FittingEnd = Literal["steps", "settled", "no_gain", "seconds", "no_room", "no_calibration"]
+
+
+@dataclass(frozen=True)
+class Fitting:
+    """How a network was fitted to the mesh at hand.
+
+    Attributes
+    ----------
+    steps_asked, steps : int
+        At most allowed, and done.
+    end : str
+        See `FittingEnd`.
+    training_pairs : int
+    held_out_before, held_out_after : float or None
+        Error on calibration holes before, and with the weights that were kept, in standard deviations; None where it
+        was not measured. Equal where no fitted weights were better than those before.
+    """
+
+    steps_asked: int
+    steps: int
+    end: FittingEnd
+    training_pairs: int = 0
+    held_out_before: float | None = None
+    held_out_after: float | None = None
 
 
 class FittedInpainter(Protocol):
@@ -52,6 +85,16 @@ class FittedInpainter(Protocol):
         (n_patches, N, N) float64
             Heights in mesh units.
         """
+        ...
+
+
+@runtime_checkable
+class TellsOfFitting(Protocol):
+    """A fitted inpainter that was trained on the mesh at hand."""
+
+    @property
+    def fitting(self) -> Fitting | None:
+        """How that went."""
         ...
 
 

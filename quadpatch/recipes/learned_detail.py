@@ -12,10 +12,10 @@ import numpy as np
 from quadpatch.calibration.calibration_set import CalibrationSet, choose_blend_factor, error_per_hole, expect
 from quadpatch.calibration.error_model import ErrorModel
 from quadpatch.calibration.record import CalibrationRecord
-from quadpatch.calibration.training_pairs import TrainingSurface
+from quadpatch.calibration.training_pairs import TrainingSurface, pairs_of
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.inpainters.competing import FittedCompetitors
-from quadpatch.inpainters.inpainter import Inpainter, UndamagedSurface
+from quadpatch.inpainters.inpainter import Fitting, Inpainter, TellsOfFitting, UndamagedSurface
 from quadpatch.options import RepairOptions
 from quadpatch.patches.folding import is_unfolded
 from quadpatch.patches.layout import Sampled, lay_out, pick, seeds_near, take
@@ -133,20 +133,26 @@ def complete(
     with stages.stage("learn"):
         known_patches = _without_calibration_holes(everywhere.patches, surfaces.filled)
         training_surface = partial(_training_surface, surfaces.filled, calibration, seeds, scale)
-        fitted = inpainter.fitted_to(UndamagedSurface(known_patches, everywhere.base_heights, training_surface))
+        practice = _practice(calibration, fill, around_calibration)
+        held_out = None if practice is None else partial(pairs_of, practice.sampled, practice.holes.truth)
+        undamaged = UndamagedSurface(known_patches, everywhere.base_heights, training_surface, held_out)
+        fitted = inpainter.fitted_to(undamaged)
         if fitted is None:
             return None
         competitors = fitted if isinstance(fitted, FittedCompetitors) else FittedCompetitors({"": fitted}, {"": 1.0})
-        choice = _Choice(competitors)
-        if calibration.holes is not None and fill is not None and around_calibration is not None:
-            (near_calibration,) = around_calibration.finish()
-            choice = _calibrate_models(calibration.holes, fill, near_calibration, competitors)
+        choice = _Choice(competitors) if practice is None else _calibrate_models(practice, competitors)
     with stages.stage("inpaint"):
         # A model with a blend factor of 0 need not be asked.
         predicted = choice.model.predict(sampled.patches, sampled.base_heights) if choice.blend_factor else None
     with stages.stage("reconstruct"):
-        completion = _completion(filled, sampled, predicted, choice, scale)
+        completion = replace(_completion(filled, sampled, predicted, choice, scale), fitting=_fitting(competitors))
     return completion if isinstance(fitted, FittedCompetitors) else replace(completion, shares={}, trials=())
+
+
+def _fitting(competitors: FittedCompetitors) -> Fitting | None:
+    """Find out how a network was fitted to the mesh; None where none was."""
+    told = (member.fitting for member in competitors.members.values() if isinstance(member, TellsOfFitting))
+    return next(told, None)
 
 
 def _completion(
@@ -217,10 +223,28 @@ def _sample_calibration(cutting: _Cutting) -> Sampled:
     return pick(sampled, is_unfolded(sampled.patches))
 
 
-def _calibrate_models(
-    holes: CalibrationSet, filled: FilledMesh, sampled: Sampled, competitors: FittedCompetitors
-) -> _Choice:
+@dataclass(frozen=True)
+class _Practice:
+    """Calibration holes, their fills, and the patches that show these."""
+
+    holes: CalibrationSet
+    filled: FilledMesh
+    sampled: Sampled
+
+
+def _practice(
+    calibration: Calibration, filled: FilledMesh | None, cutting: Shared[_Cutting, Sampled] | None
+) -> _Practice | None:
+    """Wait for the patches that show the calibration holes; None without these."""
+    if calibration.holes is None or filled is None or cutting is None:
+        return None
+    (sampled,) = cutting.finish()
+    return _Practice(calibration.holes, filled, sampled)
+
+
+def _calibrate_models(practice: _Practice, competitors: FittedCompetitors) -> _Choice:
     """Complete the calibration holes by each model and by the means of several: take what leaves the least error."""
+    holes, filled, sampled = practice.holes, practice.filled, practice.sampled
     predicted = competitors.predict_each(sampled.patches, sampled.base_heights)
     choices, trials = [], [Trial({}, 0.0, float(error_per_hole(holes, filled).mean()))]
     for model in competitors.mixtures():

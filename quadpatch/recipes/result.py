@@ -14,6 +14,7 @@ from quadpatch.calibration.record import CalibrationRecord
 from quadpatch.filling.bridges import Bridge
 from quadpatch.filling.fairing import Energy
 from quadpatch.filling.filled_mesh import FilledMesh
+from quadpatch.inpainters.inpainter import Fitting
 from quadpatch.mesh.holes import Hole
 from quadpatch.patches.scale import PatchScale
 from quadpatch.types import BoolArray, FloatArray
@@ -122,6 +123,8 @@ class Completion:
         Holes whose displacement was taken back, since it made their fill fold or run through other surface.
     left_out : (n_holes,) bool or None
         Holes that a rule keeps the model out of.
+    fitting : Fitting or None
+        How a network was fitted to the mesh; None where none was.
     """
 
     displacement: FloatArray
@@ -135,6 +138,7 @@ class Completion:
     trials: Sequence[Trial] = ()
     undone: BoolArray | None = None
     left_out: BoolArray | None = None
+    fitting: Fitting | None = None
 
     def apply(self, filled: FilledMesh) -> FilledMesh:
         """Displace the fill."""

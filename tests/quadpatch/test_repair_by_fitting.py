@@ -27,7 +27,7 @@ pytestmark = pytest.mark.slow
 ROOT = Path(__file__).resolve().parents[2]
 WHOLE = relief(100, 2.8, 0.04, 11)
 SCAN = punched(WHOLE, (-0.6, -0.65, 0), (0.35, 0.4, 0), radius=0.13)
-OPTIONS = RepairOptions(patches=PatchOptions(overlap=1), network=NetworkOptions(steps=40, seconds=1e6))
+OPTIONS = RepairOptions(patches=PatchOptions(overlap=1), network=NetworkOptions(steps=40))
 
 
 @pytest.fixture
@@ -85,8 +85,12 @@ def test_a_network_that_is_fitted_to_a_relief_fills_it_better_than_geometry(
     assert after.vertices[: len(before.vertices)].tobytes() == before.vertices.tobytes()
     assert after.triangles[: len(before.triangles)].tobytes() == before.triangles.tobytes()
 
-    assert report["model"] == {"name": SELF_NETWORK, "fitted_from": f"{BASE_NETWORK}@1"}
-    assert report["options"]["network"] == {"steps": 40, "seconds": 1e6}
+    model = dict(report["model"])
+    fitting = model.pop("fitting")
+    assert model == {"name": SELF_NETWORK, "fitted_from": f"{BASE_NETWORK}@1"}
+    assert (fitting["steps_asked"], fitting["steps"], fitting["end"]) == (40, 40, "steps")
+    assert fitting["held_out_after"] < 0.9 * fitting["held_out_before"]
+    assert report["options"]["network"] == {"steps": 40, "seconds": None}
     assert len(set(fitted.shares)) > 35
 
 
@@ -100,6 +104,7 @@ def test_the_command_line_says_how_long_to_fit_and_what_was_fitted_and_repeats_i
     assert ended.exit_code == 0, ended.output
     assert f"filled by {BASE_NETWORK}@1, fitted to this mesh" in " ".join(ended.stderr.split())
     report = json.loads(told.read_text())
+    assert "Fitting took 40 of 40 steps: all that were asked for." in " ".join(ended.stderr.split())
     assert report["options"]["network"] == {"steps": 40, "seconds": 1e6}
     assert report["model"] == fitted.report["model"]
     assert output.read_bytes() == fitted.output.read_bytes()
@@ -122,8 +127,11 @@ def test_the_effort_best_lets_a_fitted_network_compete(scan_file: Path, tmp_path
 @pytest.mark.usefixtures("unlearned")
 def test_without_time_to_learn_the_fill_stays_as_it_is(scan_file: Path, tmp_path: Path) -> None:
     """The network of these tests knows nothing, so calibration believes nothing of what it says."""
-    no_time = RepairOptions(network=NetworkOptions(steps=1, seconds=1e-6))
+    no_time = RepairOptions(network=NetworkOptions(seconds=0.1))
     report = repair_file(scan_file, tmp_path / "out.ply", SELF_NETWORK, no_time)
+    fitting = report["model"]["fitting"]
+    assert (fitting["steps"], fitting["end"]) == (0, "seconds")
+    assert fitting["held_out_after"] == fitting["held_out_before"] > 0
     repair_file(scan_file, tmp_path / "smooth.ply", "smooth")
     assert {hole["code"] for hole in report["holes"] if hole["verdict"] == "filled_smooth"} == {"no_gain"}
     new, smooth = (read_scan(tmp_path / name).vertices for name in ("out.ply", "smooth.ply"))

@@ -1,7 +1,8 @@
-from typing import Any
+from typing import Any, get_args
 
 import pytest
 
+from quadpatch.inpainters.inpainter import FittingEnd
 from shared_rules.competition import outcome
 
 GEOMETRY: dict[str, Any] = {"models": {}, "believed_share": 0.0, "error": 0.5}
@@ -41,6 +42,24 @@ def test_models_that_were_not_tried_are_named_with_the_reason() -> None:
     assert outcome({"name": "auto", "not_tried": not_tried}) == sentence
     both = {"name": "auto", "not_tried": not_tried, "shares": {}, "trials": [GEOMETRY]}
     assert outcome(both) == f"Least error on calibration holes: geometry alone. {sentence}"
+
+
+def fitting(end: str, steps: int) -> dict[str, Any]:
+    return {"steps_asked": 400, "steps": steps, "end": end}
+
+
+def test_a_fitting_that_time_ended_is_named_with_its_steps_and_the_reason() -> None:
+    sentence = "Fitting took 0 of 400 steps: the time for it was over, and another run may end elsewhere."
+    assert outcome({"name": "self-network", "fitting": fitting("seconds", 0)}) == sentence
+    both = {"name": "auto", "shares": {}, "trials": [GEOMETRY], "fitting": fitting("seconds", 0)}
+    assert outcome(both) == f"Least error on calibration holes: geometry alone. {sentence}"
+
+
+def test_every_end_of_a_fitting_has_words() -> None:
+    ends = get_args(FittingEnd)
+    sentences = {outcome({"fitting": fitting(end, 50)}) for end in ends}
+    assert len(sentences) == len(ends)
+    assert all(sentence.startswith("Fitting took 50 of 400 steps: ") for sentence in sentences)
 
 
 @pytest.mark.parametrize("model", [{}, {"name": "smooth"}, {"name": "auto", "effort": "fast"}])
