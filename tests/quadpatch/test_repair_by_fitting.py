@@ -25,7 +25,7 @@ from tests.quadpatch.shapes import punched, relief, write_ply
 pytestmark = pytest.mark.slow
 
 ROOT = Path(__file__).resolve().parents[2]
-WHOLE = relief(100, 2.8, 0.04, 11)
+WHOLE = relief(128, 3.6, 0.04, 14)
 SCAN = punched(WHOLE, (-0.6, -0.65, 0), (0.35, 0.4, 0), radius=0.13)
 OPTIONS = RepairOptions(patches=PatchOptions(overlap=1), network=NetworkOptions(steps=40))
 
