@@ -3,7 +3,7 @@
 Steps are what counts: the same mesh, options and seed take the same steps on any machine, however busy. Whether to go
 on is decided by the error on calibration holes, which nothing is learned from (L. Prechelt, "Early Stopping - But
 When?", 1998), of a running mean of the weights (B. Polyak, A. Juditsky, "Acceleration of Stochastic Approximation by
-Averaging", 1992): it needs no rate that falls towards an end that is known beforehand.
+Averaging", 1992): long before the rate has fallen it says what the weights come to.
 """
 
 import copy
@@ -27,7 +27,7 @@ from quadpatch.types import FloatArray, Patches
 
 BATCH = 64
 RATE = 4e-3
-# Steps over which the rate rises to its full height.
+# Steps over which the rate rises; from its full height it falls in a line, to zero where all steps are done.
 WARM_UP = 50
 # Weight of the past in the running mean of the weights; less in the first steps.
 _MEMORY = 0.98
@@ -138,7 +138,7 @@ def fit(  # noqa: PLR0913  the clock is there for tests
 
     with one_thread():
         pool, judge, random = _Pool(rounds), _tensors(held_out), torch.Generator().manual_seed(seed)
-        trained, best = _Trained(network), network
+        trained, best = _Trained(network, options.steps), network
         before = least = _error(network, judge)
         step = idle = 0
         end: FittingEnd | None = None if len(pool) >= MIN_PAIRS else "no_room"
@@ -207,18 +207,18 @@ class _Pool:
 class _Trained:
     """A copy of a network on its way, and the running mean of its weights."""
 
-    def __init__(self, network: Residual) -> None:
+    def __init__(self, network: Residual, steps: int) -> None:
         self._network, self.averaged = copy.deepcopy(network), copy.deepcopy(network)
         self._network.to(memory_format=torch.channels_last)  # type: ignore[call-overload]  # torch's own stubs lack it
         self._optimiser = torch.optim.AdamW(self._network.parameters(), RATE, weight_decay=1e-2, fused=True)
-        self._step = 0
+        self._step, self._steps = 0, steps
 
     def follow(self, batch: _Tensors) -> None:
         """Take one step."""
         channels, correction, loss_mask = batch
-        self._step += 1
         for group in self._optimiser.param_groups:
-            group["lr"] = RATE * min(1.0, self._step / WARM_UP)
+            group["lr"] = RATE * min((self._step + 1) / WARM_UP, 1.0 - self._step / self._steps)
+        self._step += 1
         loss = errors(_answer(self._network, channels), correction, loss_mask).loss
         self._optimiser.zero_grad()
         loss.backward()  # type: ignore[no-untyped-call]

@@ -20,8 +20,8 @@ from tests.quadpatch.training_surfaces import ground_of, undamaged_surface
 pytestmark = pytest.mark.slow
 
 STEPS = 60
-# Enough to gain a percent.
-SHORT = NetworkOptions(steps=30)
+# Enough to gain far more than a percent.
+SHORT = NetworkOptions(steps=60)
 
 
 @pytest.fixture(scope="module")
