@@ -155,8 +155,8 @@ def _round(
     scale, edge_length = training_surface.scale, training_surface.edge_length
     cut = cut_holes(surface, diameter, Spacing(edge_length, _MARGIN_EDGES * edge_length), rng)
     filled = training_surface.blend.fill(cut.mesh, cut.loops)
-    invented = filled.mesh.vertices[filled.n_measured_vertices :]
-    there = truth.at(seeds_near(training_surface.seeds, invented, scale.length))
+    new_vertices = filled.mesh.vertices[filled.n_measured_vertices :]
+    there = truth.at(seeds_near(training_surface.seeds, new_vertices, scale.length))
     patches = _with_fills(there, filled, cut)
     sampled = _over_base(patches, laplacian_smooth(filled.mesh, base_surface_iterations(scale.length, edge_length)))
     unfolded = is_unfolded(sampled.patches)

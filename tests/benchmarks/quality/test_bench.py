@@ -43,4 +43,7 @@ def test_a_shape_is_punched_once_unless_its_truth_changes(tmp_path: Path) -> Non
 def test_a_network_that_is_fitted_is_known_by_the_one_it_starts_from() -> None:
     fitted, base = Method.of("self-network").key(), Method.of("general-residual").key()
     assert Method.of("auto").key()["model_sha256"] == base["model_sha256"]
+    best = Method.of("best")
+    assert (best.name, best.model, best.options) == ("best", "auto", {"effort": "best"})
+    assert best.key()["model_sha256"] == base["model_sha256"]
     assert fitted == {**base, "method": "self-network"}

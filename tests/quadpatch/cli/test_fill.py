@@ -198,7 +198,7 @@ def test_flags_about_patches_reach_them(scan_file: Path, tmp_path: Path) -> None
         "seed": 3,
         "recipe": "default",
         "dictionary": {"atoms": None, "nonzero": None},
-        "network": {"steps": 1000, "seconds": 600.0},
+        "network": {"steps": 800, "seconds": None},
         "effort": "standard",
     }
     assert content["patches"]["resolution"] == 18
