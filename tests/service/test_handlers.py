@@ -84,7 +84,8 @@ def test_every_error_is_a_problem_document(
     ("path", "allowed"),
     [
         ("/v1/jobs", "GET, HEAD, POST"),
-        ("/v1/meshes", "POST"),
+        ("/v1/meshes", "GET, HEAD, POST"),
+        ("/v1/repairs", "POST"),
         ("/v1/jobs/job_01jd7z3v5qk8m2x4c6b8n0a9de/cancel", "POST"),
         ("/v1/aliases/default", "DELETE, PUT"),
     ],

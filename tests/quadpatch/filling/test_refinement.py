@@ -1,3 +1,5 @@
+"""Also tests `quadpatch/filling/edge_flips.py`."""
+
 from dataclasses import replace
 
 import numpy as np
