@@ -4,6 +4,7 @@ Tested in `tests/service/test_main.py`.
 """
 
 import argparse
+import contextlib
 import sys
 from collections.abc import Sequence
 from datetime import datetime
@@ -82,6 +83,15 @@ def _day(moment: datetime | None) -> str:
     return "" if moment is None else moment.strftime("%Y-%m-%d")
 
 
+def _moment(text: str) -> datetime:
+    moment = None
+    with contextlib.suppress(ValueError):
+        moment = datetime.fromisoformat(text)
+    if moment is None or moment.tzinfo is None:
+        raise argparse.ArgumentTypeError(f"{text!r} is no moment with a zone, like 2027-01-31T00:00:00+00:00")
+    return moment
+
+
 class _Parser(argparse.ArgumentParser):
     def error(self, message: str) -> NoReturn:
         sys.stderr.write(f"quadpatch: {message}\n")
@@ -99,7 +109,7 @@ def _parser() -> argparse.ArgumentParser:
     create.add_argument("--tenant", default="default", help="whose meshes and jobs it reaches (default: %(default)s)")
     names = [scope.value for scope in Scope]
     create.add_argument("--scope", action="append", choices=names, help="may be repeated (default: read upload repair)")
-    create.add_argument("--expires", type=datetime.fromisoformat, help="when it ends, like 2027-01-31T00:00:00+00:00")
+    create.add_argument("--expires", type=_moment, help="when it ends, like 2027-01-31T00:00:00+00:00")
     commands.add_parser("list", help="list keys, without what clients send")
     for name, words in (("rotate", "print a new key; the old one is taken for a day more"), ("revoke", "end a key")):
         commands.add_parser(name, help=words).add_argument("id", help="of the key, like key_01jd…")

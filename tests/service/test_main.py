@@ -77,5 +77,7 @@ def test_keys_are_made_listed_rotated_and_revoked_without_http(
     assert "was revoked" in capsys.readouterr().err
     assert main(["keys", "create", "x", "--tenant", "Plant North"]) == 2
     assert capsys.readouterr().err.startswith("quadpatch: tenant:")
-    with pytest.raises(SystemExit, match="2"):
-        main(["keys", "create", "x", "--scope", "all"])
+    for wrong in (["--scope", "all"], ["--expires", "tomorrow"], ["--expires", "2027-01-01T00:00:00"]):
+        with pytest.raises(SystemExit, match="2"):
+            main(["keys", "create", "x", *wrong])
+        assert capsys.readouterr().err.startswith("quadpatch: argument --")
