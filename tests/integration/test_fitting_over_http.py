@@ -17,6 +17,7 @@ from client.sdk import Client
 from jobkit.schema import Job, JobSpec, JobState
 from quadpatch.formats.reading import read_scan
 from quadpatch.model_choice import BASE_NETWORK
+from tests.quadpatch.shapes import punched, relief, write_ply
 from tests.waiting import GUARD_S
 
 FITTED = {"method": "cnn", "model": "self", "fitting": {"steps": 12, "seconds": 500.0}, "patches": {"overlap": 0}}
@@ -34,9 +35,11 @@ def percents(url: str, job: Job) -> list[float]:
 
 @pytest.mark.slow
 def test_the_client_says_how_long_to_fit_a_network_to_the_mesh_and_the_job_how_far_it_is(
-    local_stack: Any, relief_file: Callable[[str], Path], tmp_path: Path
+    local_stack: Any, tmp_path: Path
 ) -> None:
-    source, output, told = relief_file("float.ply"), tmp_path / "repaired.ply", tmp_path / "report.json"
+    # Nothing is fitted where the scan has no room for calibration holes.
+    scan = punched(relief(128, 3.6, 0.04, 14), (-0.6, -0.65, 0), (0.35, 0.4, 0), radius=0.13)
+    source, output, told = write_ply(tmp_path / "scan.ply", scan), tmp_path / "repaired.ply", tmp_path / "report.json"
     flags = ["--method", "cnn", "--model", "self", "--fit-steps", "12", "--fit-seconds", "500", "--overlap", "0"]
     arguments = ["repair", str(source), "-o", str(output), "--report", str(told), "--json", "--quiet", *flags]
     done = CliRunner().invoke(app, arguments, env={"QUADPATCH_CLIENT_URL": local_stack.url})
@@ -54,10 +57,12 @@ def test_the_client_says_how_long_to_fit_a_network_to_the_mesh_and_the_job_how_f
     assert np.array_equal(after.vertices[: len(before.vertices)], before.vertices)
     assert np.array_equal(after.triangles[: len(before.triangles)], before.triangles)
     report = json.loads(told.read_text())
-    assert report["counts"]["filled"] + report["counts"]["filled_smooth"] == 4
+    assert report["counts"]["filled"] + report["counts"]["filled_smooth"] == 2
     assert report["model"]["name"] == "self-network"
     assert report["model"]["fitted_from"].startswith(BASE_NETWORK)
     assert report["options"]["network"] == FITTED["fitting"]
+    assert report["model"]["fitting"]["steps_asked"] == 12
+    assert report["model"]["fitting"]["steps"] > 0
 
 
 def test_a_job_that_may_take_no_time_to_fit_ends_all_the_same(
