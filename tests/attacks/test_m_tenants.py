@@ -237,6 +237,12 @@ def test_a_key_does_what_its_scopes_say_and_no_more(plants: Plants) -> None:
         assert (refused.status_code, refused.json()["code"]) == (403, "scope_missing"), path
 
 
+def test_metrics_count_all_tenants_and_are_the_operators(plants: Plants) -> None:
+    refused = plants.call(OWN, "GET", "/metrics")
+    assert (refused.status_code, refused.json()["code"]) == (403, "foreign_tenant")
+    assert plants.call("default", "GET", "/metrics").status_code == 200
+
+
 def test_a_key_of_a_tenant_makes_keys_of_that_tenant_alone(plants: Plants) -> None:
     refused = plants.call(OWN, "POST", "/v1/keys", json={"name": "x", "tenant": FOREIGN})
     assert (refused.status_code, refused.json()["code"]) == (403, "foreign_tenant")
