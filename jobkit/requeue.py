@@ -74,7 +74,7 @@ def submit_job(database: Database, queue: TaskQueue, job_id: str, attempt: int, 
     attempt : int
         The number it has now.
     at_front : bool
-        Whether it goes to the front, as one whose attempt was lost does: it has waited, or somebody waits for it.
+        Whether it goes to the front, as one whose attempt was lost does: it has waited, or is urgent.
 
     Raises
     ------

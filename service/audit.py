@@ -15,6 +15,7 @@ from contextlib import asynccontextmanager
 from datetime import UTC, datetime
 
 import anyio.to_thread
+from cachetools import TTLCache
 from starlette.requests import Request
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
@@ -29,6 +30,8 @@ _MOST_WAITING = 100_000
 _MOST_AT_ONCE = 500
 _READING = frozenset({"GET", "HEAD", "OPTIONS"})
 _REFUSALS = (401, 403)
+# Of requests without a key: one for each address within so many seconds, and of so many addresses.
+_STRANGER_S, _MOST_STRANGERS = 60.0, 1000
 
 _logger = logging.getLogger("service.audit")
 
@@ -39,9 +42,14 @@ class AuditTrail:
     def __init__(self, log: AuditLog) -> None:
         self._log = log
         self._waiting: deque[Deed] = deque(maxlen=_MOST_WAITING)
+        self._strangers: TTLCache[str | None, bool] = TTLCache(_MOST_STRANGERS, _STRANGER_S)
 
     def note(self, deed: Deed) -> None:
-        """Take an entry."""
+        """Take an entry. Of requests without a key it takes one a minute for each address: else they fill the disk."""
+        if deed.principal == ANONYMOUS.key_id:
+            if deed.address in self._strangers or len(self._strangers) >= _MOST_STRANGERS:
+                return
+            self._strangers[deed.address] = True
         self._waiting.append(deed)
 
     @asynccontextmanager

@@ -1,6 +1,6 @@
 """Codings of bodies that are undone as they arrive, a piece at a time: gzip (RFC 1952) and zstd (RFC 8878).
 
-What comes out is bounded by whoever reads it: no piece is larger than `PIECE_BYTES`, however much a chunk expands to.
+The reader bounds what comes out: no piece is larger than `PIECE_BYTES`, however much a chunk expands to.
 
 Tested in `tests/service/test_content_coding.py`.
 """

@@ -24,7 +24,7 @@ class SingleFlight:
         self._limiter: anyio.CapacityLimiter | None = None
 
     async def run(self, name: str, work: Callable[[], Any], wait_s: float) -> None:
-        """Do a piece of work, or join whoever does it; wait for its end, but not for longer than `wait_s` seconds.
+        """Do a piece of work, or join one that has begun; wait for its end, but no longer than `wait_s` seconds.
 
         It goes on where the request that asked for it is broken off. What it raises is raised here.
         """

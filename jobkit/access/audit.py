@@ -9,9 +9,9 @@ from datetime import datetime
 
 from sqlalchemy import CursorResult, delete, insert, select
 
+from jobkit.database.access_tables import AuditRow
 from jobkit.database.readable_rows import readable
 from jobkit.database.session import Database
-from jobkit.database.tables import AuditRow
 from jobkit.ids import new_audit_id
 from jobkit.schema import AuditEntry, AuditPage
 
@@ -45,7 +45,7 @@ class AuditLog:
         with self._database.write() as session:
             session.execute(insert(AuditRow), rows)
 
-    def page(self, limit: int, cursor: str | None = None, tenant: str | None = None) -> AuditPage:
+    def page(self, limit: int, cursor: str | None = None) -> AuditPage:
         """Return entries, newest first.
 
         Parameters
@@ -54,14 +54,10 @@ class AuditLog:
             Most entries on the page.
         cursor : str, optional
             `next_cursor` of the page before.
-        tenant : str, optional
-            Only those of one tenant.
         """
         query = select(AuditRow).order_by(AuditRow.id.desc()).limit(limit + 1)
         if cursor is not None:
             query = query.where(AuditRow.id < cursor)
-        if tenant is not None:
-            query = query.where(AuditRow.tenant == tenant)
         with self._database.read() as session:
             rows = list(session.scalars(query))
         items = readable(rows[:limit], lambda row: AuditEntry.model_validate(row, from_attributes=True))

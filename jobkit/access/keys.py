@@ -14,11 +14,11 @@ from typing import Any
 from sqlalchemy import exists, or_, select, update
 from sqlalchemy.orm import Session
 
+from jobkit.database.access_tables import KeyRow
 from jobkit.database.clock import shared_now, utc_now
 from jobkit.database.idempotency import Idempotency, make_once
 from jobkit.database.readable_rows import readable
 from jobkit.database.session import Database
-from jobkit.database.tables import KeyRow
 from jobkit.database.tenancy import DEFAULT_TENANT, tenant_of
 from jobkit.errors import KeyNotFoundError, KeyRevokedError
 from jobkit.ids import new_key_id

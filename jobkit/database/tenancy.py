@@ -34,11 +34,6 @@ class Shareable(Owned):
 class TenantSession(Session):
     """A session for the rows of `info["tenant"]` alone; for all without one."""
 
-    @property
-    def tenant(self) -> str | None:
-        """Whose rows it sees; None: everybody's."""
-        return self.info.get("tenant")
-
 
 def tenant_of(session: Session) -> str | None:
     """Return the tenant whose rows a session sees; None: it sees all."""
@@ -46,10 +41,15 @@ def tenant_of(session: Session) -> str | None:
     return tenant
 
 
+def _owned_tables() -> tuple[type[Owned], ...]:
+    """Find all tables with an owner, those of modules among them that were loaded just now."""
+    # Mixins have no columns of their own.
+    found = (cls for mixin in (Owned, Shareable) for cls in mixin.__subclasses__())
+    return tuple(cls for cls in found if hasattr(cls, "__table__"))
+
+
 @lru_cache(maxsize=1024)
-def _conditions(tenant: str) -> tuple[ExecutableOption, ...]:
-    # Of the mapped classes: mixins have no columns of their own.
-    tables = [cls for mixin in (Owned, Shareable) for cls in mixin.__subclasses__() if hasattr(cls, "__table__")]
+def _conditions(tenant: str, tables: tuple[type[Owned], ...]) -> tuple[ExecutableOption, ...]:
     return tuple(with_loader_criteria(cls, _is_seen(cls, tenant), include_aliases=True) for cls in tables)
 
 
@@ -62,7 +62,7 @@ def _is_seen(cls: type[Owned], tenant: str) -> ColumnElement[bool]:
 def _add_conditions(state: ORMExecuteState) -> None:
     tenant = tenant_of(state.session)
     if tenant is not None and not state.execution_options.get("all_tenants", False):
-        state.statement = state.statement.options(*_conditions(tenant))
+        state.statement = state.statement.options(*_conditions(tenant, _owned_tables()))
 
 
 @event.listens_for(TenantSession, "before_flush")

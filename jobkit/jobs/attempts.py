@@ -82,7 +82,8 @@ class Attempts:
             As `start` does, for the last job that was tried.
         """
         tried: set[str] = set()
-        while not self._has_waited(job_id) and len(tried) < _MOST_TRIED:
+        most = 0 if self._has_waited(job_id) else _MOST_TRIED
+        while len(tried) < most:
             with self._database.read() as session:
                 chosen = next_in_turn(session, shared_now(session))
             if chosen is None or chosen in tried:

@@ -79,7 +79,7 @@ def delete_alias(database: Database, alias: str) -> None:
         If jobs that name no model mean it.
     """
     with database.write() as session:
-        row = alias_row(session, alias)
+        row = alias_row(session, alias, lock=True)
         if row is None:
             raise ModelNotFoundError(f"there is no alias {alias!r}")
         check_owner(session, row)

@@ -208,7 +208,7 @@ class Registry:
             return session.scalars(select(ModelRow.name).where(is_there).limit(1)).first() is not None
 
     def set_alias(self, alias: str, reference: str) -> Alias:
-        """Point an alias to the version that the reference means now.
+        """Point an alias to the version that the reference means now; where all see the alias, they see that, too.
 
         Raises
         ------
@@ -243,6 +243,8 @@ class Registry:
                     f"{alias!r} means models of the kind {kind}; {reference} is of the kind {target.kind}"
                 )
             row.name, row.version, row.updated_at = target.name, target.version, utc_now()
+            # Jobs of all tenants mean a shared alias: they have to see what it points to.
+            target.shared |= row.shared
             session.add(row)
             return to_alias(row)
 
@@ -299,6 +301,7 @@ def _free_number(session: Session, name: str, requested_number: int | None) -> i
 
 def _publish_again(row: ModelRow, new_row: ModelRow) -> None:
     """Let a version that was not usable be used, or be proven anew by the card that came now."""
+    row.shared |= new_row.shared
     if row.state == ModelState.READY.value:
         return
     if new_row.state == ModelState.READY.value or row.state == ModelState.REFUSED.value:

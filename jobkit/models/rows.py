@@ -30,9 +30,9 @@ def version_row(session: Session, name: str, version: int, *, lock: Lock = None)
     raise ModelNotFoundError(f"there is no model {shown_name(name)}@{version}")
 
 
-def alias_row(session: Session, alias: str) -> AliasRow | None:
-    """Return what an alias means: the tenant's own one, else a shared one."""
-    rows = (session.get(AliasRow, name) for name in names_of(tenant_of(session), alias))
+def alias_row(session: Session, alias: str, *, lock: Lock = None) -> AliasRow | None:
+    """Return what an alias means, locked if asked for: the tenant's own one, else a shared one."""
+    rows = (session.get(AliasRow, name, with_for_update=lock) for name in names_of(tenant_of(session), alias))
     return next((row for row in rows if row is not None), None)
 
 

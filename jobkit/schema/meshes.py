@@ -136,8 +136,8 @@ class MeshLinks(Response):
     content: str = Field(description="Its bytes, as uploaded.")
 
 
-class Mesh(Response):
-    """An uploaded mesh."""
+class _Upload(Response):
+    """What lists and the mesh itself say of an upload."""
 
     id: MeshId
     state: MeshState = Field(description="Whether a worker has analysed the file.", examples=["ready"])
@@ -151,32 +151,26 @@ class Mesh(Response):
     expires_at: Moment | None = Field(
         default=None, description="When it is removed, RFC 3339; null: a job on it is there, or it is kept."
     )
+    links: MeshLinks = Field(description="Paths on this service.")
+
+
+class Mesh(_Upload):
+    """An uploaded mesh."""
+
     facts: MeshFacts | None = Field(default=None, description="Set once the state is `ready`.")
     problem: MeshProblem | None = Field(default=None, description="Set once the state is `rejected`.")
-    links: MeshLinks = Field(description="Paths on this service.")
 
 
-class MeshSummary(Response):
+class MeshSummary(_Upload):
     """An uploaded mesh, as lists have it."""
 
-    id: MeshId
-    state: MeshState = Field(description="Whether a worker has analysed the file.", examples=["ready"])
-    filename: str | None = Field(
-        default=None, description="As the sender of its latest upload named it.", examples=["face000.ply"]
-    )
-    format: Format | None = Field(default=None, description="As stated or seen; null: unknown.", examples=["ply"])
-    size_bytes: int = Field(ge=0, description="Size of the file, in bytes.", examples=[3_212_000])
     triangles: int | None = Field(default=None, ge=0, description="Once it is analysed.", examples=[166_259])
     holes: int | None = Field(default=None, ge=0, description="Boundary loops, once it is analysed.", examples=[39])
-    created_at: Moment = Field(description="When it was first uploaded, RFC 3339.")
-    pinned: bool = Field(default=False, description="Whether it is kept whatever the retention.")
-    expires_at: Moment | None = Field(default=None, description="As in the mesh.")
-    links: MeshLinks = Field(description="Paths on this service.")
 
     @classmethod
     def of(cls, mesh: Mesh) -> Self:
         """Sum a mesh up."""
-        values = {name: getattr(mesh, name) for name in cls.model_fields.keys() - {"triangles", "holes"}}
+        values = {name: getattr(mesh, name) for name in _Upload.model_fields}
         facts = mesh.facts
         counts = {} if facts is None else {"triangles": facts.triangles, "holes": len(facts.holes)}
         return cls.model_validate(values | counts)

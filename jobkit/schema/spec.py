@@ -185,7 +185,7 @@ class RepairSpec(Request):
     seed: Seed = Field(default=0, description="Starts every random choice.", examples=[0])
     priority: Priority = Field(
         default="normal",
-        description="`interactive`: before all others, for a station where somebody waits; `bulk`: when no other job "
+        description="`interactive`: before all others, for a station where a person waits; `bulk`: when no other job "
         "waits. Among jobs of one priority tenants take turns.",
         examples=["normal"],
     )

@@ -3,14 +3,21 @@
 Every route is tried with the key of a foreign tenant.
 """
 
+import contextlib
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
 import pytest
 from pydantic import SecretStr
+from sqlalchemy import create_engine, select
+from sqlalchemy.exc import OperationalError
+from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column
+from sqlalchemy.pool import StaticPool
 from starlette.testclient import TestClient
 
+from jobkit.database.tables import MeshRow
+from jobkit.database.tenancy import Owned, TenantSession
 from jobkit.schema import JobResult, ResultFile
 from jobkit.settings import Settings
 from service.app import create_app
@@ -220,6 +227,46 @@ def test_tenants_use_what_the_operator_shares_and_may_not_change_it(plants: Plan
     assert (taken.status_code, taken.json()["code"]) == (409, "name_taken")
     sharing = plants.call(FOREIGN, "POST", "/v1/models/mine/versions?shared=true", content=plants.dictionary(4))
     assert sharing.json()["code"] == "shared_model"
+
+
+def test_what_a_shared_alias_points_to_is_shared_with_it(plants: Plants) -> None:
+    services: Services = plants.client.app.state.services  # type: ignore[attr-defined]
+    wait = {"Prefer": "wait=0"}
+    for seed, name in ((5, "general"), (6, "better")):
+        plants.call("default", "POST", f"/v1/models/{name}/versions", content=plants.dictionary(seed), headers=wait)
+        services.proofs.accept(services.proofs.start(f"{name}@1", "test", 30))
+    services.registry.set_alias("default", "general")
+    assert plants.call(FOREIGN, "GET", "/v1/models/general").status_code == 200
+    assert plants.call(FOREIGN, "GET", "/v1/models/better").status_code == 404
+    assert plants.call("default", "PUT", "/v1/aliases/default", json={"model": "better"}).json()["shared"] is True
+    job = {"mesh_id": plants.ids["mesh_id"], "method": {"method": "dictionary"}}
+    assert plants.call(OWN, "POST", "/v1/jobs", json=job).json()["model"]["name"] == "better"
+
+
+def test_a_version_is_shared_later_by_publishing_it_again(plants: Plants) -> None:
+    path, content = "/v1/models/parts/versions", plants.dictionary(3)
+    for query, status in (("", 404), ("?shared=true", 200), ("", 200)):
+        plants.call("default", "POST", path + query, content=content, headers={"Prefer": "wait=0"})
+        assert plants.call(FOREIGN, "GET", "/v1/models/parts").status_code == status
+
+
+def test_tables_of_modules_that_are_loaded_late_are_limited_too() -> None:
+    class OtherBase(DeclarativeBase):
+        pass
+
+    engine = create_engine("sqlite://", poolclass=StaticPool)
+    with TenantSession(engine, info={"tenant": OWN}) as session:
+        with contextlib.suppress(OperationalError):
+            session.scalars(select(MeshRow)).all()
+
+        class LateRow(Owned, OtherBase):
+            __tablename__ = "late"
+            id: Mapped[int] = mapped_column(primary_key=True)
+
+        OtherBase.metadata.create_all(engine)
+        session.add_all([LateRow(id=1), LateRow(id=2, tenant=FOREIGN)])
+        session.flush()
+        assert list(session.scalars(select(LateRow.id))) == [1]
 
 
 def test_a_key_does_what_its_scopes_say_and_no_more(plants: Plants) -> None:

@@ -147,12 +147,12 @@ def test_limits_hold_for_size_and_number(uploads: Uploads) -> None:
 
 
 def test_a_repeated_request_makes_one_upload(database: Database, uploads: Uploads) -> None:
-    key = Idempotency("somebody", "key", SHA256)
+    key = Idempotency("client", "key", SHA256)
     first, is_new = uploads.create(WHOLE, key)
     assert uploads.create(WHOLE, key) == (first, False)
     assert is_new
     with pytest.raises(IdempotencyError):
-        uploads.create(WHOLE, Idempotency("somebody", "key", MESH_ID))
+        uploads.create(WHOLE, Idempotency("client", "key", MESH_ID))
     assert count(database, UploadRow) == 1
     uploads.delete(first.id)
     assert uploads.create(WHOLE, key)[1]

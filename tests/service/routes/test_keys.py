@@ -10,7 +10,7 @@ from starlette.testclient import TestClient
 
 from dispatcher.retention import forget_audit
 from jobkit.access.keys import Keys
-from jobkit.database.tables import KeyRow
+from jobkit.database.access_tables import KeyRow
 from jobkit.schema import NewKey, Scope
 from jobkit.settings import Settings
 from service import auth
@@ -153,6 +153,14 @@ def test_the_audit_log_says_who_did_what_when_and_from_where(operator: TestClien
     page = operator.get("/v1/audit?limit=2").json()
     rest = operator.get(f"/v1/audit?limit=10&cursor={page['next_cursor']}").json()
     assert [*page["items"], *rest["items"]] == entries()
+
+
+def test_requests_without_a_key_can_not_fill_the_audit_log(operator: TestClient) -> None:
+    for number in range(5):
+        assert operator.delete("/v1/meshes/x", headers={"X-API-Key": f"wrong {number}"}).status_code == 401
+    operator.delete("/v1/keys/key_01jd7z3v5qk8m2x4c6b8n0a9de")
+    wait_until(lambda: "revoke_key" in [entry["operation"] for entry in operator.get("/v1/audit").json()["items"]])
+    assert [entry["status"] for entry in operator.get("/v1/audit").json()["items"]] == [404, 401]
 
 
 def test_old_entries_of_the_audit_log_are_removed(operator: TestClient) -> None:

@@ -1,0 +1,49 @@
+"""Tables of keys, and of the audit log.
+
+Tested in `tests/service/routes/test_keys.py`.
+"""
+
+from datetime import datetime
+
+from sqlalchemy import JSON, Index, String
+from sqlalchemy.orm import Mapped, mapped_column
+
+from jobkit.database.table_base import Base
+from jobkit.database.tenancy import Owned
+
+
+class KeyRow(Owned, Base):
+    """A key of a client: its digest, never the key itself.
+
+    For a while after a rotation the key of before, `old_sha256`, is taken as well. A key that is revoked stays here, so
+    that the audit log can name it.
+    """
+
+    __tablename__ = "keys"
+    id: Mapped[str] = mapped_column(String(40), primary_key=True)
+    name: Mapped[str] = mapped_column(String(64))
+    scopes: Mapped[list[str]] = mapped_column(JSON(none_as_null=True))
+    sha256: Mapped[str] = mapped_column(String(64))
+    old_sha256: Mapped[str | None] = mapped_column(String(64))
+    old_until: Mapped[datetime | None]
+    expires_at: Mapped[datetime | None]
+    revoked_at: Mapped[datetime | None]
+    used_at: Mapped[datetime | None]
+    created_at: Mapped[datetime]
+    __table_args__ = (Index(None, "sha256", unique=True), Index(None, "old_sha256", unique=True))
+
+
+class AuditRow(Owned, Base):
+    """A request that changed something, or was refused: who, what, when, from where."""
+
+    __tablename__ = "audit"
+    id: Mapped[str] = mapped_column(String(40), primary_key=True)
+    at: Mapped[datetime]
+    principal: Mapped[str] = mapped_column(String(64))
+    name: Mapped[str | None] = mapped_column(String(64))
+    operation: Mapped[str] = mapped_column(String(64))
+    path: Mapped[str] = mapped_column(String(512))
+    status: Mapped[int]
+    address: Mapped[str | None] = mapped_column(String(64))
+    request_id: Mapped[str | None] = mapped_column(String(64))
+    __table_args__ = (Index(None, "at"), Index(None, "tenant", "id"))
