@@ -99,6 +99,7 @@ def build_report(
     completion, verdicts = repair.completion, Counter(result.verdict for result in repair.results)
     report: dict[str, Any] = {
         "schema": 1,
+        "task": "fill",
         "source": describe_mesh(scan, welded.mesh),
         "welded": asdict(welded.counts),
         "length_unit": scan.unit or UNKNOWN_UNIT,

@@ -3,11 +3,13 @@
 Tested in `tests/service/routes/test_jobs.py`.
 """
 
-from typing import Any, Literal
+from typing import Annotated, Literal
 
-from pydantic import Field
+from pydantic import ConfigDict, Field
+from typing_extensions import TypedDict
 
 from jobkit.schema.base import JobId, MeshId, Moment, Response, Sha256
+from jobkit.schema.codes import FailureCode
 from jobkit.schema.meshes import Hole
 from jobkit.schema.models import ResolvedModel
 from jobkit.schema.spec import JobSpec, Limits
@@ -24,7 +26,7 @@ FileRole = Literal["result", "report", "preview", "closeups"]
 class JobError(Response):
     """Why a job, or an attempt, failed."""
 
-    code: str = Field(description="Stable code.", examples=["time_limit_exceeded"])
+    code: FailureCode
     message: str = Field(description="A sentence for people.", examples=["the work took longer than 120 s"])
     stage: str | None = Field(default=None, description="Stage of the method that failed.", examples=["inpaint"])
     retryable: bool = Field(default=False, description="Whether the same job may succeed another time.")
@@ -153,6 +155,22 @@ class Job(Response):
 EventType = Literal["queued", "started", "progress", "requeued", "cancel_requested", "canceled", "succeeded", "failed"]
 
 
+class EventFacts(TypedDict, total=False):
+    """Facts of a change; which are there goes by its type, and others may come."""
+
+    __pydantic_config__ = ConfigDict(extra="allow")  # type: ignore[misc]
+
+    state: Annotated[JobState, Field(description="State of the job from then on.", examples=["running"])]
+    task: Annotated[Task, Field(description="Of the first `queued`: what the job is to do.", examples=["fill"])]
+    stage: Annotated[str, Field(description="Of `progress`: stage at work.", examples=["inpaint"])]
+    percent: Annotated[float, Field(description="Of `progress`: share of the job that is done.", examples=[62.5])]
+    waits_for: Annotated[Literal["memory"], Field(description="Of a later `queued`: what the job waits for.")]
+    memory_mb: Annotated[int, Field(description="Of the same: how much it needs, in MiB.", examples=[900])]
+    error: Annotated[JobError, Field(description="Of `failed` and `requeued`: why.")]
+    forgiven: Annotated[bool, Field(description="Of `requeued`: the attempt does not count.", examples=[True])]
+    delay_s: Annotated[float, Field(description="Of `requeued`: seconds before the next attempt.", examples=[5.0])]
+
+
 class Event(Response):
     """One change of a job."""
 
@@ -160,8 +178,8 @@ class Event(Response):
     type: EventType = Field(description="What happened.", examples=["progress"])
     at: Moment = Field(description="When, RFC 3339.")
     attempt: int = Field(ge=0, description="The attempt it belongs to.", examples=[1])
-    data: dict[str, Any] = Field(
-        default_factory=dict, description="Facts of the change.", examples=[{"stage": "inpaint", "percent": 62.5}]
+    data: EventFacts = Field(
+        default_factory=EventFacts, description="Facts of the change.", examples=[{"stage": "inpaint", "percent": 62.5}]
     )
 
 

@@ -5,6 +5,7 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import Field, model_validator
 
 from jobkit.schema.base import MeshId, Moment, Response
+from jobkit.schema.codes import FailureCode
 from jobkit.schema.spec import Format
 from jobkit.schema.states import MeshState
 from shared_rules.hole_selection import HoleKind
@@ -125,7 +126,7 @@ class MeshFacts(Response):
 class MeshProblem(Response):
     """Why a mesh was rejected."""
 
-    code: str = Field(description="Stable code.", examples=["unreadable_mesh"])
+    code: FailureCode
     message: str = Field(description="A sentence for people.", examples=["the header promises 10 vertices, 3 follow"])
 
 

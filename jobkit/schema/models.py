@@ -8,6 +8,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field
 
 from jobkit.schema.base import TEXT_PATTERN, AliasName, ModelName, ModelReference, Moment, Request, Response, Sha256
+from jobkit.schema.codes import FailureCode
 from jobkit.schema.states import ModelState
 
 ModelKind = Literal["dictionary", "autoencoder"]
@@ -50,7 +51,7 @@ class ModelLinks(Response):
 class ModelProblem(Response):
     """Why a model version was refused."""
 
-    code: str = Field(description="Stable code.", examples=["unusable_model"])
+    code: FailureCode
     message: str = Field(
         description="A sentence for people, which says which check failed.",
         examples=["copy@1 answers 1 patches by values that are not finite"],

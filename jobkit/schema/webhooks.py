@@ -4,9 +4,9 @@ Tested in `tests/jobkit/webhooks/test_subscriptions.py`.
 """
 
 from enum import StrEnum
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, get_args
 
-from pydantic import Field
+from pydantic import Field, WithJsonSchema
 
 from jobkit.ids import MESSAGE_ID_PATTERN, WEBHOOK_ID_PATTERN
 from jobkit.schema.base import TEXT_PATTERN, JobId, Moment, Request, Response
@@ -27,6 +27,7 @@ URL_PATTERN = (
 # What a subscriber may want to hear of.
 WebhookEvent = Literal["job.started", "job.requeued", "job.succeeded", "job.failed", "job.canceled"]
 MessageType = WebhookEvent | Literal["webhook.test"]
+MESSAGE_TYPES: tuple[MessageType, ...] = (*get_args(WebhookEvent), "webhook.test")
 ENDINGS: tuple[WebhookEvent, ...] = ("job.succeeded", "job.failed", "job.canceled")
 
 
@@ -172,15 +173,32 @@ class DeliveryTry(Response):
     milliseconds: int = Field(ge=0, description="How long it took, in milliseconds.", examples=[38])
 
 
+# Kept as it was written: what is sent, and signed, is never read into models.
+MessageFacts = Annotated[
+    dict[str, Any],
+    WithJsonSchema(
+        {
+            "type": "object",
+            "description": "`job` of a message about a job, `webhook_id` of a test.",
+            "properties": {
+                "job": {
+                    "$ref": "#/components/schemas/Job",
+                    "description": "The job right after the change, as `GET /v1/jobs/{job_id}` shows it, but for "
+                    "`queue_position`, `eta_s` and `expires_at`.",
+                },
+                "webhook_id": {"type": "string", "description": "The subscription.", "examples": [EXAMPLE_WEBHOOK_ID]},
+            },
+        }
+    ),
+]
+
+
 class Message(Response):
     """The body that a subscriber gets."""
 
     type: MessageType = Field(description="What happened.", examples=["job.succeeded"])
     timestamp: Moment = Field(description="When it happened, RFC 3339.")
-    data: dict[str, Any] = Field(
-        description="`job`: the job right after the change, as `GET /v1/jobs/{job_id}` shows it, but for "
-        "`queue_position`, `eta_s` and `expires_at`; `webhook_id` in a test message."
-    )
+    data: MessageFacts
 
 
 class DeliveryDetail(Delivery):
