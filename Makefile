@@ -6,7 +6,7 @@ READY  := $(VENV)/.ready
 # Twice quiet: errors only.
 PIP    := $(BIN)/python -m pip --quiet --quiet --disable-pip-version-check
 
-.PHONY: demo test coverage test-slow test-postgres test-lowest explore faults resumption fuzz mutants flood contract check serve openapi samples lock sbom bench bench-stages bench-quality bench-scans clean
+.PHONY: demo test contract-changes coverage test-slow test-postgres test-lowest explore faults resumption fuzz mutants flood contract check serve openapi samples lock sbom bench bench-stages bench-quality bench-scans clean
 
 $(READY): pyproject.toml constraints.txt
 	@echo "setting up $(VENV); this takes a few minutes the first time ..." >&2
@@ -14,6 +14,13 @@ $(READY): pyproject.toml constraints.txt
 	@$(PYTHON) -m venv $(VENV)
 	@$(PIP) install --upgrade pip
 	@$(PIP) install --constraint constraints.txt --editable '.[service,dev]'
+	@touch $@
+
+# What tests/contract needs besides: linters of OpenAPI and a generator of clients. Node.js itself comes as a wheel.
+NODE       := tests/contract/node
+NODE_READY := $(NODE)/node_modules/.ready
+$(NODE_READY): $(NODE)/package-lock.json | $(READY)
+	@PATH="$(abspath $(BIN)):$$PATH" npm ci --prefix $(NODE) --silent --no-audit --no-fund --ignore-scripts
 	@touch $@
 
 demo: $(READY)            ## repair a real scan over HTTP; results land in demo/
@@ -29,7 +36,7 @@ serve: $(READY)           ## a local stack on http://127.0.0.1:8000 until Ctrl-C
 PYTEST := pytest -n 2 --dist loadfile
 PYTHON_OF_TESTS := PYTHONDONTWRITEBYTECODE= OMP_NUM_THREADS=1 $(BIN)/python -m
 TEST := $(PYTHON_OF_TESTS) $(PYTEST)
-test: $(READY)            ## the tests, with the real Valkey
+test: $(READY) $(NODE_READY)  ## the tests, with the real Valkey
 	@$(TEST) --durations 10 -m "not slow" $(ARGS)
 
 # What it measures, and how child processes take part, stands in pyproject.toml under [tool.coverage.run].
@@ -74,6 +81,9 @@ mutants: $(READY)         ## mutated files of all formats through a real local s
 
 contract: $(READY)        ## schemathesis, thousands of requests against a local stack: make contract ARGS="--examples 60 --seed 1"
 	@OMP_NUM_THREADS=1 $(BIN)/python -m tests.contract $(ARGS)
+
+contract-changes: $(READY) $(NODE_READY)  ## what breaks clients since a revision: make contract-changes BASE=v0.2.0
+	@$(BIN)/python -m tests.contract.changes $(BASE)
 
 check: $(READY)           ## ruff, import rules, types
 	$(BIN)/ruff check .

@@ -20,7 +20,7 @@ from service import key_commands
 from service.app import create_app
 from service.auth import check_exposure
 from service.connections import ConnectionLimits, limited_protocol, raise_descriptor_limit
-from service.document import to_yaml
+from service.contract.document import to_yaml
 from service.malloc import return_large_buffers
 
 # As of `uvicorn.run`.

@@ -15,7 +15,7 @@ from service.audit import AuditMiddleware
 from service.auth import AuthMiddleware, check_exposure
 from service.body_limit import BodyLimitMiddleware
 from service.cached_answer import READINESS_CACHE_S, CachedAnswer
-from service.document import TITLE, VERSION, install_document, operation_id
+from service.contract.document import TITLE, VERSION, install_document, operation_id
 from service.handlers import install_handlers
 from service.head_requests import HeadMiddleware
 from service.metrics import StateCollector, new_registry
@@ -25,6 +25,7 @@ from service.request_telemetry import RequestTelemetryMiddleware
 from service.routes import (
     audit,
     deliveries,
+    documentation,
     events,
     health,
     jobs,
@@ -77,7 +78,7 @@ def create_app(settings: Settings, telemetry: Telemetry | None = None) -> FastAP
     app.state.telemetry = telemetry or Telemetry()
     about_access = (keys, audit)
     about_jobs = (meshes, uploads, jobs, events, results, repairs, retention)
-    modules = (*about_jobs, models, model_lifetime, webhooks, deliveries, *about_access, health, metrics)
+    modules = (*about_jobs, models, model_lifetime, webhooks, deliveries, *about_access, health, documentation, metrics)
     routers = [module.router for module in modules]
     for router in routers:
         app.include_router(router, dependencies=[Depends(check_scope)])

@@ -20,7 +20,15 @@ from jobkit.settings import Settings
 from service.host_header import Authority, parse_origin, plain_host, requested_authority
 from service.problems import ProblemError, problem_response, to_problem_error
 
-PUBLIC_PATHS = frozenset({"/", "/healthz", "/readyz", "/openapi.yaml", "/openapi.json"})
+_DOCUMENTATION = (
+    "docs",
+    "docs/docs.js",
+    "docs/swagger-ui-bundle.js",
+    "docs/swagger-ui.css",
+    "openapi.json",
+    "openapi.yaml",
+)
+PUBLIC_PATHS = frozenset({"/", "/healthz", "/readyz", *(f"/{path}" for path in _DOCUMENTATION)})
 METRICS_PATH = "/metrics"
 ALL_SCOPES = frozenset(KeyScope)
 # Who asks without a key: from this machine, where none is needed, and for what is public.

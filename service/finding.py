@@ -46,7 +46,7 @@ def _job_search(  # noqa: PLR0913, PLR0917  each is a parameter of the query
         Query(
             max_length=16,
             description="`name:value`, a fact of the sender's own; may be repeated.",
-            examples=["order:A-17"],
+            examples=[["order:A-17"]],
         ),
     ] = None,
     created_since: Since = None,

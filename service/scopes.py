@@ -72,7 +72,7 @@ OPERATIONS: Mapping[Scope, tuple[str, ...]] = {
 # What sends a mesh and starts a job at once needs both.
 ALSO_NEEDS: Mapping[str, Scope] = {"repair": Scope.UPLOAD}
 # Of the service itself; `service.auth.PUBLIC_PATHS` names those that need no key.
-PUBLIC = frozenset({"healthz", "readyz", "page", "openapi_yaml", "openapi_json"})
+PUBLIC = frozenset({"healthz", "readyz", "page", "openapi_yaml", "openapi_json", "docs", "docs_asset"})
 _SCOPE_OF: Mapping[str, Scope] = {name: scope for scope, names in OPERATIONS.items() for name in names}
 
 

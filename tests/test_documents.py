@@ -17,6 +17,7 @@ import jobkit.errors
 import quadpatch.errors
 from client.exit_codes import MEANINGS
 from jobkit.schema import STAGES, JobState
+from jobkit.schema.codes import FAILURE_CODES
 from jobkit.settings import settings_table
 from onebox.demo import find_scan
 from quadpatch.calibration import calibration_set, energy_selection, error_model
@@ -27,6 +28,7 @@ from quadpatch.patches import paper_layout, ray_visibility, scale
 from quadpatch.recipes import assessment, default, fairing_energies, paper
 from quadpatch.report import VERDICTS
 from quadpatch.sparse import gaussian
+from service.contract.codes import problem_codes
 from service.problems import to_problem_error
 
 E = TypeVar("E", bound=Exception)
@@ -80,7 +82,11 @@ def test_every_code_of_the_contract_stands_in_the_table_with_its_status() -> Non
             continue
         status = to_problem_error(kind("")).status
         assert status != HTTPStatus.INTERNAL_SERVER_ERROR, code
-        if code not in ("unusable_model", "mesh_encoded"):  # stand in both tables; the later row wins in `rows`
+        if code not in (
+            "unusable_model",
+            "mesh_encoded",
+            "store_unavailable",
+        ):  # stand in both tables; the later row wins in `rows`
             assert table[code][0] == str(status.value), code
 
 
@@ -102,6 +108,14 @@ def test_every_code_that_service_and_worker_write_out_stands_in_the_table() -> N
         "analysis_failed",
     } <= codes
     assert codes <= set(rows(read("docs/api.md")))
+
+
+def test_the_tables_of_codes_are_those_of_the_document() -> None:
+    """The table of warnings behind them belongs to the report."""
+    document = read("docs/api.md")
+    tables = document[document.index("| code | status | meaning |") :].split("\n\n")
+    assert set(rows(tables[0])) - {"code", "---"} == set(problem_codes())
+    assert set(rows(tables[2])) - {"code", "---"} == set(FAILURE_CODES)
 
 
 def test_every_state_verdict_and_stage_is_explained() -> None:

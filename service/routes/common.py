@@ -95,7 +95,7 @@ CONDITIONAL = [Depends(_conditional_headers)]
 BINARY: Mapping[str, Any] = {"type": "string", "format": "binary"}
 FILE: Mapping[str, Any] = {**BINARY, "minLength": 1}
 _ALWAYS = (401, 403, 422, 500, 503)
-_MEANING = {
+MEANINGS = {
     304: "What the entity tag names has not changed.",
     400: "The body can't be read.",
     401: "No valid key.",
@@ -117,12 +117,12 @@ _MEANING = {
 
 def problems(*statuses: int) -> dict[int | str, dict[str, Any]]:
     """Document the problems of a route; those that every route may answer with are added."""
-    return {status: {"model": Problem, "description": _MEANING[status]} for status in sorted({*statuses, *_ALWAYS})}
+    return {status: {"model": Problem, "description": MEANINGS[status]} for status in sorted({*statuses, *_ALWAYS})}
 
 
 def not_modified() -> dict[int | str, dict[str, Any]]:
     """Document a 304."""
-    return {304: {"description": _MEANING[304]}}
+    return {304: {"description": MEANINGS[304]}}
 
 
 def described_header(description: str) -> dict[str, Any]:

@@ -1,17 +1,12 @@
-"""Liveness, readiness and description of the service."""
+"""Liveness and readiness of the service, and its first page."""
 
-import json
-import math
-from collections.abc import Callable
 from http import HTTPStatus
-from typing import Any, Literal, cast
+from typing import Literal, cast
 
 from fastapi import APIRouter, Request
 from pydantic import BaseModel, Field
 from starlette.responses import HTMLResponse, Response
 
-from service.cached_answer import CachedAnswer
-from service.document import to_yaml
 from service.problems import RETRY_AFTER_S, ProblemError
 from service.readiness import Readiness, find_failures, read_readiness
 from service.routes.common import problems
@@ -25,7 +20,7 @@ _PAGE = """<!doctype html>
 code,pre{background:#8882;border-radius:4px;padding:.1em .3em}pre{padding:1em;overflow:auto}
 :root{color-scheme:light dark}</style>
 <h1>Quadpatch</h1>
-<p>Repairs holes in 3D scans. This is its HTTP service; <a href="/openapi.yaml">openapi.yaml</a> describes it.</p>
+<p>Repairs holes in 3D scans. This is its HTTP service; <a href="/docs">its page of documentation</a> shows it all.</p>
 <pre>curl -F mesh=@scan.ply URL/v1/repairs        # upload, get a job
 curl URL/v1/jobs/JOB -H 'Prefer: wait=30'    # look until it has ended
 curl -fOJ URL/v1/jobs/JOB/result             # fetch the repaired mesh</pre>
@@ -63,26 +58,6 @@ def _read_readiness(services: Services) -> Readiness:
         status = HTTPStatus.SERVICE_UNAVAILABLE
         raise ProblemError(status, "not_ready", detail, {"Retry-After": RETRY_AFTER_S}, failures)
     return read_readiness(services)
-
-
-@router.get("/openapi.yaml", include_in_schema=False)
-async def openapi_yaml(request: Request) -> Response:
-    """Hand out the description of this service."""
-    return await _document(request, "application/yaml", to_yaml)
-
-
-@router.get("/openapi.json", include_in_schema=False)
-async def openapi_json(request: Request) -> Response:
-    """Hand out the same as JSON."""
-    return await _document(request, "application/json", json.dumps)
-
-
-async def _document(request: Request, media_type: str, write: Callable[[dict[str, Any]], str]) -> Response:
-    # It never changes. Writing YAML takes a second, and any client may ask for it.
-    app = request.app
-    cached = app.state.documents.setdefault(media_type, CachedAnswer(math.inf))
-    text = await cached.get(lambda: write(app.openapi()))
-    return Response(text, media_type=media_type)
 
 
 @router.get("/", include_in_schema=False)

@@ -1,6 +1,5 @@
 """Files of a finished job: the repaired mesh, the report, the pictures."""
 
-from collections.abc import Mapping
 from typing import Any
 
 from fastapi import APIRouter, Request
@@ -8,6 +7,7 @@ from starlette.responses import Response
 
 from jobkit.errors import JobHasNoResultError, JobNotFinishedError, ObjectNotFoundError, ResultMissingError
 from jobkit.schema import FileRole, Job
+from jobkit.schema.reports import Report
 from jobkit.storage.base import result_key
 from service.content import OCTETS, Content, content_response, result_name
 from service.routes.common import BINARY, CONDITIONAL, JobIdPath, not_modified, problems
@@ -17,10 +17,9 @@ from service.strict_validation import StrictRoute
 router = APIRouter(tags=["results"], route_class=StrictRoute)
 
 
-def _documented(media_type: str, schema: Mapping[str, Any]) -> dict[int | str, dict[str, Any]]:
-    content = {media_type: {"schema": schema}}
+def _documented(media_type: str, **whole: Any) -> dict[int | str, dict[str, Any]]:
     return {
-        200: {"description": "The whole file.", "content": content},
+        200: {"description": "The whole file.", **(whole or {"content": {media_type: {"schema": BINARY}}})},
         206: {"description": "The range.", "content": {media_type: {"schema": BINARY}}},
         **not_modified(),
         **problems(404, 409, 410, 412, 416),
@@ -31,7 +30,7 @@ def _documented(media_type: str, schema: Mapping[str, Any]) -> dict[int | str, d
     "/v1/jobs/{job_id}/result",
     response_class=Response,
     dependencies=CONDITIONAL,
-    responses=_documented(OCTETS, BINARY),
+    responses=_documented(OCTETS),
 )
 def get_result(
     request: Request,
@@ -46,7 +45,7 @@ def get_result(
     "/v1/jobs/{job_id}/report",
     response_class=Response,
     dependencies=CONDITIONAL,
-    responses=_documented("application/json", {"type": "object", "description": "One entry per hole, and more."}),
+    responses=_documented("application/json", model=Report),
 )
 def get_report(
     request: Request,
@@ -61,7 +60,7 @@ def get_report(
     "/v1/jobs/{job_id}/preview.png",
     response_class=Response,
     dependencies=CONDITIONAL,
-    responses=_documented("image/png", BINARY),
+    responses=_documented("image/png"),
 )
 def get_preview(
     request: Request,
@@ -76,7 +75,7 @@ def get_preview(
     "/v1/jobs/{job_id}/closeups.zip",
     response_class=Response,
     dependencies=CONDITIONAL,
-    responses=_documented("application/zip", BINARY),
+    responses=_documented("application/zip"),
 )
 def get_closeups(
     request: Request,

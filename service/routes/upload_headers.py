@@ -6,6 +6,7 @@ Tested in `tests/service/routes/test_uploads.py`.
 from typing import Annotated, Literal
 
 from fastapi import Header
+from pydantic import WithJsonSchema
 
 from jobkit.schema import UploadKind
 from jobkit.uploads.uploads import NewUpload
@@ -27,7 +28,12 @@ ChecksumHeader = Annotated[
 
 
 def version_header(
-    version: Annotated[Literal["1.0.0"], Header(alias="Tus-Resumable", description="Version of the protocol.")],
+    version: Annotated[
+        Literal["1.0.0"],
+        # Generators of clients take an enumeration for a header, and no constant.
+        WithJsonSchema({"type": "string", "enum": ["1.0.0"]}),
+        Header(alias="Tus-Resumable", description="Version of the protocol."),
+    ],
 ) -> None:
     """Document the header that `service.tus` reads."""
 
