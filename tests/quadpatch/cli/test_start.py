@@ -27,7 +27,7 @@ PICTURES = {"PIL", "matplotlib"}
 NOT_FOR_GEOMETRY = {
     *PICTURES,
     *("constriction", "embreex", "manifold3d", "networkx", "onnxruntime", "pandas", "pymeshlab", "safetensors"),
-    *("torch", "trimesh", "xml.parsers.expat", "rich.progress", "scipy.optimize"),
+    *("pydantic", "torch", "trimesh", "xml.parsers.expat", "rich.progress", "scipy.optimize"),
     *(
         "numpy.f2py.crackfortran",
         "numpy.testing._private",
