@@ -28,6 +28,7 @@ from client.options import (
     JsonOption,
     KeyOption,
     LabelOption,
+    LengthUnitOption,
     MaxDiameterOption,
     MaxPerimeterOption,
     MeshArgument,
@@ -134,6 +135,7 @@ def repair(  # noqa: PLR0913 - one parameter per option of the command line
     priority: PriorityOption = None,
     format_: FormatOption = None,
     colours: ColoursOption = None,
+    length_unit: LengthUnitOption = None,
     report: ReportOption = None,
     preview: PreviewOption = None,
     closeups: CloseupsOption = None,
@@ -159,6 +161,7 @@ def repair(  # noqa: PLR0913 - one parameter per option of the command line
                 "seed": seed,
                 "weld_tolerance": tolerance(weld_tolerance),
                 "colours": colours,
+                "length_unit": length_unit,
                 "label": label,
                 "priority": priority or "normal",
                 "output": {

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 import typer
 
-from shared_rules.option_words import Colours, Effort, OutputFormat, Preset, Recipe
+from shared_rules.option_words import Colours, Effort, LengthUnit, OutputFormat, Preset, Recipe
 
 DEFAULT_URL = "http://127.0.0.1:8000"
 MethodName = Literal["auto", "dictionary", "cnn", "smooth"]
@@ -121,6 +121,14 @@ ColoursOption = Annotated[
     typer.Option(
         help="Colours of new vertices and texels: the texture around a hole carried on, or just spread from its rim.",
         show_default="auto",
+        rich_help_panel=OUTPUT,
+    ),
+]
+LengthUnitOption = Annotated[
+    LengthUnit | None,
+    typer.Option(
+        help="Unit of the coordinates, if the file states none; GLB and 3MF then hold the true size.",
+        show_default="none",
         rich_help_panel=OUTPUT,
     ),
 ]

@@ -7,7 +7,7 @@ from typing import Any, Literal, TypeVar, get_args
 
 from quadpatch.errors import OptionError
 from shared_rules.hole_selection import MODEL_FILLS_ONLY, Cap, HoleKind, RuleAction, names_fills, repeated_loop
-from shared_rules.option_words import Colours, Effort, Preset, Recipe
+from shared_rules.option_words import CarriedAttribute, Colours, Effort, LengthUnit, Preset, Recipe
 
 RESOLUTION_RANGE = (8, 128)
 OVERLAP_RANGE = (0, 8)
@@ -212,6 +212,12 @@ class RepairOptions:
     colours : str
         Of new vertices where measured ones have colours, and of texture pages where there are images: `auto` carries
         the texture on where calibration says that this is better, `harmonic` only spreads the colours of the rim.
+    length_unit : str, optional
+        Unit of the scan's coordinates, where its file states none: `millimeter`, `meter` and others. Formats whose
+        lengths have a unit, glTF and 3MF, then hold the scan in its true size.
+    attributes : tuple of str, optional
+        What a mesh carries that is written in another format than its own: some of `colours`, `normals` and
+        `texture_coordinates`; None: all that both formats know. In its own format a scan keeps everything.
     """
 
     holes: HoleOptions = field(default_factory=HoleOptions)
@@ -223,9 +229,14 @@ class RepairOptions:
     weld_tolerance: float | Literal["auto"] = "auto"
     effort: Effort = "standard"
     colours: Colours = "auto"
+    length_unit: LengthUnit | None = None
+    attributes: tuple[CarriedAttribute, ...] | None = None
 
     def __post_init__(self) -> None:
         _check_choice("colours", self.colours, get_args(Colours))
+        check_length_unit(self.length_unit)
+        for name in self.attributes or ():
+            _check_choice("attributes", name, get_args(CarriedAttribute))
         check_weld_tolerance(self.weld_tolerance)
         _check_choice("recipe", self.recipe, get_args(Recipe))
         _check_choice("effort", self.effort, get_args(Effort))
@@ -244,6 +255,8 @@ class RepairOptions:
             dictionary = DictionaryOptions(**(values.get("dictionary") or {}))
             network = NetworkOptions(**(values.get("network") or {}))
             rest = {name: value for name, value in values.items() if name not in _NESTED}
+            if rest.get("attributes") is not None:
+                rest["attributes"] = tuple(rest["attributes"])
             return cls(holes, PatchOptions(**patches), dictionary=dictionary, network=network, **rest)
         except (TypeError, ValueError) as error:
             raise OptionError(f"options don't fit: {error}") from error
@@ -270,6 +283,12 @@ def built(cls: Callable[..., Options], values: Mapping[str, Any], **groups: Call
         return cls(**{**values, **made})
     except (TypeError, ValueError) as error:
         raise OptionError(f"options don't fit: {error}") from error
+
+
+def check_length_unit(value: str | None) -> None:
+    """Raise OptionError for a unit that is not known."""
+    if value is not None:
+        _check_choice("length_unit", value, get_args(LengthUnit))
 
 
 def check_seed(value: object) -> None:

@@ -8,13 +8,14 @@ import numpy as np
 
 from quadpatch.calibration.kept import KeptCalibrations
 from quadpatch.coloured_fill import colour_fill
-from quadpatch.errors import EmptyMeshError
+from quadpatch.errors import EmptyMeshError, OptionError
 from quadpatch.filling.bridge_proposals import propose_bridges
 from quadpatch.filling.islands import hosts_of
 from quadpatch.formats.marks import NUMBERED
 from quadpatch.formats.precision import check_precision
 from quadpatch.formats.reading import read_scan
 from quadpatch.formats.scan import Fill, Scan
+from quadpatch.formats.units import in_unit
 from quadpatch.formats.writing import check_suffix, write_scan, written_as
 from quadpatch.inpainters.inpainter import Inpainter
 from quadpatch.mesh.holes import find_holes
@@ -22,7 +23,7 @@ from quadpatch.mesh.measures import diagonal
 from quadpatch.mesh.near_vertices import Tolerance
 from quadpatch.mesh.orientation import triangles_facing_flipped
 from quadpatch.mesh.weld import Weld, weld
-from quadpatch.model_choice import choose_model
+from quadpatch.model_choice import SELF, choose_model, sha256_of
 from quadpatch.options import RepairOptions, check_weld_tolerance
 from quadpatch.processes import ProcessPool
 from quadpatch.progress import Progress, no_progress
@@ -40,6 +41,7 @@ from quadpatch.report import (
 from quadpatch.stages import Stages, harmless
 from quadpatch.textured_fill import texture_fill
 from shared_rules.hole_selection import Choice, choose_holes, join_islands
+from shared_rules.option_words import LengthUnit
 
 # Formats whose lengths have a unit by definition, or by the default that our writer leaves standing.
 IMPLIED_UNITS = {".glb": "meter", ".gltf": "meter", ".3mf": "millimeter"}
@@ -105,20 +107,25 @@ def repair_and_keep(  # noqa: PLR0913, PLR0917  the same arguments as every task
     network_card: dict[str, Any] | None = None,
     kept: KeptCalibrations | None = None,
     pool: ProcessPool | None = None,
+    learn_from: Path | None = None,
 ) -> RepairedFile:
     """Repair one file and keep what pictures of it are drawn from; see `repair_file`.
 
     A network that was published without a card in its file goes by `network_card`. What calibration found out in
     earlier repairs of the scan is taken from `kept`, and what this one finds out is added to it. The processes of a
-    pool share the work; the result is the same without.
+    pool share the work; the result is the same without. The model `self` learns its dictionary from the mesh of
+    `learn_from`, in the same unit of length, where that is given.
     """
     options = options or RepairOptions()
     check_suffix(output)
     progress = harmless(progress)
     stages = Stages(progress, pool or ProcessPool())
-    inpainter, card = choose_model(model, options, progress, network_card)
+    if learn_from is None:
+        inpainter, card = choose_model(model, options, progress, network_card)
+    else:
+        inpainter, card = _learn_from(learn_from, model, options)
     with stages.stage("read"):
-        scan, welded = read_surface(source, options.weld_tolerance)
+        scan, welded = read_surface(source, options.weld_tolerance, options.length_unit)
         named = written_as(output, scan)
         precision = check_precision(scan, named)
     repair = _inpaint(welded, inpainter, options, stages, kept)
@@ -126,7 +133,7 @@ def repair_and_keep(  # noqa: PLR0913, PLR0917  the same arguments as every task
     fill = replace(_fill(scan, welded, repair), vertex_colours=coloured.colours)
     textured = texture_fill(scan, welded, repair.filled, fill, output, options, stages)
     with stages.stage("write"):
-        losses = write_scan(output, scan, replace(fill, page=textured.page))
+        losses = write_scan(output, scan, replace(fill, page=textured.page), options.attributes)
     warnings = [
         *repair.warnings,
         *coloured.warnings,
@@ -183,15 +190,17 @@ def _reason(choice: Choice) -> str | None:
     return choice.reason if choice.joined_to is None else f"joined to hole {choice.joined_to}, in which it lies"
 
 
-def read_surface(source: Path, weld_tolerance: Tolerance = "auto") -> tuple[Scan, Weld]:
-    """Read a file and make one surface of it.
+def read_surface(source: Path, weld_tolerance: Tolerance = "auto", unit: LengthUnit | None = None) -> tuple[Scan, Weld]:
+    """Read a file and make one surface of it; `unit` declares that of a file that states none.
 
     Raises
     ------
     MeshError
         If the file can't be read, or holds no surface.
+    OptionError
+        If the file states another unit.
     """
-    scan = read_scan(source)
+    scan = in_unit(read_scan(source), unit)
     welded = weld(scan.vertices, scan.triangles, weld_tolerance)
     if not len(welded.mesh.triangles):
         raise EmptyMeshError(f"none of the {len(scan.triangles)} faces has three different corners")
@@ -205,7 +214,20 @@ def _unit_warnings(scan: Scan, output: Path) -> list[str]:
     implied = IMPLIED_UNITS.get(output.suffix.lower())
     if implied is None or scan.unit is not None:
         return []
-    return [f"the scan states no length unit, and {output.suffix} always means {implied}: the numbers are unchanged"]
+    return [
+        f"the scan states no length unit, and {output.suffix} always means {implied}: the numbers are unchanged; "
+        "length_unit says what they are in"
+    ]
+
+
+def _learn_from(reference: Path, model: str | Path | None, options: RepairOptions) -> tuple[Inpainter, dict[str, Any]]:
+    """Learn a dictionary from another mesh."""
+    if model not in (None, SELF) or options.recipe != "default":
+        raise OptionError(f"learn_from goes with the model {SELF} and the recipe default")
+    from quadpatch.inpainters.reference_dictionary import ReferenceDictionary  # noqa: PLC0415  few repairs need it
+
+    mesh = read_surface(reference)[1].mesh  # which knows limits: the bytes are hashed after that
+    return ReferenceDictionary(mesh, options.seed), {"name": SELF, "learned_from": sha256_of(reference)}
 
 
 def _inpaint(

@@ -15,3 +15,7 @@ RestorationBase = Literal["mesh", "poisson"]
 OutputFormat = Literal["ply", "stl", "obj", "off", "glb", "3mf"]
 # How new vertices get colours: carried on from the surroundings where that is better, or spread from the rim.
 Colours = Literal["auto", "harmonic"]
+# Units of length, as 3MF names them.
+LengthUnit = Literal["micron", "millimeter", "centimeter", "meter", "inch", "foot"]
+# What a mesh carries besides its shape, where it is written in another format than its own.
+CarriedAttribute = Literal["colours", "normals", "texture_coordinates"]

@@ -9,6 +9,7 @@ from jobkit.schema import (
     AutoMethod,
     CnnMethod,
     Denoising,
+    DictionaryMethod,
     Format,
     JobSpec,
     Method,
@@ -101,6 +102,9 @@ def method_options(spec: JobSpec, time_s: float) -> dict[str, Any]:
     recipe = "default" if isinstance(spec.method, SmoothMethod | AutoMethod) else spec.method.recipe
     options = {"holes": spec.holes.model_dump(), "patches": patches, "seed": spec.seed, "recipe": recipe}
     options |= {"weld_tolerance": spec.weld_tolerance, "colours": spec.colours}
+    options |= {"length_unit": spec.length_unit, "attributes": spec.output.attributes}
+    if isinstance(spec.method, DictionaryMethod):
+        options["dictionary"] = spec.method.dictionary.model_dump()
     if isinstance(spec.method, AutoMethod):
         options["effort"] = spec.method.effort
     if fits_a_network(spec.method):
@@ -126,7 +130,7 @@ def fits_a_network(method: Method) -> TypeGuard[AutoMethod | CnnMethod]:
 
 def task_options(spec: JobSpec) -> dict[str, Any]:
     """Return the options of another task as `from_dict` of its options reads them; lengths are in mesh units."""
-    options: dict[str, Any] = {"seed": spec.seed}
+    options: dict[str, Any] = {"seed": spec.seed, "length_unit": spec.length_unit}
     if not isinstance(spec.method, SmoothMethod):
         options["patches"] = spec.method.patches.model_dump()
     if spec.task == "denoise":

@@ -8,7 +8,16 @@ Tested in `tests/jobkit/schema/test_tasks.py`.
 
 from collections.abc import Mapping
 
-from jobkit.schema.methods import SELF, AutoMethod, CnnMethod, DictionaryMethod, Fitting, PatchOptions, SmoothMethod
+from jobkit.schema.methods import (
+    SELF,
+    AutoMethod,
+    CnnMethod,
+    DictionaryMethod,
+    DictionarySize,
+    Fitting,
+    PatchOptions,
+    SmoothMethod,
+)
 from jobkit.schema.spec import HoleSelection, RepairSpec
 from shared_rules.hole_selection import MODEL_FILLS_ONLY, names_fills
 from shared_rules.tasks import Task
@@ -46,7 +55,22 @@ def _conflict_of_fill(spec: RepairSpec) -> str | None:
         return MODEL_FILLS_ONLY
     if spec.method.recipe == "paper" and isinstance(spec.method, CnnMethod) and spec.method.model == SELF:
         return "the recipe paper fits no network to a mesh: leave method.recipe out, or take another model"
-    return _conflict_of_patches(spec.method.patches) or _options_of_another_task(spec)
+    return (
+        _conflict_of_learning(spec.method)
+        or _conflict_of_patches(spec.method.patches)
+        or _options_of_another_task(spec)
+    )
+
+
+def _conflict_of_learning(method: DictionaryMethod | CnnMethod) -> str | None:
+    """Say what is wrong with what a dictionary is to be learned from, or with its size."""
+    if not isinstance(method, DictionaryMethod):
+        return None
+    if method.learn_from is not None and (method.model != SELF or method.recipe != "default"):
+        return "method.learn_from goes with the model self and the recipe default"
+    if method.dictionary != DictionarySize() and (method.model != SELF or method.recipe != "paper"):
+        return "method.dictionary goes with the model self and the recipe paper"
+    return None
 
 
 def _conflict_of_task(spec: RepairSpec) -> str | None:
@@ -84,6 +108,7 @@ def _options_of_fill(spec: RepairSpec) -> str | None:
         "weld_tolerance": spec.weld_tolerance != "auto",
         "colours": spec.colours != "auto",
         "output.closeups": spec.output.closeups,
+        "output.attributes": spec.output.attributes is not None,
     }
     name = next((name for name, is_given in given.items() if is_given), None)
     return None if name is None else f"{name} goes with the task fill; the task of this job is {spec.task}"
@@ -109,6 +134,14 @@ def _conflict_of_method(spec: RepairSpec) -> str | None:
 
 
 def _conflict_of_learned(spec: RepairSpec, method: DictionaryMethod | CnnMethod) -> str | None:
+    if isinstance(method, DictionaryMethod):
+        given = {
+            "learn_from": method.learn_from is not None,
+            "dictionary": method.dictionary != DictionarySize(),
+        }
+        name = next((name for name, is_given in given.items() if is_given), None)
+        if name is not None:
+            return f"method.{name} goes with the task fill; the task of this job is {spec.task}"
     if method.recipe != "default":
         return f"recipes go with the task fill; the task of this job is {spec.task}"
     if spec.task == "encode" and method.patches.overlap is not None:

@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from jobkit.schema.base import REFERENCE_PATTERN, WHOLE, Request
+from jobkit.schema.base import REFERENCE_PATTERN, WHOLE, MeshId, Request
 from shared_rules.option_words import Effort, Preset, Recipe
 
 DEFAULT_MODEL = "default"
@@ -19,6 +19,8 @@ SELF = "self"
 
 Resolution = Annotated[int, Field(ge=8, le=128), WHOLE]
 Overlap = Annotated[int, Field(ge=0, le=8), WHOLE]
+Atoms = Annotated[int, Field(ge=2, le=4096), WHOLE]
+Nonzero = Annotated[int, Field(ge=1, le=256), WHOLE]
 FittingSteps = Annotated[int, Field(ge=1, le=100_000), WHOLE]
 
 
@@ -42,6 +44,13 @@ class PatchOptions(Request):
     )
 
 
+class DictionarySize(Request):
+    """How large a dictionary the recipe `paper` learns from the mesh itself. Null means: chosen by the method."""
+
+    atoms: Atoms | None = Field(default=None, description="At most so many atoms.", examples=[100])
+    nonzero: Nonzero | None = Field(default=None, description="Atoms that one patch may use.", examples=[10])
+
+
 class DictionaryMethod(Request):
     """Sparse coding over a dictionary of patches."""
 
@@ -58,6 +67,16 @@ class DictionaryMethod(Request):
         description="How the dictionary is put to use: `default`, or `paper`, exactly as in the paper that the method "
         "follows. `paper` needs `self` or a dictionary learned for it; its default is `default-paper`.",
         examples=["default"],
+    )
+    learn_from: MeshId | None = Field(
+        default=None,
+        description="Another mesh, in the same unit of length, that `self` learns its dictionary from: one of the same "
+        "kind that is whole, or less worn. Null: the mesh itself.",
+    )
+    dictionary: DictionarySize = Field(
+        default_factory=DictionarySize,
+        description="How large a dictionary `self` learns; refused with any other model, and with the recipe "
+        "`default`, which finds out by itself.",
     )
     patches: PatchOptions = Field(default_factory=PatchOptions, description="How patches are laid out.")
 

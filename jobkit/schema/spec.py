@@ -5,10 +5,10 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import Field, model_validator
 
 from jobkit.schema.base import TEXT_PATTERN, WHOLE, MeshId, Request
-from jobkit.schema.methods import SELF, AutoMethod, DictionaryMethod, Method
+from jobkit.schema.methods import SELF, AutoMethod, DictionaryMethod, DictionarySize, Method
 from jobkit.schema.tasks import Denoising, Encoding, Restoring
 from shared_rules.hole_selection import Cap, HoleKind, RuleAction, repeated_loop
-from shared_rules.option_words import Colours, OutputFormat
+from shared_rules.option_words import CarriedAttribute, Colours, LengthUnit, OutputFormat
 from shared_rules.tasks import FILL, Task
 
 # `qpz` is what the task `encode` hands back and `decode` reads; it is a mesh that is no list of triangles.
@@ -125,6 +125,13 @@ class Output(Request):
         "decoded. The task `encode` hands back `.qpz` only.",
         examples=["ply"],
     )
+    attributes: list[CarriedAttribute] | None = Field(
+        default=None,
+        max_length=3,
+        description="What the mesh carries besides its shape where `format` is another one than that of the upload; "
+        "null: all that both formats know. In its own format it keeps everything.",
+        examples=[["colours"]],
+    )
     preview: bool = Field(default=True, description="Whether to draw a before/after picture.")
     closeups: bool = Field(
         default=False,
@@ -180,6 +187,12 @@ class RepairSpec(Request):
         "finds that better; `harmonic`: the colours of the rim are spread.",
         examples=["auto"],
     )
+    length_unit: LengthUnit | None = Field(
+        default=None,
+        description="Unit of the mesh's coordinates, where its file states none. What comes back as GLB is in metres "
+        "then, and a 3MF names the unit: a scan in millimetres keeps its size. Null: that of the file, if any.",
+        examples=["millimeter"],
+    )
     output: Output = Field(default_factory=Output, description="What is handed back.")
     limits: Limits = Field(default_factory=Limits, description="Ceilings of one attempt.")
     seed: Seed = Field(default=0, description="Starts every random choice.", examples=[0])
@@ -221,11 +234,13 @@ class JobSpec(RepairSpec):
     @property
     def reference_id(self) -> str | None:
         """Id of the mesh that the job learns from, None where it needs none."""
-        return None if self.denoise is None else self.denoise.reference
+        if self.denoise is not None:
+            return self.denoise.reference
+        return self.method.learn_from if isinstance(self.method, DictionaryMethod) else None
 
 
 # Fields that came after the first release of the contract, in groups that came together.
-_LATER_FIELDS = ({"task", "restore", "denoise", "encode"}, {"colours"}, {"priority"})
+_LATER_FIELDS = ({"task", "restore", "denoise", "encode"}, {"colours"}, {"priority"}, {"length_unit"})
 
 
 def identity_of(spec: JobSpec) -> str:
@@ -242,4 +257,9 @@ def identity_of(spec: JobSpec) -> str:
     left_out: dict[str, Any] = {name: True for group in unused for name in group}
     if not spec.holes.bridges:
         left_out["holes"] = {"bridges"}
+    if spec.output.attributes is None:
+        left_out["output"] = {"attributes"}
+    if isinstance(spec.method, DictionaryMethod):
+        later = {"learn_from": spec.method.learn_from is None, "dictionary": spec.method.dictionary == DictionarySize()}
+        left_out["method"] = {name for name, is_unused in later.items() if is_unused}
     return spec.model_dump_json(exclude=left_out)

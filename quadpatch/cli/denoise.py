@@ -20,6 +20,7 @@ from quadpatch.cli.flags import (
     Resolution,
     Seed,
     Source,
+    Unit,
 )
 from quadpatch.cli.tasks import Files, given, run_task, vertices
 from quadpatch.errors import OptionError
@@ -69,6 +70,7 @@ def denoise(  # noqa: PLR0913, PLR0917  one argument per flag
     resolution: Resolution = None,
     overlap: Overlap = None,
     preset: PatchPreset = None,
+    length_unit: Unit = None,
     seed: Seed = 0,
     quiet: Quiet = False,
 ) -> None:
@@ -82,7 +84,14 @@ def denoise(  # noqa: PLR0913, PLR0917  one argument per flag
         if region is not None and region_property is not None:
             raise OptionError("--region and --region-property are two ways to say one thing: name one of them")
         box = None if region is None else {"min": list(region[:3]), "max": list(region[3:])}
-        values = given(noise=noise, max_shift=max_shift, region=box or region_property, patches=patches, seed=seed)
+        values = given(
+            noise=noise,
+            max_shift=max_shift,
+            region=box or region_property,
+            patches=patches,
+            seed=seed,
+            length_unit=length_unit,
+        )
         return denoise_file(source, output, model, DenoiseOptions.from_dict(values), progress, reference)
 
     inputs = [reference] if reference else []

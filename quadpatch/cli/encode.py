@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from quadpatch.cli.flags import Model, Output, PatchLength, Preview, Quiet, Report, Resolution, Seed, Source
+from quadpatch.cli.flags import Model, Output, PatchLength, Preview, Quiet, Report, Resolution, Seed, Source, Unit
 from quadpatch.cli.tasks import Files, given, run_task, vertices
 from quadpatch.progress import Progress
 
@@ -30,6 +30,7 @@ def encode(  # noqa: PLR0913, PLR0917  one argument per flag
     preview: Preview = None,
     patch_length: PatchLength = None,
     resolution: Resolution = None,
+    length_unit: Unit = None,
     seed: Seed = 0,
     quiet: Quiet = False,
 ) -> None:
@@ -40,7 +41,13 @@ def encode(  # noqa: PLR0913, PLR0917  one argument per flag
         from quadpatch.tasks.encode import encode_file  # noqa: PLC0415
 
         patches = {"length": patch_length, "resolution": resolution}
-        values = given(max_error=max_error, keep_connectivity=keep_connectivity, patches=patches, seed=seed)
+        values = given(
+            max_error=max_error,
+            keep_connectivity=keep_connectivity,
+            patches=patches,
+            seed=seed,
+            length_unit=length_unit,
+        )
         return encode_file(source, output, model, EncodeOptions.from_dict(values), progress)
 
     run_task(Files(source, output, report, preview), task, encoded, quiet)

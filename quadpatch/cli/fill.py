@@ -3,7 +3,7 @@
 import logging
 from collections import Counter
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, cast
 
 import typer
 
@@ -20,6 +20,7 @@ from quadpatch.cli.flags import (
     Resolution,
     Seed,
     Source,
+    Unit,
     WeldTolerance,
     read_tolerance,
 )
@@ -31,7 +32,7 @@ from quadpatch.formats.output_files import check_folder, check_outputs, is_strea
 from quadpatch.options import DictionaryOptions, HoleOptions, HoleRule, NetworkOptions, PatchOptions, RepairOptions
 from shared_rules.competition import outcome
 from shared_rules.hole_selection import Cap
-from shared_rules.option_words import Colours, Effort, Recipe
+from shared_rules.option_words import CarriedAttribute, Colours, Effort, Recipe
 from shared_rules.rule_text import RuleTextError, read_bridge, read_rule
 
 if TYPE_CHECKING:
@@ -121,6 +122,23 @@ def fill(  # noqa: PLR0913, PLR0917  one argument per flag
             "that better, or just spread from its rim."
         ),
     ] = "auto",
+    length_unit: Unit = None,
+    attribute: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="colours|normals|texture_coordinates",
+            help="Carry this besides the shape into another format than that of the scan; repeat for more.",
+            show_default="all that both formats know",
+        ),
+    ] = None,
+    learn_from: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="MESH",
+            help="Learn the dictionary (model self) from this mesh, in the same unit: one of the same kind that is "
+            "whole, or less worn.",
+        ),
+    ] = None,
     seed: Seed = 0,
     quiet: Quiet = False,
 ) -> None:
@@ -145,6 +163,8 @@ def fill(  # noqa: PLR0913, PLR0917  one argument per flag
             read_tolerance(weld_tolerance),
             effort,
             colours,
+            length_unit,
+            cast(tuple[CarriedAttribute, ...], tuple(attribute)) if attribute else None,  # options look at them
         )
         if calibration and recipe == "paper":
             raise OptionError("--calibration goes with the recipe default: the paper calibrates nothing")
@@ -152,13 +172,17 @@ def fill(  # noqa: PLR0913, PLR0917  one argument per flag
         check_outputs(source, output, others, may_overwrite=overwrite)
         if closeups:
             check_folder(closeups, [source, output, *others])
+        if learn_from:
+            check_outputs(learn_from, output, others, may_overwrite=False)
         prepare_libraries()
         from quadpatch.processes import ProcessPool, n_processes_for, usable_threads  # noqa: PLC0415  see below
         from quadpatch.repair import repair_and_keep  # noqa: PLC0415  numerical libraries, once there is work to do
 
         kept = read_calibrations(calibration)
         with ProcessPool(n_processes_for(source, usable_threads())) as pool:
-            repaired = repair_and_keep(source, output, model, options, progress, kept=kept, pool=pool)
+            repaired = repair_and_keep(
+                source, output, model, options, progress, kept=kept, pool=pool, learn_from=learn_from
+            )
         logging.getLogger("quadpatch").addHandler(logging.NullHandler())  # what people read is in the warnings
         if report and (preview or closeups) and not is_stream(report):  # drawing may take the process down
             write_report(repaired.report, report)

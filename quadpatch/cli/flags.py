@@ -9,7 +9,7 @@ from typing import Annotated, Literal
 import typer
 
 from quadpatch.errors import OptionError
-from shared_rules.option_words import Preset
+from shared_rules.option_words import LengthUnit, Preset
 
 Source = Annotated[Path, typer.Argument(metavar="IN", help="Mesh: PLY, STL, OBJ, OFF, GLB/glTF or 3MF.")]
 Output = Annotated[
@@ -29,6 +29,10 @@ Model = Annotated[
 ]
 Atoms = Annotated[int | None, typer.Option(help="Atoms to learn (model self).")]
 Nonzero = Annotated[int | None, typer.Option(help="Atoms that one patch may use.")]
+Unit = Annotated[
+    LengthUnit | None,
+    typer.Option(help="Unit of the coordinates, if the file states none; glTF and 3MF then hold the true size."),
+]
 Seed = Annotated[int, typer.Option(help="Start of every random choice.")]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No progress, no summary.")]
 WeldTolerance = Annotated[

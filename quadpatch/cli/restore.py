@@ -20,6 +20,7 @@ from quadpatch.cli.flags import (
     Resolution,
     Seed,
     Source,
+    Unit,
 )
 from quadpatch.cli.tasks import Files, given, run_task
 from quadpatch.progress import Progress
@@ -65,6 +66,7 @@ def restore(  # noqa: PLR0913, PLR0917  one argument per flag
     resolution: Resolution = None,
     overlap: Overlap = None,
     preset: PatchPreset = None,
+    length_unit: Unit = None,
     seed: Seed = 0,
     quiet: Quiet = False,
 ) -> None:
@@ -76,7 +78,7 @@ def restore(  # noqa: PLR0913, PLR0917  one argument per flag
         from quadpatch.tasks.restore import restore_file  # noqa: PLC0415
 
         patches = {"length": patch_length, "resolution": resolution, "overlap": overlap, "preset": preset}
-        options = RestoreOptions.from_dict(given(patches=patches, seed=seed, base=base))
+        options = RestoreOptions.from_dict(given(patches=patches, seed=seed, base=base, length_unit=length_unit))
         return restore_file(source, output, which, model, options, progress, coarse=coarse)
 
     inputs = [path for path in (which, coarse) if isinstance(path, Path)]

@@ -21,10 +21,11 @@ from quadpatch.compression.qpz_file import encode_content
 from quadpatch.errors import NoQuadsError, OptionError
 from quadpatch.mesh.measures import diagonal, longest_side, mean_edge_length, surface_area
 from quadpatch.mesh.raycast import RayScene
-from quadpatch.options import PatchOptions, built, check_seed
+from quadpatch.options import PatchOptions, built, check_length_unit, check_seed
 from quadpatch.patches.scale import preset_scale
 from quadpatch.stages import Stages
 from quadpatch.types import TriangleMesh, Triangles, Vertices
+from shared_rules.option_words import LengthUnit
 
 # Promised errors, as parts of the bounding box's diagonal, between which a file makes sense.
 _SMALLEST_ERROR, _LARGEST_ERROR = 1e-6, 0.1
@@ -57,14 +58,18 @@ class EncodeOptions:
         for by default. `overlap` can't be chosen: patches share the vertices along their edges.
     seed : int
         Nothing is random here; the same for every task.
+    length_unit : str, optional
+        Unit of the scan's coordinates, where its file states none.
     """
 
     max_error: float
     keep_connectivity: bool = False
     patches: PatchOptions = field(default_factory=PatchOptions)
     seed: int = 0
+    length_unit: LengthUnit | None = None
 
     def __post_init__(self) -> None:
+        check_length_unit(self.length_unit)
         is_number = isinstance(self.max_error, (int, float)) and not isinstance(self.max_error, bool)
         if not (is_number and 0 < self.max_error < np.inf):
             raise OptionError(f"max_error must be finite and greater than 0; it is {self.max_error}")

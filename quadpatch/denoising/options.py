@@ -9,7 +9,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from quadpatch.errors import OptionError
-from quadpatch.options import PatchOptions, built, check_seed
+from quadpatch.options import PatchOptions, built, check_length_unit, check_seed
+from shared_rules.option_words import LengthUnit
 
 Corner = tuple[float, float, float]
 
@@ -49,6 +50,8 @@ class DenoiseOptions:
     patches : PatchOptions
     seed : int
         Starts every random choice.
+    length_unit : str, optional
+        Unit of the scan's coordinates, where its file states none.
     """
 
     noise: float | None = None
@@ -56,8 +59,10 @@ class DenoiseOptions:
     region: Box | str | None = None
     patches: PatchOptions = field(default_factory=PatchOptions)
     seed: int = 0
+    length_unit: LengthUnit | None = None
 
     def __post_init__(self) -> None:
+        check_length_unit(self.length_unit)
         for name in ("noise", "max_shift"):
             value = getattr(self, name)
             is_number = isinstance(value, (int, float)) and not isinstance(value, bool)

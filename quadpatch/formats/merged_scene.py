@@ -3,6 +3,7 @@
 Tested in `tests/quadpatch/formats/test_conversion.py`.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -14,6 +15,7 @@ from quadpatch.formats.moved_normals import moved_vertex_normals
 from quadpatch.formats.scan import Fill, Moved, Scan, VertexAttributes
 from quadpatch.formats.texture import extend_over_corners
 from quadpatch.types import BoolArray, FloatArray, IntArray, Triangles, Vertices
+from shared_rules.option_words import CarriedAttribute
 
 
 @dataclass(frozen=True)
@@ -56,6 +58,15 @@ class MergedScene:
     def invented(self) -> BoolArray:
         """True for invented triangles, (m,) bool."""
         return np.arange(len(self.triangles)) >= self.n_measured
+
+    def with_attributes(self, names: Sequence[CarriedAttribute] | None) -> "MergedScene":
+        """Return the same with some of its vertex attributes; None takes all."""
+        if names is None:
+            return self
+        has = self.vertex_attributes
+        colours, normals = has.colours if "colours" in names else None, has.normals if "normals" in names else None
+        texture = has.texture if "texture_coordinates" in names else None
+        return replace(self, vertex_attributes=VertexAttributes(colours, normals, texture))
 
     @property
     def facet_normals(self) -> FloatArray:

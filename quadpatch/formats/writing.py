@@ -1,5 +1,6 @@
 """Writing a repaired scan: in its own format as the file that came in with the fill appended, else converted."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -9,6 +10,7 @@ from quadpatch.formats.merged_scene import MergedScene, merge_scene
 from quadpatch.formats.output_files import is_stream, write_whole
 from quadpatch.formats.scan import Fill, Scan, Source
 from quadpatch.stages import failure_of
+from shared_rules.option_words import CarriedAttribute
 
 
 def _encode_as_glb(scene: MergedScene) -> bytes:
@@ -57,7 +59,7 @@ def written_as(path: Path, scan: Scan) -> Path:
     return path if path.suffix or not is_stream(path) else Path(f"{path.name}.{scan.format}")
 
 
-def write_scan(path: Path, scan: Scan, fill: Fill) -> list[str]:
+def write_scan(path: Path, scan: Scan, fill: Fill, attributes: Sequence[CarriedAttribute] | None = None) -> list[str]:
     """Write a scan with a fill appended.
 
     Parameters
@@ -67,6 +69,8 @@ def write_scan(path: Path, scan: Scan, fill: Fill) -> list[str]:
         that was read, with the fill behind it and everything else as it was; another one is a conversion.
     scan : Scan
     fill : Fill
+    attributes : sequence of str, optional
+        What a conversion carries besides the shape; None: all that both formats know.
 
     Returns
     -------
@@ -82,7 +86,7 @@ def write_scan(path: Path, scan: Scan, fill: Fill) -> list[str]:
     """
     check_suffix(path)
     suffix = written_as(path, scan).suffix.lower().lstrip(".")
-    data, warnings = _encode(suffix, scan, fill)
+    data, warnings = _encode(suffix, scan, fill, attributes)
     if fill.page is not None and scan.source is not None and not warnings:
         for name, side in scan.source.side_files(fill.page).items():
             write_whole(path.resolve().parent / name, side)
@@ -107,7 +111,9 @@ def _as_binary(source: Source) -> Source:
     return source.as_binary() if isinstance(source, GltfSource) else source
 
 
-def _encode(suffix: str, scan: Scan, fill: Fill) -> tuple[bytes, list[str]]:
+def _encode(
+    suffix: str, scan: Scan, fill: Fill, attributes: Sequence[CarriedAttribute] | None
+) -> tuple[bytes, list[str]]:
     """Encode with colours, normals and the like; where these fail, the shape alone."""
     encoded: list[bytes] = []
 
@@ -116,7 +122,7 @@ def _encode(suffix: str, scan: Scan, fill: Fill) -> tuple[bytes, list[str]]:
             source = scan.source if suffix == scan.format else _as_binary(scan.source)
             encoded.append(source.append(scan, fill))
         else:
-            encoded.append(ENCODERS[suffix](merge_scene(scan, fill)))
+            encoded.append(ENCODERS[suffix](merge_scene(scan, fill).with_attributes(attributes)))
 
     failure = failure_of(with_attributes, passing=(FormatError,))
     if failure is None:

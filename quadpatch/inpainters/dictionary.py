@@ -80,10 +80,22 @@ class SelfDictionary:
 
     def fitted_to(self, undamaged: UndamagedSurface) -> DictionaryInpainter | None:
         """See `Inpainter`."""
-        signals, known = _usable_signals(undamaged.patches, undamaged.base_heights)
-        if len(signals) < MIN_TRAINING_PATCHES:
-            return None
-        return _principal(known_covariance(signals, known), undamaged.patches.resolution)
+        return learned_from(undamaged.patches, undamaged.base_heights)
+
+
+def learned_from(patches: Patches, base_heights: FloatArray) -> DictionaryInpainter | None:
+    """Learn a dictionary from the known bins of patches; None where these show too little.
+
+    Parameters
+    ----------
+    patches : Patches
+    base_heights : (n_patches, N, N) float64
+        Heights of the smoothed surface in the same patches.
+    """
+    signals, known = _usable_signals(patches, base_heights)
+    if len(signals) < MIN_TRAINING_PATCHES:
+        return None
+    return _principal(known_covariance(signals, known), patches.resolution)
 
 
 def _principal(covariance: FloatArray, resolution: int) -> DictionaryInpainter:

@@ -17,7 +17,7 @@ import numpy as np
 
 from quadpatch.errors import NoQuadsError, OptionError, StageError
 from quadpatch.inpainters.inpainter import Inpainter
-from quadpatch.options import PatchOptions, built, check_seed
+from quadpatch.options import PatchOptions, built, check_length_unit, check_seed
 from quadpatch.restoration.expected_error import learn_error_curve
 from quadpatch.restoration.hidden_vertices import Trial, hide
 from quadpatch.restoration.least_squares import within_reach
@@ -25,6 +25,7 @@ from quadpatch.restoration.patch_detail import PatchDetail, continue_detail
 from quadpatch.restoration.placements import EDGE_NORMALS, LEAST_SQUARES, SMOOTH_NORMALS, placements, poisson_base
 from quadpatch.stages import Stages
 from quadpatch.types import BoolArray, FloatArray, TriangleMesh, Triangles, Vertices
+from shared_rules.option_words import LengthUnit
 
 # Where the measured vertices are too few to hide some of them.
 PRIOR_PLACEMENT = SMOOTH_NORMALS
@@ -48,14 +49,18 @@ class RestoreOptions:
     base : str
         `mesh`: the mesh's own connectivity says where missing vertices lie; `poisson`: a screened Poisson surface of
         the measured vertices is tried as well.
+    length_unit : str, optional
+        Unit of the scan's coordinates, where its file states none.
     """
 
     patches: PatchOptions = field(default_factory=PatchOptions)
     seed: int = 0
     base: Base = "mesh"
+    length_unit: LengthUnit | None = None
 
     def __post_init__(self) -> None:
         check_seed(self.seed)
+        check_length_unit(self.length_unit)
         if self.base not in get_args(Base):
             raise OptionError(f"base must be one of {', '.join(get_args(Base))}; it is {self.base!r}")
 

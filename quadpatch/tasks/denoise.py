@@ -70,7 +70,7 @@ def denoise_file(
     with stages.stage("read"):
         patch_model, card = _choose_model(model, reference)
         # Vertices at equal positions are one, or the triangles of an STL would move apart.
-        scan, welded = read_surface(source, 0)
+        scan, welded = read_surface(source, 0, options.length_unit)
         movable = _movable(scan, welded, options)
     denoised = denoise(welded.mesh, options, patch_model, movable, stages)
     moved = Moved(denoised.vertices[welded.from_file], {SHIFT: denoised.shift[welded.from_file].astype(np.float32)})

@@ -74,7 +74,7 @@ def encode_file(
     stages = Stages(harmless(progress))
     choice, card = _dictionary(model)
     with stages.stage("read"):
-        scan, welded = read_surface(source)
+        scan, welded = read_surface(source, unit=options.length_unit)
     original = (scan.vertices, scan.triangles)
     encoding = encode_mesh(welded.mesh, choice, options, stages, original, scan.unit or "")
     with stages.stage("judge"):

@@ -10,6 +10,7 @@ from quadpatch.errors import EmptyMeshError, OptionError
 from quadpatch.formats.moving import write_moved
 from quadpatch.formats.reading import read_scan
 from quadpatch.formats.scan import Moved, Scan
+from quadpatch.formats.units import in_unit
 from quadpatch.formats.writing import check_suffix
 from quadpatch.mesh.weld import Weld, weld
 from quadpatch.model_choice import SELF, SELF_NETWORK, SELF_NETWORK_KIND, choose_model
@@ -76,7 +77,7 @@ def restore_file(  # noqa: PLR0913, PLR0917  the same arguments as every task's
     repair_options = RepairOptions(patches=options.patches, seed=options.seed)
     inpainter, card = choose_model(model, repair_options, progress, network_card)
     with stages.stage("read"):
-        scan = read_scan(source, allow_missing=True)
+        scan = in_unit(read_scan(source, allow_missing=True), options.length_unit)
         is_missing = missing_vertices(scan, missing)
         welded = _welded(scan, is_missing)
         surface = None if coarse is None else _surface(coarse)

@@ -1,5 +1,6 @@
 """The running service against its own document: every check of schemathesis, fixed seed, bounded number of requests."""
 
+import json
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -29,9 +30,9 @@ def test_schemathesis_finds_nothing(
     # Names in the URLs of subscriptions are looked up; without a network that should fail soon.
     monkeypatch.setenv("RES_OPTIONS", "timeout:1 attempts:1")
     with serve(api_keys=KEY, max_wait_s=0.1, max_upload_mb=4) as service:
-        job_id = furnish(service.url, settings, dictionary_bytes(1))
-        webhook_id, delivery_id = subscribe(service.url)
         document = httpx.get(f"{service.url}/openapi.json", timeout=GUARD_S).json()
+        job_id = furnish(service.url, settings, dictionary_bytes(1), report_of(document))
+        webhook_id, delivery_id = subscribe(service.url)
         known = Known(job_id, "general-dictionary", webhook_id, delivery_id, start_upload(service.url))
         configuration = write_configuration(tmp_path / "schemathesis.toml", known)
         code, said = run(command(service.url, configuration, 4), tmp_path, 2 * GUARD_S)
@@ -57,7 +58,13 @@ def prove(settings: Settings, reference: str) -> None:
     database.close()
 
 
-def furnish(url: str, settings: Settings, dictionary: bytes) -> str:
+def report_of(document: dict[str, Any]) -> bytes:
+    """Return the report that the document shows as an example."""
+    answer = document["paths"]["/v1/jobs/{job_id}/report"]["get"]["responses"]["200"]
+    return json.dumps(answer["content"]["application/json"]["example"]).encode()
+
+
+def furnish(url: str, settings: Settings, dictionary: bytes, report: bytes) -> str:
     """Publish a model, and bring one job to its end as a worker does; return its id."""
     with httpx.Client(base_url=url, headers=HEADERS, timeout=GUARD_S) as client:
         path = "/v1/models/general-dictionary/versions"
@@ -73,7 +80,7 @@ def furnish(url: str, settings: Settings, dictionary: bytes) -> str:
     files = []
     for role, name, data in (
         ("result", "repaired.ply", b"ply"),
-        ("report", "report.json", b"{}"),
+        ("report", "report.json", report),
         ("preview", "p.png", b"\x89PNG"),
     ):
         with store.writer("") as writer:

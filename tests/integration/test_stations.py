@@ -89,3 +89,18 @@ def test_new_vertices_of_a_coloured_ply_get_colours(client: Client, tmp_path: Pa
     new = after[len(before) :]
     assert len(new)
     assert ((new >= 60) & (new < 200)).all()
+
+
+def test_a_worn_piece_is_repaired_by_what_a_whole_one_shows_and_keeps_its_size(client: Client, tmp_path: Path) -> None:
+    whole = relief(100, 2.0, 0.03, 10)
+    worn = punched(whole, *[(x, y, 0.0) for x in (-0.5, 0.5) for y in (-0.45, 0.5)], radius=0.1)
+    for name, mesh in (("whole", whole), ("worn", worn)):
+        (tmp_path / f"{name}.stl").write_bytes(stl_bytes(mesh.vertices, mesh.triangles))
+    reference, scan = (client.upload(tmp_path / f"{name}.stl") for name in ("whole", "worn"))
+    method = {"method": "dictionary", "model": "self", "learn_from": reference.id}
+    job = ended(client, scan.id, method=method, length_unit="millimeter", output={"format": "glb", "preview": False})
+    report = report_of(client, job, tmp_path)
+    assert report["model"]["learned_from"] == reference.id
+    assert report["length_unit"] == "millimeter"
+    client.download(job, "result", tmp_path / "repaired.glb")
+    assert np.allclose(np.ptp(read_scan(tmp_path / "repaired.glb").vertices, axis=0)[:2], 0.002, rtol=0.01)

@@ -213,15 +213,17 @@ def test_every_option_of_a_task_reaches_the_method() -> None:
     method: dict[str, Any] = {"method": "dictionary", "model": "self", "patches": patches}
     box = {"min": [0.0, 0.0, 0.0], "max": [1.0, 2.0, 3.0]}
     options = {"noise": 0.1, "max_shift": 0.3, "region": {"kind": "box", **box}, "reference": "1" * 64}
-    job = spec(task="denoise", method=method, denoise=options, seed=7)
-    assert task_options(job) == {"noise": 0.1, "max_shift": 0.3, "region": box, "patches": patches, "seed": 7}
+    rest = {"seed": 7, "length_unit": "inch"}
+    job = spec(task="denoise", method=method, denoise=options, **rest)
+    assert task_options(job) == {"noise": 0.1, "max_shift": 0.3, "region": box, "patches": patches, **rest}
     by_poisson = spec(task="restore", restore={"missing": {"kind": "nan"}, "base": "poisson"})
     assert RestoreOptions.from_dict(task_options(by_poisson)) == RestoreOptions(base="poisson")
     by_property = spec(task="denoise", denoise={"region": {"kind": "property", "name": "rough"}})
     assert DenoiseOptions.from_dict(task_options(by_property)) == DenoiseOptions(region="rough")
     method["patches"]["overlap"] = None
     job = spec(task="encode", **TASKS["encode"], method=method)
-    assert task_options(job) == {"max_error": 0.5, "keep_connectivity": True, "patches": patches, "seed": 0}
+    none = {"seed": 0, "length_unit": None}
+    assert task_options(job) == {"max_error": 0.5, "keep_connectivity": True, "patches": patches, **none}
     for task, kind in OPTIONS.items():
         kind.from_dict(task_options(spec(task=task, **TASKS[task])))
 

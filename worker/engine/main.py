@@ -46,8 +46,9 @@ def _repair(folder: Path, request: EngineRequest, reporter: Reporter, pool: Proc
     source, output = folder / request.source, folder / request.output
     options = RepairOptions.from_dict(request.options)
     kept = _kept_calibrations(folder, request.scan)
+    reference = folder / request.reference if request.reference else None
     repaired = repair_and_keep(
-        source, output, request.model, options, reporter.progress, request.model_card, kept, pool
+        source, output, request.model, options, reporter.progress, request.model_card, kept, pool, reference
     )
     _write_json(folder / REPORT_NAME, repaired.report)
     if kept.has_new:

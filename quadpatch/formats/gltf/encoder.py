@@ -14,16 +14,8 @@ from quadpatch.formats.gltf.container import GltfFile, dump_gltf
 from quadpatch.formats.gltf.primitive import Store, split_vertices
 from quadpatch.formats.gltf.source import FILL_NAME
 from quadpatch.formats.merged_scene import MergedScene
+from quadpatch.formats.units import METRES
 from quadpatch.types import BoolArray
-
-METRES = {
-    "micron": 1e-6,
-    "millimeter": 1e-3,
-    "centimeter": 1e-2,
-    "inch": 0.0254,
-    "foot": 0.3048,
-    "meter": 1.0,
-}
 
 
 def encode_as_glb(scene: MergedScene) -> bytes:

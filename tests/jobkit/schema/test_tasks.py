@@ -98,6 +98,27 @@ def test_what_is_not_in_the_contract_is_refused(change: dict[str, Any]) -> None:
             {"method": {"method": "auto", "effort": "fast", "fitting": {"seconds": 5.0}}},
             "method.fitting goes with the effort best",
         ),
+        (
+            "fill",
+            {"method": {"method": "dictionary", "model": "default", "learn_from": "b" * 64}},
+            "method.learn_from goes with the model self and the recipe default",
+        ),
+        (
+            "fill",
+            {"method": {"method": "dictionary", "model": "self", "recipe": "paper", "learn_from": "b" * 64}},
+            "method.learn_from goes with the model self and the recipe default",
+        ),
+        (
+            "fill",
+            {"method": {"method": "dictionary", "model": "self", "dictionary": {"atoms": 8}}},
+            "method.dictionary goes with the model self and the recipe paper",
+        ),
+        (
+            "encode",
+            {"method": {"method": "dictionary", "model": "self", "learn_from": "b" * 64}},
+            "method.learn_from goes with the task fill",
+        ),
+        ("denoise", {"output": {"attributes": ["colours"]}}, "output.attributes goes with the task fill"),
     ],
 )
 def test_options_that_do_not_go_with_the_task_are_named(task: str, fields: dict[str, Any], words: str) -> None:
@@ -130,6 +151,29 @@ def test_the_identity_of_a_fill_is_what_it_was_before_there_were_tasks() -> None
     ]
     assert identity_of(JobSpec.model_validate(MESH | {"task": "fill", "seed": 3})) == text
     assert "bridges" not in json.loads(text)["holes"]
+
+
+def test_what_came_later_is_part_of_the_identity_where_it_is_used() -> None:
+    method = {"method": "dictionary", "model": "self"}
+    plain = identity_of(JobSpec.model_validate(MESH | {"method": method}))
+    assert set(json.loads(plain)["method"]) == {"method", "model", "recipe", "patches"}
+    assert "attributes" not in json.loads(plain)["output"]
+    assert "length_unit" not in json.loads(plain)
+    for changed in (
+        {"method": method | {"learn_from": "b" * 64}},
+        {"method": method | {"recipe": "paper", "dictionary": {"atoms": 8}}},
+        {"method": method, "length_unit": "inch"},
+        {"method": method, "output": {"attributes": []}},
+    ):
+        assert identity_of(JobSpec.model_validate(MESH | changed)) != plain
+
+
+def test_a_mesh_to_learn_from_is_the_reference_of_a_job() -> None:
+    method = {"method": "dictionary", "model": "self", "learn_from": "b" * 64}
+    learning = JobSpec.model_validate(MESH | {"method": method})
+    assert conflict_of(learning) is None
+    assert learning.reference_id == "b" * 64
+    assert JobSpec.model_validate(MESH).reference_id is None
 
 
 def test_bridges_are_part_of_the_identity_where_there_are_any() -> None:

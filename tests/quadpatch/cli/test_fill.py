@@ -200,6 +200,8 @@ def test_flags_about_patches_reach_them(scan_file: Path, tmp_path: Path) -> None
         "dictionary": {"atoms": None, "nonzero": None},
         "network": {"steps": 800, "seconds": None},
         "effort": "standard",
+        "length_unit": None,
+        "attributes": None,
     }
     assert content["patches"]["resolution"] == 18
     assert (content["model"]["name"], content["model"]["effort"]) == ("auto", "standard")

@@ -87,6 +87,17 @@ def test_colours_survive_where_there_is_room(suffix: str, tmp_path: Path) -> Non
     assert (colours[:, 0] <= 200.001).all()
 
 
+def test_a_conversion_carries_what_was_asked_for(tmp_path: Path) -> None:
+    scan = textured_ball()
+    for names in [(), ("normals",), ("colours", "texture_coordinates")]:
+        write_scan(tmp_path / "out.glb", scan, cap_holes(scan), names)
+        again = read_scan(tmp_path / "out.glb")
+        assert again.source is not None
+        has = again.source.vertex_attributes(again)
+        found = {"colours": has.colours, "normals": has.normals, "texture_coordinates": has.texture}
+        assert {name for name, value in found.items() if value is not None} == set(names)
+
+
 @pytest.mark.parametrize("suffix", ["ply", "obj", "off", "3mf"])
 def test_float64_coordinates_are_exact_where_the_format_allows(suffix: str, tmp_path: Path) -> None:
     ball = sphere(1)
