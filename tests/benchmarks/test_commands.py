@@ -9,6 +9,7 @@ import pytest
 COMMANDS = (
     "benchmarks.flood",
     "benchmarks.flooding",
+    "benchmarks.foreign_ids",
     "benchmarks.jobs",
     "benchmarks.memory",
     "benchmarks.polling",
