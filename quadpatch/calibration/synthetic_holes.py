@@ -7,7 +7,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from quadpatch.mesh.boundary import boundary_loops, on_boundary
-from quadpatch.mesh.edge_groups import survey_edges
+from quadpatch.mesh.edge_survey import survey_edges
 from quadpatch.mesh.measures import used_vertices
 from quadpatch.mesh.normals import normals_at
 from quadpatch.processes import usable_threads

@@ -13,6 +13,8 @@ from numpy.typing import NDArray
 
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.mesh.measures import LONG_EDGE, EdgeStatistics
+from quadpatch.mesh.passes import extent, parts_of
+from quadpatch.mesh.topology import touching
 from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Triangles, Vertices
 
 # A region of a larger share of the triangles would save nothing: the whole mesh is taken.
@@ -20,7 +22,7 @@ MOST_OF_MESH = 0.5
 # Cubes along the longest side of the mesh.
 _CELLS = 256
 # Vertices, and triangles, that are looked at together.
-_CHUNK = 1 << 18
+_CHUNK = 1 << 14
 
 Number = TypeVar("Number", bound=np.generic)
 
@@ -103,7 +105,7 @@ def region_around(
     # The corners of a triangle that touches a ball are no further from it than the longest edge.
     slack = min(edges.longest, LONG_EDGE * edges.mean)
     near = _near(mesh.vertices, centres, radii + slack)
-    wanted = _touching(mesh.triangles, near)
+    wanted = touching(mesh.triangles, near)
     if edges.longest > slack:
         wanted |= _long(mesh, slack)
     if wanted.sum() > MOST_OF_MESH * len(mesh.triangles):
@@ -113,7 +115,7 @@ def region_around(
     is_used = near
     is_used[triangles] = True
     if obstacles is not None and len(obstacles):
-        is_used[obstacles[_touching(obstacles, near) | _long(TriangleMesh(mesh.vertices, obstacles), slack)]] = True
+        is_used[obstacles[touching(obstacles, near) | _long(TriangleMesh(mesh.vertices, obstacles), slack)]] = True
     vertices = np.flatnonzero(is_used)
     number = np.zeros(len(is_used), np.int64)
     number[vertices] = np.arange(len(vertices))
@@ -122,17 +124,18 @@ def region_around(
 
 def _near(points: Vertices, centres: Vertices, radii: FloatArray) -> BoolArray:
     """Which points (n,) lie in cubes of a grid that touch some balls."""
-    low = points.min(axis=0)
-    size = points.max(axis=0) - low
+    low, high = extent(points)
+    size = high - low
     cell = max(float(size.max()) / _CELLS, float(np.finfo(np.float64).tiny))
     shape = np.floor(size / cell).astype(np.int64) + 1
     grid = np.zeros(shape, bool)
     for centre, radius in zip((centres - low) / cell, radii / cell, strict=True):
         _mark_ball(grid, centre, radius)
     found = np.zeros(len(points), bool)
-    for at in range(0, len(points), _CHUNK):
-        x, y, z = ((points[at : at + _CHUNK] - low) / cell).astype(np.int64).T
-        found[at : at + _CHUNK] = grid[x, y, z]
+    of_cube, (_, n_y, n_z) = grid.ravel(), grid.shape
+    for part in parts_of(len(points), _CHUNK):
+        x, y, z = ((points[part] - low) / cell).astype(np.int64).T
+        found[part] = of_cube[(x * n_y + y) * n_z + z]
     return found
 
 
@@ -149,16 +152,11 @@ def _mark_ball(grid: BoolArray, centre: FloatArray, radius: float) -> None:
     part |= squared <= radius**2
 
 
-def _touching(triangles: Triangles, near: BoolArray) -> BoolArray:
-    """Which triangles (m,) have a corner among some vertices."""
-    return np.asarray(near[triangles[:, 0]] | near[triangles[:, 1]] | near[triangles[:, 2]])
-
-
 def _long(mesh: TriangleMesh, length: float) -> BoolArray:
     """Which triangles (m,) have an edge longer than a length."""
     found = np.zeros(len(mesh.triangles), bool)
-    for at in range(0, len(mesh.triangles), _CHUNK):
-        corners = mesh.vertices[mesh.triangles[at : at + _CHUNK]]
+    for part in parts_of(len(mesh.triangles), _CHUNK):
+        corners = mesh.vertices[mesh.triangles[part]]
         edges = corners - np.roll(corners, 1, axis=1)
-        found[at : at + _CHUNK] = (np.einsum("tkx,tkx->tk", edges, edges) > length**2).any(axis=1)
+        found[part] = (np.einsum("tkx,tkx->tk", edges, edges) > length**2).any(axis=1)
     return found

@@ -17,6 +17,7 @@ from quadpatch.errors import (
     NotFiniteError,
     TooLargeError,
 )
+from quadpatch.mesh.passes import parts_of
 from quadpatch.types import BoolArray, FloatArray, IntArray, Triangles, Vertices
 
 # No scan is larger, in any unit: in nanometres the Earth is 1.3e16 wide. Bytes that are no coordinates, read as
@@ -26,6 +27,8 @@ LARGEST_COORDINATE = 1e18
 SMALLEST_COORDINATE = float(np.finfo(np.float32).tiny)
 # A few coordinates below it are the rounding of a zero; more than this share of those that are not zero are none.
 _MOST_TOO_SMALL = 0.5
+# Vertices that are looked at together.
+_CHUNK = 1 << 14
 
 
 @dataclass(frozen=True)
@@ -90,15 +93,19 @@ def check_vertices(vertices: Vertices, allow_missing: bool = False) -> None:
         raise EmptyMeshError("the file has no vertex")
     if allow_missing:
         vertices = _without_missing(vertices)
-    size = np.abs(vertices)
-    # One pass: a NaN fails the comparison as an infinity does.
-    bad = np.asarray(~(size <= LARGEST_COORDINATE).all(axis=1))
-    if bad.any():
-        _refuse_large(vertices, bad)
-    n_too_small = int(((size > 0) & (size < SMALLEST_COORDINATE)).sum())
-    if n_too_small > _MOST_TOO_SMALL * np.count_nonzero(size):
+    is_usable, n_too_small, n_not_zero = True, 0, 0
+    for part in parts_of(len(vertices), _CHUNK):
+        size = np.abs(vertices[part])
+        # A NaN fails the comparison as an infinity does.
+        is_usable &= bool(size.max() <= LARGEST_COORDINATE)
+        n_zero = size.size - np.count_nonzero(size)
+        n_too_small += np.count_nonzero(size < SMALLEST_COORDINATE) - n_zero
+        n_not_zero += size.size - n_zero
+    if not is_usable:
+        _refuse_large(vertices, np.asarray(~(np.abs(vertices) <= LARGEST_COORDINATE).all(axis=1)))
+    if n_too_small > _MOST_TOO_SMALL * n_not_zero:
         raise CoordinateRangeError(
-            f"{n_too_small:,} of {size.size:,} coordinates are smaller than {SMALLEST_COORDINATE:.3g} and not zero: "
+            f"{n_too_small:,} of {vertices.size:,} coordinates are smaller than {SMALLEST_COORDINATE:.3g} and not zero: "
             "the file does not hold what its format says"
         )
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from quadpatch.mesh.cycles import plain_cycles
-from quadpatch.mesh.edge_groups import EdgeSurvey, survey_edges
+from quadpatch.mesh.edge_survey import EdgeSurvey, survey_edges
 from quadpatch.mesh.loops import laid_out
 from quadpatch.mesh.measures import once_per_mesh
 from quadpatch.mesh.topology import directed_edges, edge_keys, with_marked_edge

@@ -12,8 +12,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quadpatch.mesh.edge_groups import EdgeGroups, group_edges
+from quadpatch.mesh.hashes import shared_hashes, short_numbers
+from quadpatch.mesh.passes import parts_of
 from quadpatch.mesh.topology import components
 from quadpatch.types import BoolArray, IntArray, Triangles
+
+# Triangles that are looked at together.
+_CHUNK = 1 << 15
 
 
 def repeated_triangles(triangles: Triangles, place: IntArray) -> BoolArray:
@@ -61,25 +66,22 @@ def first_with_same_corners(corners: Triangles) -> IntArray:
         Positions in `corners`; a triangle with equal corners is like no other.
     """
     result = np.arange(len(corners))
-    mixed = _mixed(np.arange(int(corners.max(initial=-1)) + 1))
-    hashes = mixed[corners[:, 0]] + mixed[corners[:, 1]] + mixed[corners[:, 2]]
-    ranked = np.sort(hashes)
-    shared = ranked[1:][ranked[1:] == ranked[:-1]]
-    if not len(shared):
-        return result
-    a, b, c = corners.T
-    rows = np.flatnonzero(np.isin(hashes, shared) & (a != b) & (b != c) & (c != a))
+    rows = shared_hashes(_corner_hashes(corners))
+    a, b, c = corners[rows].T
+    rows = rows[(a != b) & (b != c) & (c != a)]
     _, begins, kind = np.unique(np.sort(corners[rows], axis=1), axis=0, return_index=True, return_inverse=True)
     result[rows] = rows[begins][kind.reshape(-1)]
     return result
 
 
-def _mixed(numbers: IntArray) -> NDArray[np.uint64]:
-    """Scatter whole numbers over 64 bits, so that sums of three are as good as never equal by chance."""
-    mixed = (numbers.astype(np.uint64) + np.uint64(1)) * np.uint64(0x9E3779B97F4A7C15)
-    mixed ^= mixed >> np.uint64(32)
-    mixed *= np.uint64(0xD6E8FEB86659FD93)
-    return mixed ^ (mixed >> np.uint64(32))
+def _corner_hashes(corners: Triangles) -> NDArray[np.uint32]:
+    """Hash the corners of triangles (m, 3), in any order."""
+    number = short_numbers(int(corners.max(initial=-1)) + 1)
+    hashes = np.zeros(len(corners), np.uint32)
+    for part in parts_of(len(corners), _CHUNK):
+        a, b, c = corners[part].T
+        hashes[part] = number[a] + number[b] + number[c]
+    return hashes
 
 
 def _without_walls(groups: EdgeGroups, repeated: BoolArray, is_doubled: BoolArray) -> BoolArray:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from quadpatch.mesh.boundary import boundary_loops
-from quadpatch.mesh.edge_groups import EdgeSurvey
+from quadpatch.mesh.edge_survey import EdgeSurvey, survey_edges
 from quadpatch.mesh.hole_kinds import hole_kinds
 from quadpatch.mesh.loop_shapes import LoopShapes, measure_loops, perimeters
 from quadpatch.mesh.loops import laid_out
@@ -91,15 +91,17 @@ def find_holes(mesh: TriangleMesh, survey: EdgeSurvey | None = None) -> list[Hol
     list of Hole
         Widest first; equal ones by their perimeter, then in the order of their first vertex. Ids count up from 0.
     """
-    boundary = boundary_loops(mesh.triangles, survey)
+    survey = survey or survey_edges(mesh.triangles, len(mesh.vertices))
+    near = TriangleMesh(mesh.vertices, mesh.triangles[survey.near])
+    boundary = boundary_loops(near.triangles, survey)
     if not boundary.loops:
         return []
     lengths = perimeters(mesh.vertices[np.concatenate(boundary.loops)], laid_out(boundary.loops)[0])
     order = np.argsort(-lengths, kind="stable").tolist()
     loops = [boundary.loops[i] for i in order]
     is_manifold = np.array([boundary.is_manifold[i] for i in order])
-    rims = rims_of(mesh, loops)
-    shapes = measure_loops(mesh, rims, loops, lengths[order])
+    rims = rims_of(near, loops)
+    shapes = measure_loops(near, rims, loops, lengths[order])
     kinds = hole_kinds(mesh.vertices, rims, shapes, find_pieces(mesh, loops), is_manifold)
     # The border of a sheet is wider than any hole in it; the rim of a winding hole may well be longer.
     widest_first = np.argsort(-shapes.diameters, kind="stable")

@@ -12,10 +12,12 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
+from quadpatch.mesh.passes import Rows, extent, parts_of
 from quadpatch.types import BoolArray, FloatArray, TriangleMesh, Triangles
 
-# Triangles that are looked at together: what is made of them fits into the processor's cache, nearly.
-_CHUNK = 1 << 16
+# Lengths that are summed together, and triangles that are looked at together: what is made of them fits into the
+# processor's cache.
+_SUMMED, _CHUNK = 1 << 16, 1 << 13
 # Edges longer than so many mean ones are long.
 LONG_EDGE = 8.0
 
@@ -48,15 +50,24 @@ def edge_statistics(mesh: TriangleMesh) -> EdgeStatistics:
     """Measure all edges in one pass; 0 without triangles."""
     if not len(mesh.triangles):
         return EdgeStatistics(0.0, 0.0)
-    total = longest = 0.0
-    for at in range(0, len(mesh.triangles), _CHUNK):
-        corners = [mesh.vertices[mesh.triangles[at : at + _CHUNK, corner]] for corner in range(3)]
-        for start, end in ((0, 1), (1, 2), (2, 0)):
-            edges = corners[end] - corners[start]
-            lengths = np.sqrt(np.einsum("ij,ij->i", edges, edges))
-            total += float(lengths.sum())
-            longest = max(longest, float(lengths.max()))
+    points, total, longest = Rows(mesh.vertices), 0.0, 0.0
+    for part in parts_of(len(mesh.triangles), _SUMMED):
+        lengths = _edge_lengths(points, mesh.triangles[part])
+        for of_side in lengths.sum(axis=1).tolist():
+            total += of_side
+        longest = max(longest, float(lengths.max()))
     return EdgeStatistics(total / (3 * len(mesh.triangles)), longest)
+
+
+def _edge_lengths(points: Rows, triangles: Triangles) -> FloatArray:
+    """Lengths (3, m) of the edges of triangles, in mesh units."""
+    lengths = np.zeros((3, len(triangles)))
+    for part in parts_of(len(triangles), _CHUNK):
+        corners = [points.at(triangles[part, corner]) for corner in range(3)]
+        for k in range(3):
+            edges = corners[(k + 1) % 3] - corners[k]
+            lengths[k, part] = np.sqrt(np.einsum("ij,ij->i", edges, edges))
+    return lengths
 
 
 def mean_edge_length(mesh: TriangleMesh) -> float:
@@ -75,8 +86,7 @@ def used_vertices(triangles: Triangles, n_vertices: int) -> BoolArray:
 def bounding_box(mesh: TriangleMesh) -> tuple[FloatArray, FloatArray]:
     """Lowest and highest corner (3,) of the box of all vertices that a triangle uses; there is a triangle."""
     used = used_vertices(mesh.triangles, len(mesh.vertices))
-    points = mesh.vertices if used.all() else mesh.vertices[used]
-    return points.min(axis=0), points.max(axis=0)
+    return extent(mesh.vertices if used.all() else mesh.vertices[used])
 
 
 def diagonal(mesh: TriangleMesh) -> float:

@@ -49,6 +49,11 @@ def with_marked_edge(triangles: Triangles, marked: BoolArray) -> BoolArray:
     return np.asarray((a & b) | (b & c) | (c & a))
 
 
+def touching(triangles: Triangles, marked: BoolArray) -> BoolArray:
+    """Which triangles (m,) have a corner among some vertices."""
+    return np.asarray(marked[triangles[:, 0]] | marked[triangles[:, 1]] | marked[triangles[:, 2]])
+
+
 def edges_found(triangles: Triangles, start: IntArray, end: IntArray, n_vertices: int) -> IntArray:
     """Find edges (n,) among the directed edges of triangles: positions (n,) as `directed_edges` has them, -1 for none.
 

@@ -14,11 +14,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quadpatch.mesh.duplicate_faces import repeated_triangles
-from quadpatch.mesh.edge_groups import EdgeSurvey, survey_edges
+from quadpatch.mesh.edge_survey import EdgeSurvey, survey_edges
 from quadpatch.mesh.fins import fin_triangles
+from quadpatch.mesh.hashes import shared_hashes
 from quadpatch.mesh.near_vertices import Tolerance, join_near
 from quadpatch.mesh.orientation import flipped_triangles
+from quadpatch.mesh.passes import parts_of
 from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Triangles, Vertices
+
+# Points, and triangles, that are looked at together: what is made of them fits into the processor's cache.
+_CHUNK = 1 << 15
 
 
 @dataclass(frozen=True)
@@ -142,8 +147,10 @@ def _picked(scan_vertices: Vertices, to_file: IntArray) -> Vertices:
 
 
 def _without_degenerate(triangles: Triangles) -> Triangles:
-    a, b, c = triangles.T
-    proper = (a != b) & (b != c) & (c != a)
+    proper = np.zeros(len(triangles), bool)
+    for part in parts_of(len(triangles), _CHUNK):
+        a, b, c = triangles[part].T
+        proper[part] = (a != b) & (b != c) & (c != a)
     return triangles if proper.all() else triangles[proper]
 
 
@@ -171,6 +178,8 @@ def _join_equal(kept: Triangles, copies: Triangles, place: IntArray, survey: Edg
 def _numbered(first: IntArray) -> tuple[IntArray, IntArray]:
     """Give numbers to the vertices that stay; return the file's vertex of each, and the number of each file vertex."""
     stays = first == np.arange(len(first))
+    if stays.all():
+        return first, first
     return np.flatnonzero(stays), (np.cumsum(stays) - 1)[first]
 
 
@@ -187,17 +196,19 @@ def first_of_equal(points: FloatArray) -> IntArray:
     (n,) int64
         Positions in `points`.
     """
-    hashes = _position_hashes(points)
     result = np.arange(len(points), dtype=np.int64)
-    ranked = np.sort(hashes)
-    if not (ranked[1:] == ranked[:-1]).any():
+    short = np.zeros(len(points), dtype=np.uint32)
+    for part in parts_of(len(points), _CHUNK):
+        short[part] = _position_hashes(points[part]) >> np.uint64(32)
+    rows = shared_hashes(short)
+    if not len(rows):
         return result
-    order = _grouping_order(points, hashes)
+    points = points[rows]
+    order = _grouping_order(points, _position_hashes(points))
     begins = np.ones(len(points), dtype=bool)
     begins[1:] = _neighbours_differ(points, order)
     # Both orders are stable, so the first of a group is also the first of the file.
-    group = np.cumsum(begins) - 1
-    result[order] = order[begins][group]
+    result[rows[order]] = rows[order[begins]][np.cumsum(begins) - 1]
     return result
 
 

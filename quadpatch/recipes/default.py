@@ -23,7 +23,7 @@ from quadpatch.filling.checked_fill import LoopsToFill, fill_checked, with_creas
 from quadpatch.filling.islands import JoinedRims, join_islands
 from quadpatch.filling.parts import FillInParts
 from quadpatch.inpainters.inpainter import Inpainter
-from quadpatch.mesh.edge_groups import EdgeSurvey
+from quadpatch.mesh.edge_survey import EdgeSurvey
 from quadpatch.mesh.holes import Hole, Selection, find_holes, select_holes
 from quadpatch.mesh.loops import cut_at, laid_out
 from quadpatch.mesh.measures import EdgeStatistics, diagonal, edge_statistics, longest_side

@@ -90,7 +90,7 @@ def _read_uniform(data: bytes, at: int, element: Element, order: str) -> Rows | 
         if prop.count_code is None:
             columns.append(values)
         else:
-            columns.append(ListColumn(np.broadcast_to(np.int64(lengths[index]), len(table)), values.reshape(-1)))
+            columns.append(ListColumn(np.broadcast_to(np.int64(lengths[index]), len(table)), values))
     return Rows(element, at, stop, None, tuple(columns))
 
 

@@ -24,7 +24,11 @@ from quadpatch.formats.ply.writer import append_to_ply
 from quadpatch.formats.polygons import triangulate_polygons, triangulate_strips
 from quadpatch.formats.scan import Fill, Moved, Scan, VertexAttributes
 from quadpatch.formats.surface_texture import SurfaceTexture, TexturePage
+from quadpatch.mesh.passes import parts_of
 from quadpatch.types import FloatArray, IntArray, Triangles, Vertices
+
+# Vertices that are looked at together.
+_CHUNK = 1 << 15
 
 
 @dataclass(frozen=True)
@@ -103,8 +107,10 @@ def _vertices(rows: Rows | None) -> Vertices:
     if len(columns) < 3:
         raise ReadError("the PLY element `vertex` lacks a number x, y or z")
     vertices = np.empty((len(columns[0]), 3))
-    for axis, column in enumerate(columns):
-        vertices[:, axis] = to_float64(column)
+    # Column after column of a few rows at a time: a whole column touches all memory of the others.
+    for part in parts_of(len(vertices), _CHUNK):
+        for axis, column in enumerate(columns):
+            vertices[part, axis] = to_float64(column[part])
     return vertices
 
 
@@ -119,7 +125,7 @@ def _triangles(by_name: dict[str, Rows], vertices: Vertices) -> tuple[Triangles,
         if corners is None:
             raise ReadError(f"the PLY element `{name}` has no list {' or '.join(INDEX_NAMES)}")
         carrier = name
-        indices = corners.values.astype(np.int64)
+        indices = corners.whole_numbers()
         if name == "face":
             check_indices(indices, len(vertices))
             triangles, row = triangulate_polygons(vertices, corners.counts, indices)

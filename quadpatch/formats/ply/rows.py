@@ -7,6 +7,7 @@ Tested in `tests/quadpatch/formats/ply/test_writer.py`.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -14,17 +15,40 @@ from numpy.typing import NDArray
 
 from quadpatch.errors import ReadError
 from quadpatch.formats.ply.header import Element
+from quadpatch.mesh.passes import parts_of
 from quadpatch.types import IntArray
 
 Values = NDArray[Any]
 
+# Rows that are cast together.
+_CHUNK = 1 << 15
+
 
 @dataclass(frozen=True)
 class ListColumn:
-    """Lists of one property: `counts` (n,) int64, and `values` of all rows one behind the other."""
+    """Lists of one property.
+
+    Attributes
+    ----------
+    counts : (n,) int64
+    stored : (n, k) or (sum of counts,) array
+        Values as the file holds them: a table where all lists are equally long, else one list behind the other.
+    """
 
     counts: IntArray
-    values: Values
+    stored: Values
+
+    @cached_property
+    def values(self) -> Values:
+        """Values of all rows, one behind the other."""
+        return self.stored.reshape(-1)
+
+    def whole_numbers(self) -> IntArray:
+        """Return the values as int64."""
+        numbers = np.zeros(self.stored.shape, np.int64)
+        for part in parts_of(len(numbers), _CHUNK):
+            numbers[part] = self.stored[part]
+        return numbers.reshape(-1)
 
     @property
     def starts(self) -> IntArray:
