@@ -247,14 +247,14 @@ def _fill(scan: Scan, welded: Weld, repair: Repair) -> Fill:
     A hole whose rim was flipped for the repair is turned back with it.
     """
     filled = repair.filled
-    new = filled.mesh.triangles[filled.n_measured_triangles :]
+    new = filled.new_triangles
     flipped = triangles_facing_flipped(new, filled.triangle_hole, welded.mesh.triangles[welded.is_flipped])
     ids = np.array([hole.id for hole in repair.chosen], np.int64)
     confidence = np.array([repair.results[i].confidence or 0.0 for i in ids.tolist()])
     n_new = len(filled.vertex_hole)
     to_file = np.concatenate([welded.to_file, len(scan.vertices) + np.arange(n_new)])
     return Fill(
-        filled.mesh.vertices[filled.n_measured_vertices :],
+        filled.new_vertices,
         to_file[np.where(flipped[:, np.newaxis], new[:, ::-1], new)],
         scan.next_hole_id + ids[filled.vertex_hole],
         confidence[filled.vertex_hole],

@@ -131,7 +131,7 @@ def _turned(scan: Scan, welded: Weld, filled: FilledMesh, fill: Fill) -> BoolArr
     """Which new triangles (l,) the file has in the other direction."""
     n_new = len(filled.vertex_hole)
     to_file = np.concatenate([welded.to_file, len(scan.vertices) + np.arange(n_new)])
-    first = to_file[filled.mesh.triangles[filled.n_measured_triangles :, 0]]
+    first = to_file[filled.new_triangles[:, 0]]
     return np.asarray(first != fill.triangles[:, 0])
 
 

@@ -1,10 +1,41 @@
 """A mesh whose holes are closed: measured surface first, unchanged, invented surface behind it."""
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
-from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh
+from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Triangles, Vertices
+
+
+class JoinedMesh(TriangleMesh):
+    """A mesh with invented surface behind it, put together once its arrays are asked for: a large one seldom is.
+
+    Parameters
+    ----------
+    measured : TriangleMesh
+    new_vertices : (k, 3) float64
+    new_triangles : (l, 3) int64
+        Into the vertices of the mesh, followed by the new ones.
+    """
+
+    def __init__(self, measured: TriangleMesh, new_vertices: Vertices, new_triangles: Triangles) -> None:
+        # The arrays of the base class are made below.
+        self.__dict__.update(measured=measured, new_vertices=new_vertices, new_triangles=new_triangles)
+
+    measured: TriangleMesh
+    new_vertices: Vertices
+    new_triangles: Triangles
+
+    @cached_property
+    def vertices(self) -> Vertices:
+        """All vertices."""
+        return np.concatenate([self.measured.vertices, self.new_vertices])
+
+    @cached_property
+    def triangles(self) -> Triangles:
+        """All triangles."""
+        return np.concatenate([self.measured.triangles, self.new_triangles])
 
 
 @dataclass(frozen=True)
@@ -39,9 +70,25 @@ class FilledMesh:
     @property
     def measured(self) -> TriangleMesh:
         """The mesh that was filled."""
+        if isinstance(self.mesh, JoinedMesh):
+            return self.mesh.measured
         return TriangleMesh(
             self.mesh.vertices[: self.n_measured_vertices], self.mesh.triangles[: self.n_measured_triangles]
         )
+
+    @property
+    def new_vertices(self) -> Vertices:
+        """Invented vertices, (n_invented_vertices, 3)."""
+        if isinstance(self.mesh, JoinedMesh):
+            return self.mesh.new_vertices
+        return self.mesh.vertices[self.n_measured_vertices :]
+
+    @property
+    def new_triangles(self) -> Triangles:
+        """Invented triangles, (n_invented_triangles, 3)."""
+        if isinstance(self.mesh, JoinedMesh):
+            return self.mesh.new_triangles
+        return self.mesh.triangles[self.n_measured_triangles :]
 
     @property
     def invented_triangles(self) -> BoolArray:

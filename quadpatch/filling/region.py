@@ -11,7 +11,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from quadpatch.filling.filled_mesh import FilledMesh
+from quadpatch.filling.filled_mesh import FilledMesh, JoinedMesh
 from quadpatch.mesh.measures import LONG_EDGE, EdgeStatistics
 from quadpatch.mesh.passes import extent, parts_of
 from quadpatch.mesh.topology import touching
@@ -75,13 +75,10 @@ class Region:
         """Put what was filled in the region into the whole."""
         if self.mesh is self.whole:
             return filled
-        n_new = len(filled.mesh.vertices) - filled.n_measured_vertices
+        n_new = len(filled.new_vertices)
         to_whole = np.concatenate([self.vertices, len(self.whole.vertices) + np.arange(n_new)])
-        new = to_whole[filled.mesh.triangles[filled.n_measured_triangles :]]
-        mesh = TriangleMesh(
-            np.concatenate([self.whole.vertices, filled.mesh.vertices[filled.n_measured_vertices :]]),
-            np.concatenate([self.whole.triangles, new]),
-        )
+        new = to_whole[filled.new_triangles]
+        mesh = JoinedMesh(self.whole, filled.new_vertices, new)
         measured = len(self.whole.vertices), len(self.whole.triangles)
         return replace(filled, mesh=mesh, n_measured_vertices=measured[0], n_measured_triangles=measured[1])
 
@@ -132,7 +129,7 @@ def _near(points: Vertices, centres: Vertices, radii: FloatArray) -> BoolArray:
     for centre, radius in zip((centres - low) / cell, radii / cell, strict=True):
         _mark_ball(grid, centre, radius)
     found = np.zeros(len(points), bool)
-    of_cube, (_, n_y, n_z) = grid.ravel(), grid.shape
+    of_cube, n_y, n_z = grid.ravel(), int(shape[1]), int(shape[2])
     for part in parts_of(len(points), _CHUNK):
         x, y, z = ((points[part] - low) / cell).astype(np.int64).T
         found[part] = of_cube[(x * n_y + y) * n_z + z]

@@ -10,6 +10,7 @@ from scipy.spatial import cKDTree
 
 from quadpatch.formats.scan import Fill, Scan
 from quadpatch.mesh.harmonic import extend_harmonically
+from quadpatch.mesh.topology import touching
 from quadpatch.types import FloatArray, IntArray, Triangles, Vertices
 
 
@@ -92,7 +93,7 @@ def rim_triangles(scan: Scan, fill: Fill) -> IntArray:
     """Measured triangles with a corner on a rim, sorted."""
     on_rim = np.zeros(len(scan.vertices), dtype=bool)
     on_rim[rim_vertices(fill, len(scan.vertices))] = True
-    return np.flatnonzero(on_rim[scan.triangles].any(axis=1))
+    return np.flatnonzero(touching(scan.triangles, on_rim))
 
 
 def nearest_rim_triangle(scan: Scan, fill: Fill) -> IntArray:
@@ -100,9 +101,19 @@ def nearest_rim_triangle(scan: Scan, fill: Fill) -> IntArray:
     near = rim_triangles(scan, fill)
     if len(near) == 0 or len(fill.triangles) == 0:
         return np.zeros(len(fill.triangles), dtype=np.int64)
-    centroids = joined_vertices(scan, fill)[fill.triangles].mean(axis=1)
+    centroids = positions(scan, fill, fill.triangles).mean(axis=1)
     _, nearest = cKDTree(scan.vertices[scan.triangles[near]].mean(axis=1)).query(centroids)
     return np.asarray(near[nearest], dtype=np.int64)
+
+
+def positions(scan: Scan, fill: Fill, vertices: IntArray) -> FloatArray:
+    """Return the positions (..., 3) of some vertices (...), measured ones followed by the new ones."""
+    n_measured = len(scan.vertices)
+    is_new = vertices >= n_measured
+    found = np.zeros((*vertices.shape, 3))
+    found[is_new] = fill.vertices[vertices[is_new] - n_measured]
+    found[~is_new] = scan.vertices[vertices[~is_new]]
+    return found
 
 
 def joined_vertices(scan: Scan, fill: Fill) -> Vertices:
@@ -137,7 +148,7 @@ def normals_at(scan: Scan, fill: Fill, wanted: IntArray) -> FloatArray:
 
 
 def _area_vectors(scan: Scan, fill: Fill) -> FloatArray:
-    a, b, c = np.moveaxis(joined_vertices(scan, fill)[fill.triangles], 1, 0)
+    a, b, c = np.moveaxis(positions(scan, fill, fill.triangles), 1, 0)
     return np.asarray(np.cross(b - a, c - a))
 
 

@@ -98,8 +98,8 @@ def check_vertices(vertices: Vertices, allow_missing: bool = False) -> None:
         size = np.abs(vertices[part])
         # A NaN fails the comparison as an infinity does.
         is_usable &= bool(size.max() <= LARGEST_COORDINATE)
-        n_zero = size.size - np.count_nonzero(size)
-        n_too_small += np.count_nonzero(size < SMALLEST_COORDINATE) - n_zero
+        n_zero = size.size - int(np.count_nonzero(size))
+        n_too_small += int(np.count_nonzero(size < SMALLEST_COORDINATE)) - n_zero
         n_not_zero += size.size - n_zero
     if not is_usable:
         _refuse_large(vertices, np.asarray(~(np.abs(vertices) <= LARGEST_COORDINATE).all(axis=1)))

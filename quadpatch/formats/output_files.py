@@ -28,7 +28,7 @@ def is_stream(path: Path) -> bool:
     return descriptor_of(path) is not None or (path.exists() and not path.is_file() and not path.is_dir())
 
 
-def write_whole(path: Path, data: bytes) -> None:
+def write_whole(path: Path, data: bytes | Iterable[bytes | memoryview]) -> None:
     """Write a file that appears in one step; on failure, what was there before stays.
 
     Parameters
@@ -36,7 +36,8 @@ def write_whole(path: Path, data: bytes) -> None:
     path : Path
         A link is kept, and what it leads to is replaced. `-` and other names of open descriptors, devices and pipes
         are written and not replaced.
-    data : bytes
+    data : bytes, or iterable of bytes-like
+        The file, whole or piece by piece.
 
     Raises
     ------
@@ -44,32 +45,33 @@ def write_whole(path: Path, data: bytes) -> None:
         Naming `path`.
     """
     try:
-        _write(path, data)
+        _write(path, [data] if isinstance(data, bytes) else data)
     except OSError as error:
         # A failing write names no file, or the partial one.
         raise OSError(error.errno, error.strerror, str(path)) from error
 
 
-def _write(path: Path, data: bytes) -> None:
+def _write(path: Path, pieces: Iterable[bytes | memoryview]) -> None:
     descriptor = descriptor_of(path)
     if descriptor is not None:
-        _write_through(data, lambda: os.dup(descriptor))
+        _write_through(pieces, lambda: os.dup(descriptor))
         return
     if is_stream(path):
-        _write_through(data, lambda: os.open(path, os.O_WRONLY))
+        _write_through(pieces, lambda: os.open(path, os.O_WRONLY))
         return
     target = path.resolve()
     partial = target.with_name(f".quadpatch-{os.getpid()}.part")
     try:
-        partial.write_bytes(data)
+        with partial.open("wb") as file:
+            file.writelines(pieces)
         partial.replace(target)
     finally:
         partial.unlink(missing_ok=True)
 
 
-def _write_through(data: bytes, opened: Callable[[], int]) -> None:
+def _write_through(pieces: Iterable[bytes | memoryview], opened: Callable[[], int]) -> None:
     with os.fdopen(opened(), "wb") as sink:
-        sink.write(data)
+        sink.writelines(pieces)
 
 
 def check_outputs(

@@ -7,6 +7,7 @@ the file and new vertices by the indices after them. `Moved` adds and removes no
 Tested in `tests/quadpatch/formats/test_reading.py`.
 """
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
@@ -15,6 +16,10 @@ from numpy.typing import NDArray
 
 from quadpatch.formats.surface_texture import SurfaceTexture, TexturePage
 from quadpatch.types import BoolArray, FloatArray, IntArray, Triangles, Vertices
+
+
+# A file, whole or piece by piece.
+FileBytes = bytes | Iterable[bytes | memoryview]
 
 
 @dataclass(frozen=True)
@@ -50,7 +55,7 @@ class WithoutImages:
 class Source(Protocol):
     """What a reader leaves for the writer of its format."""
 
-    def append(self, scan: "Scan", fill: "Fill") -> bytes:
+    def append(self, scan: "Scan", fill: "Fill") -> FileBytes:
         """Hand the file back with a fill appended."""
 
     def move(self, scan: "Scan", moved: "Moved") -> bytes:

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from quadpatch.errors import EmptyMeshError, ReadError
-from quadpatch.formats.attributes import joined_vertices, triangle_normals
+from quadpatch.formats.attributes import positions, triangle_normals
 from quadpatch.formats.limits import ReadLimits, check_vertices, to_float64
 from quadpatch.formats.moved_normals import NORMAL_DIGITS
 from quadpatch.formats.scan import Fill, Moved, Scan, VertexAttributes, WithoutImages
@@ -52,7 +52,7 @@ class BinaryStl(WithoutImages):
         """Raise the count and append facets; all other bytes stay."""
         stop = HEADER_SIZE + FACET.itemsize * self.n_facets
         count = np.array(self.n_facets + len(fill.triangles), dtype="<u4").tobytes()
-        corners = joined_vertices(scan, fill)[fill.triangles]
+        corners = positions(scan, fill, fill.triangles)
         new = encode_facets(corners, triangle_normals(scan, fill), np.ones(len(fill.triangles), dtype=bool))
         return self.data[: HEADER_SIZE - 4] + count + self.data[HEADER_SIZE:stop] + new + self.data[stop:]
 
@@ -179,7 +179,7 @@ def _moved_normals(stored: FloatArray, scan: Scan, moved: Moved) -> FloatArray:
 
 
 def _ascii_facets(scan: Scan, fill: Fill, line_end: str) -> str:
-    corners = joined_vertices(scan, fill)[fill.triangles]
+    corners = positions(scan, fill, fill.triangles)
     table = np.concatenate([triangle_normals(scan, fill), corners.reshape(-1, 9)], axis=1)
     words = np.array(to_words(table.ravel()), dtype=object).reshape(-1, 12)
     lines = ("  facet normal {} {} {}", "    outer loop", *["      vertex {} {} {}"] * 3, "    endloop", "  endfacet")

@@ -8,7 +8,7 @@ from quadpatch.errors import FormatError
 from quadpatch.formats.conversion import encode_as_obj, encode_as_off, encode_as_ply, encode_as_stl
 from quadpatch.formats.merged_scene import MergedScene, merge_scene
 from quadpatch.formats.output_files import is_stream, write_whole
-from quadpatch.formats.scan import Fill, Scan, Source
+from quadpatch.formats.scan import FileBytes, Fill, Scan, Source
 from quadpatch.stages import failure_of
 from shared_rules.option_words import CarriedAttribute
 
@@ -113,9 +113,9 @@ def _as_binary(source: Source) -> Source:
 
 def _encode(
     suffix: str, scan: Scan, fill: Fill, attributes: Sequence[CarriedAttribute] | None
-) -> tuple[bytes, list[str]]:
+) -> tuple[FileBytes, list[str]]:
     """Encode with colours, normals and the like; where these fail, the shape alone."""
-    encoded: list[bytes] = []
+    encoded: list[FileBytes] = []
 
     def with_attributes() -> None:
         if _own_format(suffix, scan) and scan.source is not None:

@@ -3,6 +3,7 @@
 Tested in `tests/quadpatch/formats/ply/test_writer.py`.
 """
 
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,6 +12,10 @@ import numpy as np
 from quadpatch.formats.ply.header import Element, Header, value_range
 from quadpatch.formats.ply.rows import Values
 from quadpatch.formats.text import to_words
+from quadpatch.mesh.passes import parts_of
+
+# Rows that are copied together.
+_CHUNK = 1 << 14
 
 
 @dataclass(frozen=True)
@@ -86,8 +91,8 @@ def fit(values: Values, code: str) -> Values:
     return np.asarray(np.clip(rounded, low, top).astype(code))
 
 
-def insert_behind(data: memoryview, ends: Values, suffix: bytes) -> bytes | memoryview:
-    """Insert the same bytes behind every row.
+def insert_behind(data: memoryview, ends: Values, suffix: bytes) -> Iterable[bytes | memoryview]:
+    """Insert the same bytes behind every row; return the whole in pieces.
 
     Parameters
     ----------
@@ -100,16 +105,18 @@ def insert_behind(data: memoryview, ends: Values, suffix: bytes) -> bytes | memo
     if n_rows and len(data) == n_rows * int(ends[0]) and (np.diff(ends) == ends[0]).all():
         return insert_behind_equal(data, n_rows, suffix)
     added = np.frombuffer(suffix, np.uint8)
-    return insert_rows(np.frombuffer(data, np.uint8), ends, np.broadcast_to(added, (n_rows, len(added))))
+    return [insert_rows(np.frombuffer(data, np.uint8), ends, np.broadcast_to(added, (n_rows, len(added))))]
 
 
-def insert_behind_equal(data: memoryview, n_rows: int, suffix: bytes) -> memoryview:
+def insert_behind_equal(data: memoryview, n_rows: int, suffix: bytes) -> Iterator[memoryview]:
     """Insert the same bytes behind every one of some rows of the same size, which are all of the data."""
-    old, added = np.frombuffer(data, np.uint8).reshape(n_rows, -1), np.frombuffer(suffix, np.uint8)
-    table = np.empty((n_rows, old.shape[1] + len(added)), np.uint8)
-    table[:, : old.shape[1]] = old
-    table[:, old.shape[1] :] = added
-    return memoryview(table.reshape(-1).data)
+    size = len(data) // n_rows
+    old = np.frombuffer(data, f"V{size}")
+    for part in parts_of(n_rows, _CHUNK):
+        # Bytes of a row are copied as one item.
+        table = np.zeros(part.stop - part.start, [("old", old.dtype), ("added", f"V{len(suffix)}")])
+        table["old"], table["added"] = old[part], np.void(suffix)
+        yield table.view(np.uint8).data
 
 
 def insert_rows(data: Values, ends: Values, pieces: Values) -> bytes:

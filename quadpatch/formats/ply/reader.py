@@ -4,6 +4,7 @@ The vertices are the `vertex` element; the triangles are those of `face` and of 
 file holds them. Everything else in the file is kept as bytes, and the writer hands it back.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -38,7 +39,7 @@ class PlySource:
     file: PlyFile
     folder: Path | None = None
 
-    def append(self, scan: Scan, fill: Fill) -> bytes:
+    def append(self, scan: Scan, fill: Fill) -> Iterator[bytes | memoryview]:
         """Hand the file back with rows appended."""
         return append_to_ply(scan, self.file, fill)
 

@@ -19,6 +19,9 @@ Files of triangle strips get one further row of strips for each hole, each trian
 know no `face` element beside them, and the old row, often one single strip over the whole mesh, stays untouched.
 """
 
+import itertools
+from collections.abc import Iterator
+
 import numpy as np
 
 from quadpatch.formats.ply.encoding import encode_rows, insert_behind, insert_behind_equal
@@ -31,7 +34,7 @@ from quadpatch.formats.scan import Fill, Scan
 from quadpatch.formats.text import word_ends
 
 
-def append_to_ply(scan: Scan, file: PlyFile, fill: Fill) -> bytes:
+def append_to_ply(scan: Scan, file: PlyFile, fill: Fill) -> Iterator[bytes | memoryview]:
     """Hand a PLY file back with a fill appended.
 
     Parameters
@@ -41,6 +44,11 @@ def append_to_ply(scan: Scan, file: PlyFile, fill: Fill) -> bytes:
     file : PlyFile
         What it was read from.
     fill : Fill
+
+    Returns
+    -------
+    iterator of bytes-like
+        The file, piece by piece: of a large one there is never a second copy in memory.
 
     Raises
     ------
@@ -66,7 +74,7 @@ def append_to_ply(scan: Scan, file: PlyFile, fill: Fill) -> bytes:
             )
     head = rewrite_header(file.header, counts, added, comment)
     pieces = _ascii_pieces if file.header.is_ascii else _binary_pieces
-    return b"".join([head, *pieces(file, added, tails)])
+    return itertools.chain([head], pieces(file, added, tails))
 
 
 def _missing_marks(rows: Rows) -> list[tuple[str, str]]:
@@ -84,28 +92,26 @@ def _suffix(file: PlyFile, added: list[tuple[str, str]]) -> bytes:
 
 def _binary_pieces(
     file: PlyFile, added: dict[str, list[tuple[str, str]]], tails: dict[str, bytes]
-) -> list[bytes | memoryview]:
-    pieces: list[bytes | memoryview] = []
+) -> Iterator[bytes | memoryview]:
     whole = memoryview(file.data)
     at = file.header.size
     for rows in file.rows:
         old = whole[rows.start : rows.stop]
         suffix = _suffix(file, added.get(rows.element.name, []))
         if not suffix:
-            pieces.append(old)
+            yield old
         elif rows.ends is None and rows.element.count:
-            pieces.append(insert_behind_equal(old, rows.element.count, suffix))
+            yield from insert_behind_equal(old, rows.element.count, suffix)
         else:
-            pieces.append(insert_behind(old, rows.row_ends() - rows.start, suffix))
-        pieces.append(tails.get(rows.element.name, b""))
+            yield from insert_behind(old, rows.row_ends() - rows.start, suffix)
+        yield tails.get(rows.element.name, b"")
         at = rows.stop
-    return [*pieces, whole[at:]]
+    yield whole[at:]
 
 
 def _ascii_pieces(
     file: PlyFile, added: dict[str, list[tuple[str, str]]], tails: dict[str, bytes]
-) -> list[bytes | memoryview]:
-    pieces: list[bytes | memoryview] = []
+) -> Iterator[bytes | memoryview]:
     body = file.data[file.header.size :]
     ends = word_ends(body)
     at = 0
@@ -114,13 +120,13 @@ def _ascii_pieces(
         old = memoryview(body)[at:stop]
         suffix = _suffix(file, added.get(rows.element.name, []))
         row_ends = ends[rows.row_ends() - 1] - at if rows.stop > rows.start else ends[:0]
-        pieces.append(insert_behind(old, row_ends, suffix) if suffix else old)
+        yield from insert_behind(old, row_ends, suffix) if suffix else [old]
         tail = tails.get(rows.element.name, b"")
         if tail and len(old) and bytes(old[-1:]) not in (b"\n", b"\r"):
-            pieces.append(file.header.line_end)
-        pieces.append(tail)
+            yield file.header.line_end
+        yield tail
         at = stop
-    return [*pieces, body[at:]]
+    yield body[at:]
 
 
 def _line_stop(body: bytes, end: int) -> int:

@@ -28,7 +28,7 @@ def append(data: bytes, fill: Fill | None = None) -> tuple[bytes, Scan, Fill]:
     scan = read(data)
     fill = cap_holes(scan) if fill is None else fill
     assert scan.source is not None
-    return scan.source.append(scan, fill), scan, fill
+    return b"".join(scan.source.append(scan, fill)), scan, fill
 
 
 def element(scan: Scan, name: str) -> Rows:
