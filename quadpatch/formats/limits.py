@@ -105,8 +105,8 @@ def check_vertices(vertices: Vertices, allow_missing: bool = False) -> None:
         _refuse_large(vertices, np.asarray(~(np.abs(vertices) <= LARGEST_COORDINATE).all(axis=1)))
     if n_too_small > _MOST_TOO_SMALL * n_not_zero:
         raise CoordinateRangeError(
-            f"{n_too_small:,} of {vertices.size:,} coordinates are smaller than {SMALLEST_COORDINATE:.3g} and not zero: "
-            "the file does not hold what its format says"
+            f"{n_too_small:,} of {vertices.size:,} coordinates are smaller than {SMALLEST_COORDINATE:.3g} and not "
+            "zero: the file does not hold what its format says"
         )
 
 

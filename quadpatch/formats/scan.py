@@ -17,7 +17,6 @@ from numpy.typing import NDArray
 from quadpatch.formats.surface_texture import SurfaceTexture, TexturePage
 from quadpatch.types import BoolArray, FloatArray, IntArray, Triangles, Vertices
 
-
 # A file, whole or piece by piece.
 FileBytes = bytes | Iterable[bytes | memoryview]
 

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from quadpatch.mesh.edge_groups import EdgeGroups, group_edges
 from quadpatch.mesh.hashes import shared_hashes, short_numbers
-from quadpatch.mesh.passes import parts_of
-from quadpatch.mesh.topology import components
+from quadpatch.mesh.passes import is_identity, parts_of
+from quadpatch.mesh.topology import components, touching
 from quadpatch.types import BoolArray, IntArray, Triangles
 
 # Triangles that are looked at together.
@@ -35,26 +35,26 @@ def repeated_triangles(triangles: Triangles, place: IntArray) -> BoolArray:
     (m,) bool
         The first triangle of a kind is not among them.
     """
-    is_single = (place == np.arange(len(place))).all()
-    corners = triangles if is_single else place[triangles]
-    first = first_with_same_corners(corners)
-    repeated: BoolArray = first != np.arange(len(triangles))
-    if not repeated.any():
+    corners = triangles if is_identity(place) else place[triangles]
+    again, first = with_same_corners(corners)
+    repeated = np.zeros(len(triangles), dtype=bool)
+    if not len(again):
         return repeated
+    repeated[again] = True
     near = np.zeros(len(place), dtype=bool)
     near[corners[repeated]] = True
     # Only what touches a repeated face is looked at.
-    rows = np.flatnonzero(near[corners].any(axis=1))
+    rows = np.flatnonzero(touching(corners, near))
     is_doubled = np.zeros(len(triangles), dtype=bool)
-    is_doubled[first[repeated]] = True
+    is_doubled[first] = True
     wanted = _without_walls(group_edges(corners[rows], len(place)), repeated[rows], is_doubled[rows])
     result = np.zeros(len(triangles), dtype=bool)
     result[rows] = wanted
     return result
 
 
-def first_with_same_corners(corners: Triangles) -> IntArray:
-    """Find the first triangle that has the same three corners as each, in any order.
+def with_same_corners(corners: Triangles) -> tuple[IntArray, IntArray]:
+    """Find the triangles that have the same three corners as an earlier one, in any order.
 
     Parameters
     ----------
@@ -62,16 +62,16 @@ def first_with_same_corners(corners: Triangles) -> IntArray:
 
     Returns
     -------
-    (m,) int64
-        Positions in `corners`; a triangle with equal corners is like no other.
+    again, first : (k,) int64
+        Positions in `corners`, ascending, and those of the first triangle with these corners. A triangle with equal
+        corners is like no other.
     """
-    result = np.arange(len(corners))
     rows = shared_hashes(_corner_hashes(corners))
     a, b, c = corners[rows].T
     rows = rows[(a != b) & (b != c) & (c != a)]
     _, begins, kind = np.unique(np.sort(corners[rows], axis=1), axis=0, return_index=True, return_inverse=True)
-    result[rows] = rows[begins][kind.reshape(-1)]
-    return result
+    first = rows[begins][kind.reshape(-1)]
+    return rows[first != rows], first[first != rows]
 
 
 def _corner_hashes(corners: Triangles) -> NDArray[np.uint32]:

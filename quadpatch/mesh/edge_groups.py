@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from quadpatch.mesh.topology import directed_edges, edge_keys, order_of
-from quadpatch.types import BoolArray, IntArray, Triangles
+from quadpatch.types import IntArray, Triangles
 
 
 @dataclass(frozen=True)

@@ -61,9 +61,7 @@ def survey_edges(triangles: Triangles, n_vertices: int) -> EdgeSurvey:
     edges = directed_edges(triangles[near])
     alone, more, is_divided = _counted(edges[is_open[edges].all(axis=1)], n)
     on_crowded = _ends(np.concatenate([crowded, more]), n)
-    return EdgeSurvey(
-        _ends(alone, n)[:n_vertices], on_crowded[:n_vertices], is_divided or len(repeated) > 0, near
-    )
+    return EdgeSurvey(_ends(alone, n)[:n_vertices], on_crowded[:n_vertices], is_divided or len(repeated) > 0, near)
 
 
 def _balances(triangles: Triangles, n: int) -> tuple[BoolArray, IntArray]:

@@ -34,7 +34,7 @@ _MAX_MEMBERS = 64
 _SAFE_DIGITS, _WRITTEN_DIGITS = 7, (8, 9)
 
 
-def join_near(mesh: TriangleMesh, on_boundary: BoolArray, tolerance: Tolerance) -> tuple[IntArray, float]:
+def join_near(mesh: TriangleMesh, on_boundary: BoolArray, tolerance: Tolerance) -> tuple[IntArray | None, float]:
     """Find boundary vertices to be joined.
 
     Parameters
@@ -50,8 +50,8 @@ def join_near(mesh: TriangleMesh, on_boundary: BoolArray, tolerance: Tolerance) 
 
     Returns
     -------
-    first : (n,) int64
-        The lowest vertex of each vertex's cluster.
+    first : (n,) int64 or None
+        The lowest vertex of each vertex's cluster; None where there is nothing to join.
     tolerance : float
         In mesh units.
 
@@ -62,9 +62,8 @@ def join_near(mesh: TriangleMesh, on_boundary: BoolArray, tolerance: Tolerance) 
         joins none of these.
     """
     vertices = mesh.vertices
-    first = np.arange(len(vertices), dtype=np.int64)
     if tolerance != "auto" and not tolerance:
-        return first, 0.0
+        return None, 0.0
     candidates = np.flatnonzero(on_boundary)
     points = vertices[candidates]
     limit = stored_precision(points) if tolerance == "auto" else tolerance
@@ -75,7 +74,8 @@ def join_near(mesh: TriangleMesh, on_boundary: BoolArray, tolerance: Tolerance) 
     # Most vertices have no other one in reach; the nearest one tells.
     candidates = candidates[_nearest_distance(points, limit) <= limit]
     if not len(candidates):
-        return first, limit
+        return None, limit
+    first = np.arange(len(vertices), dtype=np.int64)
     reach = np.full(len(candidates), limit)
     if tolerance == "auto":
         reach = np.minimum(reach, EDGE_SHARE * _shortest_edges(mesh, candidates, limit))

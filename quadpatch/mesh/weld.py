@@ -19,7 +19,7 @@ from quadpatch.mesh.fins import fin_triangles
 from quadpatch.mesh.hashes import shared_hashes
 from quadpatch.mesh.near_vertices import Tolerance, join_near
 from quadpatch.mesh.orientation import flipped_triangles
-from quadpatch.mesh.passes import parts_of
+from quadpatch.mesh.passes import is_identity, parts_of
 from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Triangles, Vertices
 
 # Points, and triangles, that are looked at together: what is made of them fits into the processor's cache.
@@ -114,8 +114,8 @@ def weld(scan_vertices: Vertices, scan_triangles: Triangles, tolerance: Toleranc
         survey = survey_edges(triangles, len(to_file))
     near, tolerance = join_near(TriangleMesh(_picked(scan_vertices, to_file), triangles), survey.on_boundary, tolerance)
     again = np.zeros(len(triangles), dtype=bool)
-    n_near = int((near != np.arange(len(near))).sum())
-    if n_near:
+    n_near = 0 if near is None else int((near != np.arange(len(near))).sum())
+    if near is not None and n_near:
         to_file, from_file = _numbered(to_file[near][from_file])
         triangles = _without_degenerate(from_file[kept])
         survey = survey_edges(triangles, len(to_file))
@@ -159,6 +159,9 @@ def _join_equal(kept: Triangles, copies: Triangles, place: IntArray, survey: Edg
 
     A vertex that repeated triangles alone use is joined to one of the triangles that they repeat.
     """
+    if is_identity(place):
+        # No two vertices lie at one position.
+        return place
     first = np.arange(len(place), dtype=np.int64)
     candidates = np.flatnonzero(survey.on_boundary)
     at_place = np.zeros(len(place), np.int64)
@@ -177,9 +180,9 @@ def _join_equal(kept: Triangles, copies: Triangles, place: IntArray, survey: Edg
 
 def _numbered(first: IntArray) -> tuple[IntArray, IntArray]:
     """Give numbers to the vertices that stay; return the file's vertex of each, and the number of each file vertex."""
-    stays = first == np.arange(len(first))
-    if stays.all():
+    if is_identity(first):
         return first, first
+    stays = first == np.arange(len(first))
     return np.flatnonzero(stays), (np.cumsum(stays) - 1)[first]
 
 

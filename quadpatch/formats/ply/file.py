@@ -1,6 +1,9 @@
 """A PLY file in memory, as its writer needs it."""
 
 from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
 
 from quadpatch.formats.ply.header import Header
 from quadpatch.formats.ply.rows import Rows
@@ -22,15 +25,27 @@ class PlyFile:
         One for each element of the header.
     carrier : str
         Element that holds the triangles and takes further ones: `face` or `tristrips`, the later one in the file.
-    triangle_row : (m,) int64
-        Row of `face` that each triangle was cut from, -1 for triangles of strips.
+    polygon : (m,) int64 or None
+        Row of `face` that each triangle was cut from, -1 for triangles of strips; None where triangle and row have one
+        number, as in nearly all files.
+    n_triangles : int
     """
 
     data: bytes
     header: Header
     rows: tuple[Rows, ...]
     carrier: str
-    triangle_row: IntArray
+    polygon: IntArray | None
+    n_triangles: int
+
+    @cached_property
+    def triangle_row(self) -> IntArray:
+        """Row of `face` of each triangle, (m,) int64, -1 for triangles of strips."""
+        return np.arange(self.n_triangles) if self.polygon is None else self.polygon
+
+    def rows_of(self, triangles: IntArray) -> IntArray:
+        """Return the row of `face` of some triangles (k,)."""
+        return triangles if self.polygon is None else self.polygon[triangles]
 
     def element(self, name: str) -> Rows | None:
         """Rows of an element, None where the file has none of that name."""

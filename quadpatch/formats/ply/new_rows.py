@@ -112,7 +112,7 @@ def new_carrier_rows(scan: Scan, file: PlyFile, fill: Fill) -> list[Table]:
     normals = triangle_normals(scan, fill)
     given: dict[str, Values] = {axis: normals[:, i] for i, axis in enumerate(_NORMALS)}
     given |= marks | {name: fill.triangles} | _texture(scan, file, rows, fill)
-    like = np.maximum(file.triangle_row[nearest_rim_triangle(scan, fill)], 0)
+    like = np.maximum(file.rows_of(nearest_rim_triangle(scan, fill)), 0)
     if fill.page is not None:
         numbers = _image_numbers(file, rows, fill.page, like)
         given, marks = given | numbers, marks | numbers
@@ -142,7 +142,7 @@ def _strip_row(rows: Rows, name: str, fill: Fill, hole: int) -> Table:
 
 def _texture(scan: Scan, file: PlyFile, rows: Rows, fill: Fill) -> dict[str, Values]:
     """Per-wedge texture coordinates, as MeshLab writes them: six numbers a triangle."""
-    coordinates = wedge_texture(rows, file.triangle_row)
+    coordinates = None if rows.list_column("texcoord") is None else wedge_texture(rows, file.triangle_row)
     if coordinates is None:
         return {}
     extended = extend_over_corners(scan, fill, coordinates)

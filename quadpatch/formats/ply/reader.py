@@ -87,9 +87,9 @@ def read_ply(data: bytes, limits: ReadLimits, folder: Path | None = None) -> Sca
     by_name = {read.element.name: read for read in rows}
     vertices = _vertices(by_name.get("vertex"))
     check_vertices(vertices, limits.allow_missing)
-    triangles, triangle_row, carrier = _triangles(by_name, vertices)
+    triangles, polygon, carrier = _triangles(by_name, vertices)
     check_triangles(triangles, limits)
-    file = PlyFile(data, header, rows, carrier, triangle_row)
+    file = PlyFile(data, header, rows, carrier, polygon, len(triangles))
     marks = [column for read in rows if (column := read.scalar("hole_id")) is not None]
     return Scan(vertices, triangles, "ply", source=PlySource(file, folder), next_hole_id=next_hole_id(marks))
 
@@ -115,9 +115,9 @@ def _vertices(rows: Rows | None) -> Vertices:
     return vertices
 
 
-def _triangles(by_name: dict[str, Rows], vertices: Vertices) -> tuple[Triangles, IntArray, str]:
+def _triangles(by_name: dict[str, Rows], vertices: Vertices) -> tuple[Triangles, IntArray | None, str]:
     pieces: list[Triangles] = []
-    face_rows: list[IntArray] = []
+    face_rows: list[IntArray | None] = []
     carrier = ""
     for name, rows in by_name.items():
         if name not in ("face", "tristrips"):
@@ -129,7 +129,10 @@ def _triangles(by_name: dict[str, Rows], vertices: Vertices) -> tuple[Triangles,
         indices = corners.whole_numbers()
         if name == "face":
             check_indices(indices, len(vertices))
-            triangles, row = triangulate_polygons(vertices, corners.counts, indices)
+            if (corners.counts == 3).all():
+                triangles, row = indices.reshape(-1, 3), None
+            else:
+                triangles, row = triangulate_polygons(vertices, corners.counts, indices)
         else:
             check_indices(indices[indices >= 0], len(vertices))
             triangles = triangulate_strips(corners.counts, indices)
@@ -140,7 +143,8 @@ def _triangles(by_name: dict[str, Rows], vertices: Vertices) -> tuple[Triangles,
         _raise_no_faces(by_name)
     if len(pieces) == 1:
         return pieces[0], face_rows[0], carrier
-    return np.concatenate(pieces), np.concatenate(face_rows), carrier
+    rows_of = [np.arange(len(piece)) if row is None else row for piece, row in zip(pieces, face_rows, strict=True)]
+    return np.concatenate(pieces), np.concatenate(rows_of), carrier
 
 
 def _raise_no_faces(by_name: dict[str, Rows]) -> None:

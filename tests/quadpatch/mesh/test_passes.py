@@ -2,7 +2,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from quadpatch.mesh.passes import Rows, extent, parts_of
+from quadpatch.mesh.passes import Rows, extent, is_identity, parts_of
 
 
 @given(n=st.integers(0, 30), size=st.integers(1, 12))
@@ -26,3 +26,11 @@ def test_rows_are_picked_as_numpy_picks_them() -> None:
     assert (Rows(table).at(rows) == table[rows]).all()
     assert Rows(table).at(rows[:0]).shape == (0, 3)
     assert (Rows(table[:, ::-1]).at(rows) == table[rows, ::-1]).all()
+
+
+def test_numbers_that_are_their_own_positions_are_an_identity() -> None:
+    numbers = np.arange(100_000)
+    assert is_identity(numbers)
+    assert is_identity(numbers[:0])
+    numbers[-1] = 0
+    assert not is_identity(numbers)
