@@ -17,7 +17,7 @@ from quadpatch.calibration.synthetic_holes import MeshWithHoles, Spacing, UncutS
 from quadpatch.filling.fairing import Energy, triangles_around
 from quadpatch.filling.fill import ClosedMesh, close_holes
 from quadpatch.filling.filled_mesh import FilledMesh
-from quadpatch.mesh.averages import mean_by
+from quadpatch.mesh.averages import mean_by, mean_of_corners
 from quadpatch.mesh.distance import DistanceTree, distance_to_mesh
 from quadpatch.mesh.loop_diameter import loop_diameter
 from quadpatch.mesh.normals import vertex_areas
@@ -195,12 +195,12 @@ def error_per_hole(calibration: CalibrationSet, filled: FilledMesh) -> FloatArra
     n_holes = len(filled.disagreement)
     vertices = filled.mesh.vertices
     new = filled.mesh.triangles[filled.n_measured_triangles :]
-    points = np.concatenate([vertices[filled.n_measured_vertices :], vertices[new].mean(axis=1)])
+    points = np.concatenate([vertices[filled.n_measured_vertices :], mean_of_corners(vertices[new])])
     hole = np.concatenate([filled.vertex_hole, filled.triangle_hole])
     kept = _enough_of_each(hole, n_holes)
     there = mean_by(hole[kept], calibration.truth_tree.distance(points[kept]), n_holes)
     # Every removed vertex belongs to the hole whose new surface is nearest.
-    centroids = vertices[new].mean(axis=1)
+    centroids = mean_of_corners(vertices[new])
     removed = calibration.removed_vertices
     nearest = filled.triangle_hole[cKDTree(centroids).query(removed)[1]]
     kept = _enough_of_each(nearest, n_holes)

@@ -50,6 +50,8 @@ def delaunay(
     for _ in range(_MAX_PASSES):
         excess = _excess(triangles, places, wanted, twin[wanted])
         is_bad = excess < -_SLACK
+        if not is_bad.any():
+            break
         bad = _by_urgency(triangles, wanted[is_bad], excess[is_bad], len(vertices))
         allowed = _is_allowed(triangles, vertices, bad, twin[bad], shared, existing_edges)
         if rim is not None:
@@ -125,9 +127,10 @@ def _is_allowed(
     # Only edges between ends of these can be among them.
     is_end = np.zeros(len(vertices), bool)
     is_end[crossing] = True
-    starts, ends = triangles.ravel(), triangles[:, [1, 2, 0]].ravel()
-    near = np.flatnonzero(is_end[starts])
-    near = near[is_end[ends[near]]]
+    flat = triangles.ravel()
+    near = np.flatnonzero(is_end[flat])
+    starts, ends = flat[near], flat[_next(near)]
+    near = is_end[ends]
     found = np.sort(edge_keys(np.stack([starts[near], ends[near]], axis=1), len(vertices)))
     keys = edge_keys(crossing, len(vertices))
     if len(found):

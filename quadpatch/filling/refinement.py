@@ -15,6 +15,7 @@ import numpy as np
 
 from quadpatch.filling.edge_flips import delaunay
 from quadpatch.filling.triangulation import EdgeSet
+from quadpatch.mesh.averages import mean_of_corners
 from quadpatch.mesh.normals import length, vertex_normals
 from quadpatch.mesh.smoothing import neighbour_average
 from quadpatch.types import BoolArray, FloatArray, IntArray, Triangles, Vertices
@@ -116,10 +117,10 @@ def refine(patch: Refined, existing_edges: EdgeSet, rim: Triangles | None = None
 
 def _too_large(patch: Refined) -> BoolArray:
     corners = patch.vertices[patch.triangles]
-    reach = DENSITY * length(corners - corners.mean(axis=1, keepdims=True))
+    reach = DENSITY * length(corners - mean_of_corners(corners)[:, None])
     wanted = patch.spacing[patch.triangles]
-    large: BoolArray = ((reach > wanted) & (reach > wanted.mean(axis=1, keepdims=True))).all(axis=1)
-    return large
+    a, b, c = ((reach > wanted) & (reach > mean_of_corners(wanted)[:, None])).T
+    return np.asarray(a & b & c)
 
 
 def _split_at_centroid(patch: Refined, large: BoolArray) -> Refined:
@@ -127,12 +128,12 @@ def _split_at_centroid(patch: Refined, large: BoolArray) -> Refined:
     new = len(patch.vertices) + np.arange(len(a))
     inner = np.concatenate([np.stack(t, axis=1) for t in ((a, b, new), (b, c, new), (c, a, new))])
     corners, hole = patch.triangles[large], patch.hole[large]
-    spacing = patch.spacing[corners].mean(axis=1)
+    spacing = mean_of_corners(patch.spacing[corners])
     if patch.grading is not None:
         spacing = patch.grading.grown(spacing, hole)
     return replace(
         patch,
-        vertices=np.concatenate([patch.vertices, patch.vertices[corners].mean(axis=1)]),
+        vertices=np.concatenate([patch.vertices, mean_of_corners(patch.vertices[corners])]),
         triangles=np.concatenate([patch.triangles[~large], inner]),
         hole=np.concatenate([patch.hole[~large], np.tile(hole, 3)]),
         spacing=np.concatenate([patch.spacing, spacing]),

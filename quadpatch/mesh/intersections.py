@@ -7,6 +7,7 @@ import numpy as np
 from igl.copyleft.cgal import remesh_self_intersections
 from scipy.spatial import cKDTree
 
+from quadpatch.mesh.averages import mean_of_corners
 from quadpatch.mesh.normals import cross, length
 from quadpatch.mesh.topology import compacted
 from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Triangles, Vertices
@@ -60,7 +61,7 @@ def _overlapping_pairs(corners: FloatArray, n_first: int) -> IntArray:
 
     One of the two is among the first so many.
     """
-    centres = corners.mean(axis=1)
+    centres = mean_of_corners(corners)
     radii = length(corners - centres[:, None]).max(axis=1)
     normals = cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     # Edges are up to twice as long as the radius.
@@ -119,7 +120,7 @@ def _cross_when_shrunk(mesh: TriangleMesh, pairs: IntArray) -> BoolArray:
         return np.zeros(0, bool)
     members, local = np.unique(pairs, return_inverse=True)
     corners = mesh.vertices[mesh.triangles[members]]
-    smaller = corners + _SHRINKAGE * (corners.mean(axis=1, keepdims=True) - corners)
+    smaller = corners + _SHRINKAGE * (mean_of_corners(corners)[:, None] - corners)
     found = _exact_pairs(smaller.reshape(-1, 3), np.arange(3 * len(members)).reshape(-1, 3))
     keys, wanted = (np.sort(rows, axis=1) @ np.array([len(members), 1]) for rows in (found, local.reshape(-1, 2)))
     return np.asarray(np.isin(wanted, keys))
@@ -152,7 +153,7 @@ def touching_boxes(low: FloatArray, high: FloatArray, mesh: TriangleMesh) -> Boo
     touched = np.zeros(len(mesh.triangles), bool)
     near = _in_box(low.min(axis=0, initial=np.inf), high.max(axis=0, initial=-np.inf), mesh)
     corners = mesh.vertices[mesh.triangles[near]]
-    centres = corners.mean(axis=1)
+    centres = mean_of_corners(corners)
     radii = length(corners - centres[:, None]).max(axis=1)
     # Few triangles are far larger than the others; those are taken unseen, or every query would have to reach as far.
     reach = _LARGE * float(radii.mean()) if len(radii) else 0.0
@@ -160,7 +161,8 @@ def touching_boxes(low: FloatArray, high: FloatArray, mesh: TriangleMesh) -> Boo
     ordinary = np.flatnonzero(radii <= reach)
     if not len(ordinary):
         return touched
-    lowest, highest = corners.min(axis=1), corners.max(axis=1)
+    a, b, c = (corners[:, k] for k in range(3))
+    lowest, highest = np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
     tree, middles, reaches = cKDTree(centres[ordinary]), (low + high) / 2, length(high - low) / 2 + reach
     for at in range(0, len(low), _BOXES_AT_A_TIME):
         part = slice(at, at + _BOXES_AT_A_TIME)

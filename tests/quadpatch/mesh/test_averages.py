@@ -2,7 +2,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from quadpatch.mesh.averages import mean_by
+from quadpatch.mesh.averages import mean_by, mean_of_corners
 
 
 def test_each_group_has_the_mean_of_its_own_values_and_an_empty_one_has_zero() -> None:
@@ -26,3 +26,9 @@ def test_every_value_weighs_the_same_in_whatever_order_the_groups_are_named(seed
     mean = mean_by(group, values, n_groups)
     np.testing.assert_allclose((mean * np.bincount(group, minlength=n_groups)).sum(), values.sum(), atol=1e-12)
     np.testing.assert_array_equal(mean_by(name[group], values, n_groups)[name], mean)
+
+
+@given(seed=st.integers(0, 1000), width=st.sampled_from([(), (3,)]))
+def test_the_mean_of_three_corners_is_numpys_to_the_last_bit(seed: int, width: tuple[int, ...]) -> None:
+    corners = np.random.default_rng(seed).normal(size=(50, 3, *width))
+    assert (mean_of_corners(corners) == corners.mean(axis=1)).all()
