@@ -10,6 +10,7 @@ from quadpatch.mesh.boundary import boundary_loops, on_boundary
 from quadpatch.mesh.edge_survey import survey_edges
 from quadpatch.mesh.measures import used_vertices
 from quadpatch.mesh.normals import normals_at
+from quadpatch.mesh.topology import touching
 from quadpatch.processes import usable_threads
 from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh
 
@@ -104,7 +105,7 @@ def cut_holes(surface: UncutSurface, diameter: float, spacing: Spacing, rng: np.
     """
     radius = max(diameter / 2 - _RIM_EDGES * spacing.edge_length, 0.5 * spacing.edge_length)
     removed, mesh = _disks(surface, radius, spacing, rng), surface.mesh
-    cut_away = np.asarray(removed[mesh.triangles].any(axis=1))
+    cut_away = touching(mesh.triangles, removed)
     remaining = TriangleMesh(mesh.vertices, mesh.triangles[~cut_away])
     return MeshWithHoles(remaining, removed, cut_away, new_loops(mesh, cut_away))
 
@@ -139,7 +140,7 @@ def new_loops(mesh: TriangleMesh, cut_away: BoolArray) -> list[IntArray]:
     Loops that touch a boundary of the mesh itself are left out. Only triangles next to the cuts are looked at.
     """
     beside = used_vertices(mesh.triangles[cut_away], len(mesh.vertices))
-    around = np.asarray(beside[mesh.triangles].any(axis=1))
+    around = touching(mesh.triangles, beside)
     # Edges at the vertices beside the cuts have all their triangles among those around.
     own, cut = (survey_edges(mesh.triangles[part], len(mesh.vertices)) for part in (around, around & ~cut_away))
     marked = replace(cut, on_boundary=beside & ~own.on_boundary)

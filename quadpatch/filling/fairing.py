@@ -20,6 +20,7 @@ from scipy import sparse
 from quadpatch.errors import StageError
 from quadpatch.filling.banded_solver import UpperPart
 from quadpatch.filling.laplacian import Connectivity, cotangent_weights
+from quadpatch.mesh.topology import touching
 from quadpatch.types import BoolArray, FloatArray, IntArray, Triangles, Vertices
 
 
@@ -143,7 +144,7 @@ class FairingEquations:
             connectivity, weights = self.connectivity, self._weights
             if slope != 1.0:
                 # At a rim, curvature is how the slopes on both sides differ; the measured one counts for more.
-                is_measured = np.asarray(~connectivity.free[connectivity.triangles].any(axis=1))
+                is_measured = ~touching(connectivity.triangles, connectivity.free)
                 weights = np.where(is_measured[:, None], slope, 1.0) * weights
             laplacian = connectivity.laplacian(weights)
             step = laplacian.copy()
@@ -202,6 +203,6 @@ def triangles_around(triangles: Triangles, core: IntArray, n_vertices: int, n_ri
     inside[core] = True
     touched = np.zeros(len(triangles), bool)
     for _ in range(n_rings):
-        touched = np.asarray(inside[triangles].any(axis=1))
+        touched = touching(triangles, inside)
         inside[triangles[touched]] = True
     return np.flatnonzero(touched)

@@ -8,7 +8,7 @@ import numpy as np
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.mesh.intersections import crossing_pairs, heights, touching_boxes
 from quadpatch.mesh.normals import triangle_normals
-from quadpatch.mesh.topology import compacted, neighbouring_triangles
+from quadpatch.mesh.topology import compacted, neighbouring_triangles, touching
 from quadpatch.processes import ProcessPool, Shared
 from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Triangles
 
@@ -173,7 +173,7 @@ def _near(filled: FilledMesh, looked_at: BoolArray) -> BoolArray:
     own[filled.n_measured_triangles :] = looked_at[filled.triangle_hole]
     touched = np.zeros(len(filled.mesh.vertices), bool)
     touched[triangles[own]] = True
-    return np.asarray(touched[triangles].any(axis=1))
+    return touching(triangles, touched)
 
 
 # A mesh, some of its triangles (k,), and the boxes (n, 3), by two corners, that hold them; without, the mesh holds

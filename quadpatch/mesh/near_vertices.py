@@ -12,7 +12,7 @@ from scipy.spatial import cKDTree
 
 from quadpatch.errors import OptionError
 from quadpatch.mesh.measures import mean_edge_length
-from quadpatch.mesh.topology import components, directed_edges
+from quadpatch.mesh.topology import components, directed_edges, touching
 from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Triangles, Vertices
 
 # In mesh units, or what the numbers of the file allow.
@@ -152,7 +152,7 @@ def _shortest_edges(mesh: TriangleMesh, wanted: IntArray, noise: float) -> Float
     shortest = np.full(len(mesh.vertices), np.inf)
     is_wanted = np.zeros(len(mesh.vertices), dtype=bool)
     is_wanted[wanted] = True
-    triangles = mesh.triangles[is_wanted[mesh.triangles].any(axis=1)]
+    triangles = mesh.triangles[touching(mesh.triangles, is_wanted)]
     for k in range(3):
         start, end = triangles[:, k], triangles[:, k - 2]
         length = np.linalg.norm(mesh.vertices[start] - mesh.vertices[end], axis=1)
