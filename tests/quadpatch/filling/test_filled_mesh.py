@@ -1,9 +1,11 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from quadpatch.filling.fairing import THIN_PLATE, Energy
 from quadpatch.filling.fill import close_flat, close_holes, fair_holes
-from quadpatch.filling.filled_mesh import FilledMesh
+from quadpatch.filling.filled_mesh import FilledMesh, JoinedMesh
 from quadpatch.types import FloatArray, IntArray
 from tests.quadpatch.filling.fills import all_loops, assert_keeps
 from tests.quadpatch.filling.handmade import put_together
@@ -79,3 +81,13 @@ def test_moved_vertices_are_the_new_ones_alone() -> None:
     moved = PLATE.with_vertices(new)
     assert_keeps(moved, MESH)
     assert moved.mesh.vertices.tobytes() == other.mesh.vertices.tobytes()
+
+
+def test_a_mesh_is_joined_with_its_fills_once_that_is_asked_for() -> None:
+    joined = replace(PLATE, mesh=JoinedMesh(MESH, PLATE.new_vertices, PLATE.new_triangles))
+    assert joined.measured is MESH
+    assert (joined.new_vertices == PLATE.new_vertices).all()
+    assert (joined.new_triangles == PLATE.new_triangles).all()
+    assert not {"vertices", "triangles"} & joined.mesh.__dict__.keys()
+    assert (joined.mesh.vertices == PLATE.mesh.vertices).all()
+    assert (joined.mesh.triangles == PLATE.mesh.triangles).all()

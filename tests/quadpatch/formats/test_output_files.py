@@ -1,4 +1,5 @@
 import os
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -11,6 +12,19 @@ def test_a_file_is_written_and_nothing_beside_it(tmp_path: Path) -> None:
     write_whole(tmp_path / "mesh.ply", b"old")
     write_whole(tmp_path / "mesh.ply", b"new")
     assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == {"mesh.ply": b"new"}
+
+
+def test_a_file_may_come_in_pieces_and_a_piece_that_fails_leaves_the_old_file(tmp_path: Path) -> None:
+    def pieces() -> Iterator[bytes]:
+        yield b"new"
+        raise OSError(28, "No space left on device")
+
+    path = tmp_path / "out.ply"
+    write_whole(path, iter([b"ol", memoryview(b"d")]))
+    with pytest.raises(OSError, match="No space"):
+        write_whole(path, pieces())
+    assert path.read_bytes() == b"old"
+    assert list(tmp_path.iterdir()) == [path]
 
 
 def test_a_failing_write_leaves_the_old_file_and_names_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

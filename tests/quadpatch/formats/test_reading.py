@@ -1,6 +1,7 @@
 """Whatever a file holds, reading it gives a scan or an error of the method's own."""
 
 import json
+import os
 from pathlib import Path
 
 import numpy as np
@@ -171,4 +172,19 @@ def test_points_are_no_mesh(tmp_path: Path) -> None:
     path = tmp_path / "points.obj"
     path.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\n")
     with pytest.raises(EmptyMeshError):
+        read_scan(path)
+
+
+@pytest.mark.parametrize("suffix", ["ply", "stl", "glb"])
+def test_a_scan_that_is_cut_short_during_its_repair_is_written_as_it_was_read(suffix: str, tmp_path: Path) -> None:
+    """A file that is mapped into memory would end the process by a signal, or be another one by then."""
+    path = tmp_path / f"scan.{suffix}"
+    write_scan(path, as_scan(punched(sphere(3), (0, 0, 1), radius=0.4)), EMPTY)
+    scan = read_scan(path)
+    fill = cap_holes(scan)
+    write_scan(tmp_path / f"before.{suffix}", scan, fill)
+    os.truncate(path, 100)
+    write_scan(tmp_path / f"after.{suffix}", scan, fill)
+    assert (tmp_path / f"after.{suffix}").read_bytes() == (tmp_path / f"before.{suffix}").read_bytes()
+    with pytest.raises(MeshError):
         read_scan(path)
