@@ -28,6 +28,13 @@ def as_scan(mesh: TriangleMesh) -> Scan:
     return Scan(mesh.vertices[used], corners.reshape(-1, 3).astype(np.int64), "memory")
 
 
+def appended(scan: Scan, fill: Fill) -> bytes:
+    """The file of a scan with a fill behind it, whole."""
+    assert scan.source is not None
+    data = scan.source.append(scan, fill)
+    return data if isinstance(data, bytes) else b"".join(data)
+
+
 def boundary_loops(triangles: IntArray) -> list[list[int]]:
     """Simple loops of directed boundary edges, against the direction of their faces."""
     edges = {(int(a), int(b)) for row in triangles for a, b in ((row[0], row[1]), (row[1], row[2]), (row[2], row[0]))}

@@ -7,6 +7,7 @@ from quadpatch.errors import EmptyMeshError, FormatError, IndexRangeError, ReadE
 from quadpatch.formats.limits import ReadLimits
 from quadpatch.formats.off import read_off
 from quadpatch.formats.scan import Fill, Scan
+from tests.quadpatch.formats.fills import appended
 
 SQUARE = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n"
 
@@ -22,8 +23,7 @@ def append(text: str) -> str:
     triangles = np.array([[1, 0, new], [2, 1, new], [3, 2, new], [0, 3, new]])
     hole = np.zeros(4, np.int64)
     fill = Fill(np.array([[0.5, 0.5, 1.0]]), triangles, hole[:1], np.ones(1), hole, np.ones(4))
-    assert scan.source is not None
-    return scan.source.append(scan, fill).decode()
+    return appended(scan, fill).decode()
 
 
 FACES = "3 1 0 4\n3 2 1 4\n3 3 2 4\n3 0 3 4\n"

@@ -13,7 +13,7 @@ from quadpatch.formats.reading import read_scan
 from quadpatch.formats.scan import Scan
 from quadpatch.formats.stl import encode_stl, read_stl
 from quadpatch.formats.stl_layout import is_binary_stl
-from tests.quadpatch.formats.fills import EMPTY, as_scan, cap_holes, n_open_edges
+from tests.quadpatch.formats.fills import EMPTY, appended, as_scan, cap_holes, n_open_edges
 from tests.quadpatch.shapes import punched, sphere
 
 FACET = "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1.5e0 0\nendloop\nendfacet\n"
@@ -37,8 +37,7 @@ def test_binary_records_come_back_to_the_byte_and_the_hole_is_closed() -> None:
     data = binary_ball()
     scan = read(data)
     fill = cap_holes(scan)
-    assert scan.source is not None
-    repaired = scan.source.append(scan, fill)
+    repaired = appended(scan, fill)
     assert repaired[84 : len(data)] == data[84:]
     assert repaired[:80] == data[:80]
     again = read(repaired)
@@ -61,7 +60,7 @@ def test_bytes_behind_the_last_record_stay_behind_it() -> None:
     data = b"binary" + binary_ball()[6:] + b"trailer"
     scan = read(data)
     assert scan.source is not None
-    assert scan.source.append(scan, EMPTY) == data
+    assert appended(scan, EMPTY) == data
 
 
 def test_ascii_text_stays_and_facets_stand_in_the_last_solid() -> None:
@@ -69,8 +68,7 @@ def test_ascii_text_stays_and_facets_stand_in_the_last_solid() -> None:
     scan = read(text)
     assert scan.vertices[:3].tolist() == [[0, 0, 0], [1, 0, 0], [0, 1.5, 0]]
     fill = cap_holes(scan)
-    assert scan.source is not None
-    repaired = scan.source.append(scan, fill).decode()
+    repaired = appended(scan, fill).decode()
     head, tail = text.split("ENDSOLID")
     assert repaired.startswith(head)
     assert repaired.endswith("ENDSOLID" + tail)
@@ -118,7 +116,7 @@ def test_a_binary_file_with_a_trailer_is_read_whatever_its_header_says(
     assert len(scan.triangles) == facets_of(ball)
     assert scan.vertices.tobytes() == read(ball).vertices.tobytes()
     assert scan.source is not None
-    assert scan.source.append(scan, EMPTY) == path.read_bytes()
+    assert appended(scan, EMPTY) == path.read_bytes()
 
 
 def test_a_binary_file_with_a_trailer_needs_no_suffix(tmp_path: Path) -> None:
@@ -187,8 +185,7 @@ def test_an_ascii_name_may_hold_any_word(name: str, line_end: str) -> None:
     scan = read(text)
     assert len(scan.triangles) == 2
     fill = cap_holes(scan)
-    assert scan.source is not None
-    repaired = scan.source.append(scan, fill)
+    repaired = appended(scan, fill)
     assert len(read(repaired).triangles) == 2 + len(fill.triangles)
     head, tail = text.encode()[: text.encode().rindex(b"endSolid")], b"endSolid" + line_end.encode()
     assert repaired.startswith(head)

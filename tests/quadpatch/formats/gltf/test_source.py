@@ -11,7 +11,7 @@ import trimesh
 from quadpatch.formats.gltf.reader import read_gltf
 from quadpatch.formats.limits import ReadLimits
 from quadpatch.formats.scan import Scan
-from tests.quadpatch.formats.fills import EMPTY, as_scan, cap_holes, n_open_edges
+from tests.quadpatch.formats.fills import EMPTY, appended, as_scan, cap_holes, n_open_edges
 from tests.quadpatch.formats.gltf.documents import as_gltf, chunks, glb, quarter_turn, scene
 from tests.quadpatch.shapes import punched, sphere
 
@@ -23,8 +23,7 @@ def read(data: bytes) -> Scan:
 
 
 def append(scan: Scan) -> bytes:
-    assert scan.source is not None
-    return scan.source.append(scan, cap_holes(scan))
+    return appended(scan, cap_holes(scan))
 
 
 def ball() -> Scan:
@@ -75,7 +74,7 @@ def test_an_empty_fill_changes_no_entry() -> None:
     old, binary = scene(mesh.vertices, mesh.triangles, {"mesh": 0})
     scan = read(glb(old, binary))
     assert scan.source is not None
-    assert chunks(scan.source.append(scan, EMPTY)) == chunks(glb(old, binary))
+    assert chunks(appended(scan, EMPTY)) == chunks(glb(old, binary))
 
 
 def test_normals_colours_and_texture_go_along_and_marks_tell_hole_and_confidence() -> None:

@@ -15,7 +15,7 @@ from quadpatch.formats.limits import ReadLimits
 from quadpatch.formats.ply.reader import read_ply
 from quadpatch.formats.ply.rows import ListColumn, Rows
 from quadpatch.formats.scan import Fill, Scan
-from tests.quadpatch.formats.fills import EMPTY, SAMPLES, as_scan, cap_holes, cut_hole, n_open_edges
+from tests.quadpatch.formats.fills import EMPTY, SAMPLES, appended, as_scan, cap_holes, cut_hole, n_open_edges
 from tests.quadpatch.formats.ply.builder import Ply, ply_files
 from tests.quadpatch.shapes import punched, sphere
 
@@ -27,8 +27,7 @@ def read(data: bytes) -> Scan:
 def append(data: bytes, fill: Fill | None = None) -> tuple[bytes, Scan, Fill]:
     scan = read(data)
     fill = cap_holes(scan) if fill is None else fill
-    assert scan.source is not None
-    return b"".join(scan.source.append(scan, fill)), scan, fill
+    return appended(scan, fill), scan, fill
 
 
 def element(scan: Scan, name: str) -> Rows:

@@ -10,7 +10,7 @@ import trimesh
 from quadpatch.formats.limits import ReadLimits
 from quadpatch.formats.scan import Scan
 from quadpatch.formats.threemf.reader import read_threemf
-from tests.quadpatch.formats.fills import as_scan, cap_holes, n_open_edges
+from tests.quadpatch.formats.fills import appended, as_scan, cap_holes, n_open_edges
 from tests.quadpatch.formats.threemf.packages import CORE, mesh_text, model, package
 from tests.quadpatch.shapes import punched, sphere
 
@@ -20,8 +20,7 @@ def read(data: bytes) -> Scan:
 
 
 def append(scan: Scan) -> bytes:
-    assert scan.source is not None
-    return scan.source.append(scan, cap_holes(scan))
+    return appended(scan, cap_holes(scan))
 
 
 def root(data: bytes) -> str:
