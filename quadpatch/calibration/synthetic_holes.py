@@ -7,15 +7,16 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from quadpatch.mesh.boundary import boundary_loops, on_boundary
+from quadpatch.mesh.edge_groups import group_edges
 from quadpatch.mesh.edge_survey import survey_edges
 from quadpatch.mesh.measures import used_vertices
-from quadpatch.mesh.normals import normals_at
-from quadpatch.mesh.topology import touching
+from quadpatch.mesh.normals import vertex_normals
+from quadpatch.mesh.topology import components, order_of, touching
 from quadpatch.processes import usable_threads
-from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh
+from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Triangles
 
 # The rim of a cut lies so much outside the disk of vertices that it takes, in mean edge lengths.
-_RIM_EDGES = 0.7
+_RIM_EDGES = 1.0
 
 
 @dataclass(frozen=True)
@@ -76,6 +77,23 @@ class UncutSurface:
         """Of the vertices."""
         return cKDTree(self.mesh.vertices)
 
+    @cached_property
+    def normals(self) -> FloatArray:
+        """At the vertices (n_vertices, 3)."""
+        return vertex_normals(self.mesh.vertices, self.mesh.triangles)
+
+    @cached_property
+    def _by_corner(self) -> tuple[IntArray, IntArray]:
+        """Triangles (3 n_triangles,) ordered by the vertex at a corner, and where those of each vertex begin."""
+        corners, n = self.mesh.triangles.ravel(), len(self.mesh.vertices)
+        return order_of(corners, n) // 3, np.concatenate([[0], np.cumsum(np.bincount(corners, minlength=n))])
+
+    def triangles_at(self, vertices: IntArray) -> Triangles:
+        """Triangles (k, 3) with a corner among some vertices."""
+        triangle, begin = self._by_corner
+        which = [triangle[start:end] for start, end in zip(begin[vertices], begin[vertices + 1], strict=True)]
+        return self.mesh.triangles[np.unique(np.concatenate(which))]
+
     def is_clear(self, distance: float) -> BoolArray:
         """Vertices (n_vertices,) that a triangle uses and that keep a distance from every boundary edge."""
         mesh = self.mesh
@@ -93,6 +111,9 @@ class UncutSurface:
 
 def cut_holes(surface: UncutSurface, diameter: float, spacing: Spacing, rng: np.random.Generator) -> MeshWithHoles:
     """Cut disks of surface out of a mesh wherever they keep clear of every boundary and of each other.
+
+    Where a cut would come in pieces or have a second rim, as at a fold, none is made: it would be no hole of this
+    diameter.
 
     Parameters
     ----------
@@ -114,24 +135,36 @@ def _disks(surface: UncutSurface, radius: float, spacing: Spacing, rng: np.rando
     """Choose the vertices (n,) to take."""
     vertices = surface.mesh.vertices
     clear = surface.is_clear(radius + spacing.margin)
-    centres, disks = [], []
+    removed, n_disks = np.zeros(len(vertices), bool), 0
     for centre in rng.permutation(np.flatnonzero(clear)).tolist():
         if not clear[centre]:
             continue
         nearby = np.array(surface.tree.query_ball_point(vertices[centre], 2 * (radius + spacing.margin)))
-        distance = np.linalg.norm(vertices[nearby] - vertices[centre], axis=1)
+        disk = nearby[np.linalg.norm(vertices[nearby] - vertices[centre], axis=1) < radius]
+        facing = disk[surface.normals[disk] @ surface.normals[centre] > 0]
+        if not len(facing) or not _is_disk(surface.triangles_at(facing)):
+            clear[disk] = False
+            continue
         clear[nearby] = False
-        centres.append(centre)
-        disks.append(nearby[distance < radius])
-        if len(disks) == spacing.most:
+        removed[facing] = True
+        n_disks += 1
+        if n_disks == spacing.most:
             break
-    removed = np.zeros(len(vertices), bool)
-    if disks:
-        disk, sizes = np.concatenate(disks), [len(disk) for disk in disks]
-        of_centre = normals_at(vertices, surface.mesh.triangles, np.repeat(centres, sizes))
-        of_disk = normals_at(vertices, surface.mesh.triangles, disk)
-        removed[disk[np.einsum("ij,ij->i", of_disk, of_centre) > 0]] = True
     return removed
+
+
+def _is_disk(triangles: Triangles) -> bool:
+    """Whether triangles (k, 3) are one disk: connected, no edge or vertex crowded, the Euler characteristic 1."""
+    used, local = np.unique(triangles, return_inverse=True)
+    groups = group_edges(local.reshape(-1, 3), len(used))
+    ends = groups.ends()
+    at_rim = np.bincount(ends[groups.count == 1].ravel(), minlength=len(used))
+    return (
+        len(used) - len(ends) + len(triangles) == 1
+        and int(groups.count.max()) <= 2
+        and bool(np.isin(at_rim, (0, 2)).all())
+        and not components(ends, len(used)).any()
+    )
 
 
 def new_loops(mesh: TriangleMesh, cut_away: BoolArray) -> list[IntArray]:
