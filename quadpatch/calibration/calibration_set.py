@@ -20,7 +20,7 @@ from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.mesh.averages import mean_by, mean_of_corners
 from quadpatch.mesh.distance import DistanceTree, distance_to_mesh
 from quadpatch.mesh.loop_diameter import loop_diameter
-from quadpatch.mesh.normals import vertex_areas
+from quadpatch.mesh.normals import area_vectors, length, vertex_areas
 from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Vertices
 
 # Calibration holes. On scans, 16 to 64 of them lead to the same errors of repairs within half a percent.
@@ -155,28 +155,32 @@ def choose_energy(errors: FloatArray, diameter: float, energies: Sequence[Energy
 def choose_blend_factor(calibration: CalibrationSet, filled: FilledMesh, displacement: FloatArray) -> float:
     """Choose the share of predicted displacements (k, 3) that leaves the smallest mean error.
 
-    It is 0 where that gains less than two percent, or less than 1.64 standard errors: a few dozen holes can't tell
-    more. Where hardly any hole loses, the rare ones that gain much are enough.
+    It is 0 where that gains less than two percent, or may be chance (`_is_no_chance`).
     """
-    errors = _error_by_share(calibration, filled, displacement)
+    errors = error_by_share(calibration, filled, displacement)
     best = int(errors.mean(axis=1).argmin())
     gains = errors[0] - errors[best]
-    is_sure = float(gains.mean()) > _LEAST_GAIN_IN_ERRORS * float(gains.std()) / np.sqrt(len(gains))
-    is_harmless = float(-gains[gains < 0].sum()) < _MOST_LOST * float(gains[gains > 0].sum())
     is_worth_it = float(gains.mean()) > _LEAST_GAIN * float(errors[0].mean())
-    return SHARES[best] if is_worth_it and (is_sure or is_harmless) else 0.0
+    return SHARES[best] if is_worth_it and _is_no_chance(gains) else 0.0
 
 
 def may_gain(calibration: CalibrationSet, filled: FilledMesh, displacement: FloatArray) -> bool:
-    """Whether any share of displacements (k, 3) gains more than 1.64 standard errors, be it as little as it may."""
-    errors = _error_by_share(calibration, filled, displacement)
-    gains = errors[0] - errors[1:]
-    least = _LEAST_GAIN_IN_ERRORS * gains.std(axis=1) / np.sqrt(gains.shape[1])
-    return bool((gains.mean(axis=1) > least).any())
+    """Whether any share of displacements (k, 3) has a gain that is no chance, be it as little as it may."""
+    errors = error_by_share(calibration, filled, displacement)
+    return any(_is_no_chance(errors[0] - of_share) for of_share in errors[1:])
 
 
-def _error_by_share(calibration: CalibrationSet, filled: FilledMesh, displacement: FloatArray) -> FloatArray:
-    """Errors (n_shares, n_holes) with each of the shares of displacements (k, 3)."""
+def _is_no_chance(gains: FloatArray) -> bool:
+    """Whether gains (n_holes,) have a mean of over 1.64 standard errors: a few dozen holes can't tell more.
+
+    Where hardly any hole loses, the rare ones that gain much are enough.
+    """
+    is_sure = float(gains.mean()) > _LEAST_GAIN_IN_ERRORS * float(gains.std()) / np.sqrt(len(gains))
+    return is_sure or float(-gains[gains < 0].sum()) < _MOST_LOST * float(gains[gains > 0].sum())
+
+
+def error_by_share(calibration: CalibrationSet, filled: FilledMesh, displacement: FloatArray) -> FloatArray:
+    """Measure errors (n_shares, n_holes) with each of `SHARES` of displacements (k, 3), in mesh units."""
     new = filled.mesh.vertices[filled.n_measured_vertices :]
     return np.array([error_per_hole(calibration, filled.with_vertices(new + share * displacement)) for share in SHARES])
 
@@ -184,23 +188,27 @@ def _error_by_share(calibration: CalibrationSet, filled: FilledMesh, displacemen
 def error_per_hole(calibration: CalibrationSet, filled: FilledMesh) -> FloatArray:
     """Measure how far each calibration hole's fill is from the true surface, both ways.
 
-    Half from the new vertices and the centroids of the new triangles to the truth, half from the vertices that were cut
-    away to the fill. A thousand or two of each are looked at.
+    Half from the new surface to the truth, half from the vertices that were cut away to the fill. The former is an
+    integral over the new triangles, by the rule that is exact for quadratic functions: three quarters of the weight at
+    the centroid, a twelfth at each corner. Without areas, the many small triangles at a rim, where every fill is right,
+    would favour energies that err in the middle. A thousand or two of each are looked at.
 
     Returns
     -------
     (n_holes,) float64
         Mean distance, in mesh units.
     """
-    n_holes = len(filled.disagreement)
+    n_holes, n = len(filled.disagreement), filled.n_measured_vertices
     vertices = filled.mesh.vertices
     new = filled.mesh.triangles[filled.n_measured_triangles :]
-    points = np.concatenate([vertices[filled.n_measured_vertices :], mean_of_corners(vertices[new])])
-    hole = np.concatenate([filled.vertex_hole, filled.triangle_hole])
-    kept = _enough_of_each(hole, n_holes)
-    there = mean_by(hole[kept], calibration.truth_tree.distance(points[kept]), n_holes)
-    # Every removed vertex belongs to the hole whose new surface is nearest.
     centroids = mean_of_corners(vertices[new])
+    # Corners at the rim lie on the truth.
+    points, hole = np.concatenate([vertices[n:], centroids]), np.concatenate([filled.vertex_hole, filled.triangle_hole])
+    areas = 0.5 * length(area_vectors(vertices, new))
+    weights = np.concatenate([0.25 * vertex_areas(vertices, new)[n:], 0.75 * areas])
+    kept = _enough_of_each(hole, n_holes)
+    there = mean_by(hole[kept], calibration.truth_tree.distance(points[kept]), n_holes, weights[kept])
+    # Every removed vertex belongs to the hole whose new surface is nearest.
     removed = calibration.removed_vertices
     nearest = filled.triangle_hole[cKDTree(centroids).query(removed)[1]]
     kept = _enough_of_each(nearest, n_holes)

@@ -18,6 +18,7 @@ from quadpatch.filling.fairing import THIN_PLATE, Energy
 from quadpatch.filling.fill import fair_holes
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.mesh.boundary import boundary_loops
+from quadpatch.mesh.distance import distance_to_mesh
 from quadpatch.mesh.measures import mean_edge_length
 from quadpatch.mesh.raycast import RayScene
 from quadpatch.recipes.fairing_energies import DEFAULT_ENERGY, FAIRING_ENERGIES
@@ -144,6 +145,25 @@ def test_the_error_is_the_distance_to_what_was_cut_away() -> None:
     errors = error_per_hole(calibration, one)
     assert errors[3] > 0.0007
     assert np.delete(errors, 3).max() < 1e-9
+
+
+def test_errors_count_surface_by_its_area_however_dense_its_vertices_are() -> None:
+    calibration = some_calibration(open_grid(200, 2.0), diameter=0.3)
+    filled = fair_holes(calibration.closed, THIN_PLATE)
+    centres = np.array([filled.mesh.vertices[calibration.loops[hole]].mean(axis=0) for hole in filled.vertex_hole])
+    from_centre = np.linalg.norm(new_vertices(filled) - centres, axis=1)
+    # Hills in the middle, where graded fills are coarse; so low that distances are heights.
+    height = 0.001 * np.exp(-((from_centre / 0.05) ** 2))
+    lifted = filled.with_vertices(new_vertices(filled) + height[:, None] * np.array([0, 0, 1]))
+    corners = lifted.mesh.vertices[lifted.mesh.triangles[lifted.n_measured_triangles :]]
+    heights, areas = (
+        corners[:, :, 2].mean(axis=1),
+        np.linalg.norm(np.cross(*np.diff(corners, axis=1).swapaxes(0, 1)), axis=1),
+    )
+    volumes, surfaces = (np.bincount(lifted.triangle_hole, values) for values in (areas * heights, areas))
+    there = (volumes / surfaces).mean()
+    back = distance_to_mesh(calibration.removed_vertices, lifted.mesh).mean()
+    assert error_per_hole(calibration, lifted).mean() == pytest.approx(0.5 * (there + back), rel=0.04)
 
 
 def test_the_distance_of_a_fill_looks_one_way_only() -> None:

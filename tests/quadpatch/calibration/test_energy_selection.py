@@ -90,11 +90,12 @@ def test_energies_rank_on_graded_fills_as_on_uniform_ones() -> None:
         np.array([error_per_hole(calibration, fair_holes(closed, energy)).mean() for energy in CALIBRATED_ENERGIES])
         for closed in (calibration.closed, uniform)
     )
-    assert graded.argsort().tolist() == dense.argsort().tolist()
-    # The others are out of the question.
+    # Errors of the best ones lie within a few percent of each other, those of the others far off.
     near = dense < 3 * dense.min()
     assert near.sum() >= 3
+    assert (near == (graded < 3 * graded.min())).all()
     assert graded[near] / graded.min() == pytest.approx(dense[near] / dense.min(), rel=0.15)
+    assert graded[~near].argsort().tolist() == dense[~near].argsort().tolist()
 
 
 def test_a_rim_that_no_energy_misses_tells_nothing() -> None:
