@@ -130,7 +130,12 @@ def _competition(completion: Completion | None) -> dict[str, Any]:
     if completion is None or not completion.trials:
         return {}
     trials = [
-        {"models": trial.shares, "believed_share": trial.blend_factor, "error": trial.error}
+        {
+            "models": trial.shares,
+            "believed_share": trial.blend_factor,
+            "error": trial.error,
+            "calibration_holes": trial.n_holes,
+        }
         for trial in completion.trials
     ]
     return {"shares": completion.shares, "trials": trials}

@@ -7,6 +7,7 @@ from scipy.spatial import cKDTree
 
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.mesh.raycast import RayScene
+from quadpatch.patches.folding import is_unfolded
 from quadpatch.patches.height_map import sample_height_maps
 from quadpatch.patches.scale import PatchScale
 from quadpatch.patches.seeds import Seeds, seed_points
@@ -98,6 +99,11 @@ def take(seeds: Seeds, which: BoolArray | IntArray) -> Seeds:
 def pick(sampled: Sampled, which: BoolArray) -> Sampled:
     """Pick some of the patches, with their part of the base surface."""
     return Sampled(pick_patches(sampled.patches, which), sampled.base_heights[which])
+
+
+def unfolded(sampled: Sampled) -> Sampled:
+    """Leave out patches whose surface is folded, see `quadpatch.patches.folding`."""
+    return pick(sampled, is_unfolded(sampled.patches))
 
 
 def pick_patches(patches: Patches, which: BoolArray | IntArray) -> Patches:

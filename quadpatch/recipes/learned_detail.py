@@ -3,34 +3,28 @@
 Tested in `tests/quadpatch/recipes/test_default.py`.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
 
-from quadpatch.calibration.calibration_set import CalibrationSet, choose_blend_factor, error_per_hole, expect
-from quadpatch.calibration.error_model import ErrorModel
+from quadpatch.calibration.calibration_set import CalibrationSet
 from quadpatch.calibration.record import CalibrationRecord
-from quadpatch.calibration.training_pairs import TrainingSurface, pairs_of
+from quadpatch.calibration.training_pairs import TrainingSurface
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.inpainters.competing import FittedCompetitors
 from quadpatch.inpainters.inpainter import Fitting, Inpainter, TellsOfFitting, UndamagedSurface
 from quadpatch.options import RepairOptions
-from quadpatch.patches.folding import is_unfolded
-from quadpatch.patches.layout import Sampled, lay_out, pick, seeds_near, take
+from quadpatch.patches.layout import Sampled, lay_out, seeds_near, take, unfolded
 from quadpatch.patches.scale import PatchScale, choose_scale
 from quadpatch.patches.seeds import Seeds
-from quadpatch.processes import ProcessPool, Shared
-from quadpatch.recipes.assessment import agreeing_holes, measure_agreement
+from quadpatch.processes import ProcessPool
+from quadpatch.recipes.assessment import agreeing_holes
+from quadpatch.recipes.model_trials import CalibrationPatches, Choice, joined_displacement, try_models
 from quadpatch.recipes.patch_surfaces import CoarseCopy, PatchSurface, PatchSurfaces
-from quadpatch.recipes.result import Completion, PatchAgreement, Trial
-from quadpatch.reconstruction.displacement import displace, join_at_rim, rim_vertices
+from quadpatch.recipes.result import Completion
 from quadpatch.stages import Stages
-from quadpatch.types import BoolArray, FloatArray, Patches, Vertices
-
-# Blend factor of a model where the mesh has no room for calibration.
-PRIOR_BLEND_FACTOR = 0.0
+from quadpatch.types import BoolArray, FloatArray, Patches, TriangleMesh
 
 # Patches that a self-similar dictionary is learned from.
 _MAX_SEEDS_TO_LEARN_FROM = 2000
@@ -65,26 +59,6 @@ class Calibration:
     def uniform_fill(self) -> FilledMesh | None:
         """Give the calibration holes, filled like the real ones and as densely; None without any."""
         return self.filled if self.holes is None or self.filled is not None else self.record.fill(self.holes)
-
-
-@dataclass(frozen=True)
-class _Choice:
-    """A model, and what calibration says of it.
-
-    Attributes
-    ----------
-    model : FittedCompetitors
-    blend_factor : float
-    error_model : ErrorModel or None
-        None without calibration.
-    trials : list of Trial
-        Of geometry alone, and of every model; empty without calibration.
-    """
-
-    model: FittedCompetitors
-    blend_factor: float = PRIOR_BLEND_FACTOR
-    error_model: ErrorModel | None = None
-    trials: Sequence[Trial] = ()
 
 
 def complete(
@@ -125,28 +99,36 @@ def complete(
     with stages.stage("quadrangulate"):
         seeds = lay_out(base_surface, scale)
     with stages.stage("patchify"):
-        near = seeds_near(seeds, filled.mesh.vertices[filled.n_measured_vertices :], scale.length)
-        wanted = near | _some(len(near), np.random.default_rng([options.seed, 2]))
-        around_calibration = _begin_to_sample(stages.pool, surfaces.calibration, fill, seeds, scale)
-        everywhere = surfaces.filled.patchify(base_surface, take(seeds, wanted), scale)
-        sampled = pick(everywhere, near[wanted] & is_unfolded(everywhere.patches))
+        tried = _calibration_patches(calibration, fill, surfaces.calibration, seeds, scale, stages.pool)
+        to_learn = _some(len(seeds), np.random.default_rng([options.seed, 2]))
+        shown = surfaces.filled.patchify(base_surface, take(seeds, to_learn), scale)
     with stages.stage("learn"):
-        known_patches = _without_calibration_holes(everywhere.patches, surfaces.filled)
+        known_patches = _without_calibration_holes(shown.patches, surfaces.filled)
         training_surface = partial(_training_surface, surfaces.filled, calibration, seeds, scale)
-        practice = _practice(calibration, fill, around_calibration)
-        held_out = None if practice is None else partial(pairs_of, practice.sampled, practice.holes.truth)
-        undamaged = UndamagedSurface(known_patches, everywhere.base_heights, training_surface, held_out)
+        held_out = None if tried is None else tried.pairs
+        undamaged = UndamagedSurface(known_patches, shown.base_heights, training_surface, held_out)
         fitted = inpainter.fitted_to(undamaged)
         if fitted is None:
             return None
         competitors = fitted if isinstance(fitted, FittedCompetitors) else FittedCompetitors({"": fitted}, {"": 1.0})
-        choice = _Choice(competitors) if practice is None else _calibrate_models(practice, competitors)
+        choice = Choice(competitors) if tried is None else try_models(tried, competitors)
     with stages.stage("inpaint"):
-        # A model with a blend factor of 0 need not be asked.
-        predicted = choice.model.predict(sampled.patches, sampled.base_heights) if choice.blend_factor else None
+        # A model with a blend factor of 0 need not be asked: then patches that show the fills are not cut.
+        sampled = predicted = None
+        if choice.blend_factor:
+            sampled = _around_fills(filled, surfaces.filled, base_surface, seeds, scale)
+            predicted = choice.model.predict(sampled.patches, sampled.base_heights)
     with stages.stage("reconstruct"):
         completion = replace(_completion(filled, sampled, predicted, choice, scale), fitting=_fitting(competitors))
     return completion if isinstance(fitted, FittedCompetitors) else replace(completion, shares={}, trials=())
+
+
+def _around_fills(
+    filled: FilledMesh, surface: PatchSurface, base_surface: TriangleMesh, seeds: Seeds, scale: PatchScale
+) -> Sampled:
+    """Cut the patches that show fills."""
+    near = seeds_near(seeds, filled.mesh.vertices[filled.n_measured_vertices :], scale.length)
+    return unfolded(surface.patchify(base_surface, take(seeds, near), scale))
 
 
 def _fitting(competitors: FittedCompetitors) -> Fitting | None:
@@ -156,19 +138,36 @@ def _fitting(competitors: FittedCompetitors) -> Fitting | None:
 
 
 def _completion(
-    filled: FilledMesh, sampled: Sampled, predicted: FloatArray | None, choice: _Choice, scale: PatchScale
+    filled: FilledMesh, sampled: Sampled | None, predicted: FloatArray | None, choice: Choice, scale: PatchScale
 ) -> Completion:
     """Turn what a model predicts of the patches around the holes into a displacement of their fills."""
-    n_patches, unmoved = len(sampled.patches), np.zeros((len(filled.vertex_hole), 3))
-    if predicted is None:
+    unmoved = np.zeros((len(filled.vertex_hole), 3))
+    if sampled is None or predicted is None:
         nowhere = np.zeros(len(filled.disagreement), bool)
-        unchanged = choice.blend_factor, choice.error_model, scale, n_patches
+        unchanged = choice.blend_factor, choice.error_model, scale, 0
         return Completion(unmoved, None, nowhere, *unchanged, trials=choice.trials)
-    joined, agreement = _displacements(filled, sampled.patches, predicted)
+    joined, agreement = joined_displacement(filled, sampled.patches, predicted)
     displaced_holes = agreeing_holes(agreement)
     displacement = choice.blend_factor * np.where(displaced_holes[filled.vertex_hole][:, None], joined, 0.0)
-    model = choice.blend_factor, choice.error_model, scale, n_patches, dict(choice.model.shares), choice.trials
+    n_patches, shares = len(sampled.patches), dict(choice.model.shares)
+    model = choice.blend_factor, choice.error_model, scale, n_patches, shares, choice.trials
     return Completion(displacement, agreement, displaced_holes, *model)
+
+
+def _calibration_patches(
+    calibration: Calibration,
+    fill: FilledMesh | None,
+    surface: PatchSurface | None,
+    seeds: Seeds,
+    scale: PatchScale,
+    pool: ProcessPool,
+) -> CalibrationPatches | None:
+    """Begin to cut the patches that show the first calibration holes; None without any."""
+    if calibration.holes is None or fill is None or surface is None:
+        return None
+    patches = CalibrationPatches(calibration.holes, fill, surface, seeds, scale, pool)
+    patches.begin()
+    return patches
 
 
 def _surfaces(
@@ -199,69 +198,3 @@ def _some(count: int, rng: np.random.Generator) -> BoolArray:
     chosen = np.zeros(count, bool)
     chosen[rng.permutation(count)[:_MAX_SEEDS_TO_LEARN_FROM]] = True
     return chosen
-
-
-# New vertices of a fill, the surface that they belong to, and the patches that may be cut from it.
-_Cutting = tuple[Vertices, PatchSurface, Seeds, PatchScale]
-
-
-def _begin_to_sample(
-    pool: ProcessPool, surface: PatchSurface | None, fill: FilledMesh | None, seeds: Seeds, scale: PatchScale
-) -> Shared[_Cutting, Sampled] | None:
-    """Let a helper cut the patches that show the calibration holes, while this process cuts those of the real ones."""
-    if fill is None or surface is None:
-        return None
-    new = fill.mesh.vertices[fill.n_measured_vertices :]
-    return pool.begin(_sample_calibration, [(new, surface, seeds, scale)])
-
-
-def _sample_calibration(cutting: _Cutting) -> Sampled:
-    """Cut the patches that show the calibration holes."""
-    new, surface, seeds, scale = cutting
-    near = take(seeds, seeds_near(seeds, new, scale.length))
-    sampled = surface.patchify(surface.smoothed(scale), near, scale)
-    return pick(sampled, is_unfolded(sampled.patches))
-
-
-@dataclass(frozen=True)
-class _Practice:
-    """Calibration holes, their fills, and the patches that show these."""
-
-    holes: CalibrationSet
-    filled: FilledMesh
-    sampled: Sampled
-
-
-def _practice(
-    calibration: Calibration, filled: FilledMesh | None, cutting: Shared[_Cutting, Sampled] | None
-) -> _Practice | None:
-    """Wait for the patches that show the calibration holes; None without these."""
-    if calibration.holes is None or filled is None or cutting is None:
-        return None
-    (sampled,) = cutting.finish()
-    return _Practice(calibration.holes, filled, sampled)
-
-
-def _calibrate_models(practice: _Practice, competitors: FittedCompetitors) -> _Choice:
-    """Complete the calibration holes by each model and by the means of several: take what leaves the least error."""
-    holes, filled, sampled = practice.holes, practice.filled, practice.sampled
-    predicted = competitors.predict_each(sampled.patches, sampled.base_heights)
-    choices, trials = [], [Trial({}, 0.0, float(error_per_hole(holes, filled).mean()))]
-    for model in competitors.mixtures():
-        joined, agreement = _displacements(filled, sampled.patches, model.mixed(predicted))
-        joined = np.where(agreeing_holes(agreement)[filled.vertex_hole][:, None], joined, 0.0)
-        factor = choose_blend_factor(holes, filled, joined)
-        completed = filled.displaced(factor * joined)
-        trials.append(Trial(dict(model.shares), factor, float(error_per_hole(holes, completed).mean())))
-        choices.append(_Choice(model, factor, expect(holes, completed), trials))
-    best = min(range(len(choices)), key=lambda number: trials[number + 1].error)
-    return choices[best]
-
-
-def _displacements(filled: FilledMesh, patches: Patches, predicted: FloatArray) -> tuple[FloatArray, PatchAgreement]:
-    """Displacements (n_invented, 3), zero at the rims, and how far the patches agree."""
-    rim, rim_hole = rim_vertices(filled)
-    inside = displace(filled, np.flatnonzero(filled.invented_vertices), patches, predicted)
-    at_rim = displace(filled, rim, patches, predicted)
-    joined = join_at_rim(filled, inside.mean, rim, at_rim.mean)
-    return joined, measure_agreement(filled, inside, joined, rim_hole, at_rim)

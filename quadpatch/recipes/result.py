@@ -90,11 +90,14 @@ class Trial:
         Share of what they predict that is best, 0..1; 0 where geometry alone does as well.
     error : float
         Mean error of the calibration holes with that share, in mesh units.
+    n_holes : int
+        How many of the calibration holes it was tried on: a model that gains nothing on the first few is dropped.
     """
 
     shares: dict[str, float]
     blend_factor: float
     error: float
+    n_holes: int
 
 
 @dataclass(frozen=True)
@@ -115,6 +118,7 @@ class Completion:
         How large an error to expect, by calibration holes; None without calibration.
     scale : PatchScale
     n_patches : int
+        That the model completed.
     shares : dict of str to float
         Of the models that competed, by name; empty where there was one, or none was applied.
     trials : sequence of Trial

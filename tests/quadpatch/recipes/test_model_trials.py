@@ -1,0 +1,123 @@
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pytest
+
+from quadpatch.calibration.calibration_set import cut_calibration_set
+from quadpatch.filling.fairing import THIN_PLATE
+from quadpatch.filling.fill import close_holes, fair_holes
+from quadpatch.inpainters.competing import CompetingInpainters, FittedCompetitors
+from quadpatch.inpainters.dictionary import SelfDictionary
+from quadpatch.mesh.measures import mean_edge_length
+from quadpatch.options import RepairOptions
+from quadpatch.patches.layout import lay_out
+from quadpatch.patches.scale import PatchScale
+from quadpatch.processes import ProcessPool, Shared
+from quadpatch.recipes.default import inpaint
+from quadpatch.recipes.model_trials import FIRST_HOLES, CalibrationPatches, try_models
+from quadpatch.recipes.patch_surfaces import PatchSurfaces
+from quadpatch.recipes.result import Repair
+from quadpatch.stages import Stages
+from quadpatch.types import FloatArray, Patches
+from tests.quadpatch.shapes import punched, relief
+
+RELIEF = relief(120, 2.0, 0.03, 10)
+RESOLUTION = 16
+
+
+@dataclass(frozen=True)
+class Shifted:
+    """Says that the surface rises over the fill, by so many patch lengths in the middle of every patch."""
+
+    share: float
+    resolution: int = RESOLUTION
+
+    def fitted_to(self, undamaged: Any) -> "Shifted":
+        return self
+
+    def predict(self, patches: Patches, base_heights: FloatArray) -> FloatArray:
+        hill = np.hanning(self.resolution)
+        return patches.heights + self.share * patches.length * np.where(patches.known, 0.0, np.outer(hill, hill))
+
+
+class CountingPool(ProcessPool):
+    """Counts the patches that were asked for."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.counts: list[int] = []
+
+    def begin(self, function: Any, items: Any) -> "Shared[Any, Any]":
+        todo = list(items)
+        self.counts += [len(seeds.origins) for _, seeds, _ in todo]
+        return super().begin(function, todo)
+
+
+def patches_of(pool: ProcessPool) -> CalibrationPatches:
+    edge = mean_edge_length(RELIEF)
+    holes = cut_calibration_set(RELIEF, 0.2, edge, np.random.default_rng(0))
+    assert holes is not None
+    filled = fair_holes(close_holes(holes.opened, holes.loops), THIN_PLATE)
+    surface = PatchSurfaces.of_scan(filled, None, filled, edge).calibration
+    assert surface is not None
+    scale = PatchScale(0.36, RESOLUTION, 2)
+    return CalibrationPatches(holes, filled, surface, lay_out(surface.smoothed(scale), scale), scale, pool)
+
+
+def competitors(**shares: float) -> FittedCompetitors:
+    models = {name: Shifted(share) for name, share in shares.items()}
+    return FittedCompetitors(models, dict.fromkeys(models, 1.0 / len(models)))
+
+
+def test_a_model_that_loses_on_the_first_holes_is_dropped_and_the_other_patches_are_never_cut() -> None:
+    pool = CountingPool()
+    calibration = patches_of(pool)
+    choice = try_models(calibration, competitors(up=0.5, down=-0.5))
+    assert (choice.blend_factor, choice.error_model is None) == (0.0, False)
+    geometry, *others = choice.trials
+    assert (geometry.shares, geometry.n_holes) == ({}, calibration.n_holes)
+    assert [(trial.shares, trial.blend_factor, trial.n_holes) for trial in others] == [
+        ({"up": 1.0}, 0.0, FIRST_HOLES),
+        ({"down": 1.0}, 0.0, FIRST_HOLES),
+    ]
+    assert {trial.error for trial in others} == {geometry.error}
+    assert len(pool.counts) == 1
+    assert len(calibration.every.patches) > len(calibration.first.patches)
+    assert len(pool.counts) == 2
+
+
+def test_the_first_holes_are_spread_over_all_lengths_of_rims() -> None:
+    calibration = patches_of(ProcessPool())
+    first = np.flatnonzero(calibration.is_first)
+    assert len(first) == FIRST_HOLES < calibration.n_holes
+    assert (first[0], first[-1]) == (0, calibration.n_holes - 1)
+    assert np.ptp(np.diff(first)) <= 1
+
+
+PLACES = [(x, y, 0.0) for x in (-0.5, 0.1, 0.55) for y in (-0.45, 0.05, 0.5)]
+SCAN = punched(relief(160, 2.0, 0.02, 14), *PLACES, radius=0.09)
+RIVALS = CompetingInpainters({"self": SelfDictionary(), "wrong": Shifted(0.5)})  # type: ignore[dict-item]
+
+
+@pytest.fixture(scope="module")
+def alone() -> Repair:
+    return inpaint(SCAN, RIVALS, RepairOptions())
+
+
+def test_a_winner_is_not_tried_by_the_mean_with_one_that_was_dropped(alone: Repair) -> None:
+    assert alone.completion is not None
+    trials = {tuple(trial.shares): trial for trial in alone.completion.trials}
+    assert list(trials) == [(), ("self",), ("wrong",)]
+    assert trials["wrong",].n_holes == FIRST_HOLES < trials["self",].n_holes
+    assert trials["self",].error < trials[()].error
+    assert alone.completion.shares == {"self": 1.0}
+
+
+def test_repairs_have_the_same_bits_with_any_number_of_processes(alone: Repair) -> None:
+    with ProcessPool(3) as pool:
+        together = inpaint(SCAN, RIVALS, RepairOptions(), Stages(pool=pool))
+    assert together.filled.mesh.vertices.tobytes() == alone.filled.mesh.vertices.tobytes()
+    assert together.completion is not None
+    assert alone.completion is not None
+    assert together.completion.trials == alone.completion.trials
