@@ -28,11 +28,11 @@ MAX_HOLES = 24
 _ENOUGH = 16
 # Fewer holes than this decide nothing.
 MIN_HOLES = 12
-# Diameters that are tried, in diameters of the real holes, until enough find room.
-_SIZES = (1.0, 0.7, 0.5)
-
-# Surface left between a calibration hole and any other rim, in mean edge lengths: what the fairing reads.
+# Surface left between a calibration hole and any other rim, in mean edge lengths: what the fairing reads, and a ring.
 MARGIN_EDGES = 4.0
+# Diameters in diameters of the real holes, and margins, that are tried until enough holes find room. Narrower holes
+# say less of the real ones than holes without the spare ring.
+_TRIES = ((1.0, MARGIN_EDGES), (1.0, 3.0), (0.7, MARGIN_EDGES), (0.5, MARGIN_EDGES))
 
 # Points of a hole that are looked at, at least where there are as many: more of them tell the same within a percent.
 _POINTS_PER_HOLE = 1000
@@ -122,8 +122,9 @@ def cut_calibration_set(
         None where the undamaged surface has no room for enough holes.
     """
     best: tuple[MeshWithHoles, float] | None = None
-    surface, spacing = UncutSurface(mesh), Spacing(edge_length, MARGIN_EDGES * edge_length, MAX_HOLES)
-    for size in _SIZES:
+    surface = UncutSurface(mesh)
+    for size, margin in _TRIES:
+        spacing = Spacing(edge_length, margin * edge_length, MAX_HOLES)
         punched = cut_holes(surface, size * diameter, spacing, rng)
         if len(punched.loops) >= MIN_HOLES and (best is None or len(punched.loops) > len(best[0].loops)):
             best = punched, size * diameter

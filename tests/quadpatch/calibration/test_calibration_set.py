@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from quadpatch.calibration.calibration_set import (
+    MARGIN_EDGES,
     MAX_HOLES,
     MIN_HOLES,
     CalibrationSet,
@@ -14,6 +15,7 @@ from quadpatch.calibration.calibration_set import (
     error_per_hole,
     expect,
 )
+from quadpatch.calibration.synthetic_holes import Spacing, UncutSurface, cut_holes
 from quadpatch.filling.fairing import THIN_PLATE, Energy
 from quadpatch.filling.fill import fair_holes
 from quadpatch.filling.filled_mesh import FilledMesh
@@ -101,6 +103,15 @@ def test_without_room_there_is_no_calibration(mesh: TriangleMesh) -> None:
 def test_smaller_holes_are_tried_where_there_is_no_room_for_large_ones() -> None:
     calibration = some_calibration(sphere(5), diameter=0.8)
     assert calibration.diameter < 0.8
+
+
+def test_where_wide_margins_leave_no_room_narrow_ones_are_tried_before_smaller_holes() -> None:
+    rows = np.arange(-2, 3) * 0.4
+    mesh = punched(open_grid(100, 2.0), *[(x, y, 0.0) for x in rows for y in rows], radius=0.1)
+    edge = mean_edge_length(mesh)
+    wide = Spacing(edge, MARGIN_EDGES * edge)
+    assert len(cut_holes(UncutSurface(mesh), 0.2, wide, np.random.default_rng(0)).loops) < MIN_HOLES
+    assert some_calibration(mesh, diameter=0.2).diameter == 0.2
 
 
 def chosen_for(calibration: CalibrationSet, default: Energy = DEFAULT_ENERGY) -> Energy:
