@@ -27,7 +27,7 @@ from quadpatch.stages import Stages
 from quadpatch.types import BoolArray, FloatArray, Patches, TriangleMesh
 
 # Patches that a self-similar dictionary is learned from.
-_MAX_SEEDS_TO_LEARN_FROM = 2000
+_MAX_SEEDS_TO_LEARN_FROM = 1000
 
 
 @dataclass(frozen=True)

@@ -33,8 +33,10 @@ from quadpatch.recipes.result import PatchAgreement, Trial
 from quadpatch.reconstruction.displacement import displace, join_at_rim, rim_vertices
 from quadpatch.types import BoolArray, FloatArray, Patches
 
-# Calibration holes that every model is tried on.
+# Calibration holes that every model is tried on, and what it must gain there, as a share of the error: half of what it
+# must gain on all of them to be taken.
 FIRST_HOLES = 8
+_LEAST_FIRST_GAIN = 0.01
 # Blend factor of a model where the mesh has no room for calibration.
 PRIOR_BLEND_FACTOR = 0.0
 
@@ -162,13 +164,13 @@ def try_models(calibration: CalibrationPatches, competitors: FittedCompetitors) 
 
 
 def promising_models(calibration: CalibrationPatches, competitors: FittedCompetitors) -> list[str]:
-    """Name the models that gain over geometry alone in the mean of the first calibration holes, with any share."""
+    """Name the models of which some share gains 1 % over geometry alone in the mean of the first calibration holes."""
     patches, names = calibration.first.patches, []
     for name, model in competitors.members.items():
         displacement = _displacement(calibration, patches, model.predict(patches, calibration.first.base_heights))
         errors = error_by_share(calibration.holes, calibration.filled, displacement)[:, calibration.is_first]
         gain = float((errors[0] - errors[1:]).mean(axis=1).max())
-        if gain > ROUNDING * calibration.holes.diameter:
+        if gain > _LEAST_FIRST_GAIN * float(errors[0].mean()) + ROUNDING * calibration.holes.diameter:
             names.append(name)
     return names
 
