@@ -165,7 +165,7 @@ NUMBERS_OF_THE_METHOD: dict[str, set[float]] = {
         calibration_set.MIN_HOLES,
         calibration_set.MAX_HOLES,
     },
-    "quadpatch/recipes/learned_detail.py": set(calibration_set.SHARES),
+    "quadpatch/recipes/model_trials.py": set(calibration_set.SHARES),
     "quadpatch/patches/scale.py": {
         scale.HOLES_PER_LENGTH,
         scale.EDGES_PER_BIN,
