@@ -77,7 +77,9 @@ def test_without_a_word_about_the_method_models_compete_and_the_report_names_the
     assert (model["name"], model["effort"]) == ("auto", "standard")
     geometry, *others = model["trials"]
     assert geometry["models"] == {}
-    assert [set(trial["models"]) for trial in others] == [{"self"}, {BASE_NETWORK}, {"self", BASE_NETWORK}]
+    # The mean of both is tried where neither was dropped on the first calibration holes.
+    assert [set(trial["models"]) for trial in others[:2]] == [{"self"}, {BASE_NETWORK}]
+    assert [set(trial["models"]) for trial in others[2:]] in ([], [{"self", BASE_NETWORK}])
     believed = report["patches"]["believed_share"] > 0
     assert (sum(model["shares"].values()) == pytest.approx(1.0)) is believed
 

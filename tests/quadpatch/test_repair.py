@@ -191,7 +191,8 @@ def test_the_shipped_dictionary_repairs(scan_file: Path, tmp_path: Path) -> None
     report = repair_file(scan_file, tmp_path / "out.ply", "general-dictionary@1")
     assert report["model"]["kind"] == "dictionary"
     assert len(report["model"]["sha256"]) == 64
-    assert report["patches"]["count"] > 0
+    # Patches of the holes are cut where calibration believes the model.
+    assert (report["patches"]["count"] > 0) == (report["patches"]["believed_share"] > 0)
     assert report["counts"]["filled"] + report["counts"]["filled_smooth"] == 4
 
 
