@@ -14,6 +14,7 @@ from datetime import UTC, datetime
 from typing import Protocol, TypeVar
 
 from sqlalchemy import func, or_, select
+from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.orm import Session
 
 from jobkit.database.tables import JobRow, TurnRow
@@ -58,9 +59,10 @@ def next_in_turn(session: Session, now: datetime) -> str | None:
 
 def note_turn(session: Session, tenant: str, now: datetime) -> None:
     """Write that a tenant has had a turn."""
-    row = session.get(TurnRow, tenant) or TurnRow(tenant=tenant)
-    row.at = now
-    session.add(row)
+    insert = sqlite.insert if session.get_bind().dialect.name == "sqlite" else postgresql.insert
+    statement = insert(TurnRow).values(tenant=tenant, at=now)
+    # The first two turns of a tenant may come at once.
+    session.execute(statement.on_conflict_do_update(index_elements=["tenant"], set_={"at": now}))
 
 
 def last_turns(session: Session) -> dict[str, datetime]:

@@ -66,6 +66,12 @@ def test_a_job_is_started_by_one_of_many_workers(database: Database, job: Job) -
     assert_log_is_whole(database, job.id)
 
 
+def test_the_first_jobs_of_a_tenant_may_start_at_once(database: Database, new_job: NewJob) -> None:
+    ids = [Jobs(database).create(new_job)[0].id for _ in range(6)]
+    started = at_once([lambda i=i: Attempts(database).start(ids[i], f"w{i}", 60) for i in range(6)])  # type: ignore[misc]
+    assert [attempt.attempt.job_id for attempt in started] == ids
+
+
 def test_a_job_ends_in_one_way_under_competing_endings(database: Database, new_job: NewJob) -> None:
     jobs, attempts = Jobs(database), Attempts(database)
     endings = Counter[str]()
