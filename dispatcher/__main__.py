@@ -13,6 +13,7 @@ from contextlib import ExitStack, closing
 from dispatcher.loop import Dispatch
 from dispatcher.periodic_tasks import periodic_tasks
 from jobkit.database.leadership import DISPATCHER, Leadership
+from jobkit.database.quotas import default_quotas
 from jobkit.database.session import Database
 from jobkit.errors import SettingsError
 from jobkit.logs import set_up_logs
@@ -44,6 +45,7 @@ def main() -> int:
 def _run(settings: Settings, store: ObjectStore) -> None:
     with ExitStack() as stack:
         database = stack.enter_context(closing(Database(settings.effective_database_url)))
+        database = database.limited(default_quotas(settings))
         database.migrate()
         redis_url = settings.redis_url.get_secret_value()
         queue = stack.enter_context(closing(TaskQueue(redis_url, settings.queue_name, settings.job_time_limit_s)))

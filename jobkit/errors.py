@@ -12,6 +12,7 @@
     │   ├── UploadNotFoundError     upload_not_found      no upload has that id, or it has expired
     │   ├── DeliveryNotFoundError   delivery_not_found    the subscription has no such delivery, or no longer
     │   ├── KeyNotFoundError        key_not_found
+    │   ├── TenantNotFoundError     tenant_not_found      no key names that tenant, and nothing was set for it
     │   ├── ResultMissingError      result_missing        the job has a result, but the store has lost its file
     │   └── ObjectNotFoundError     object_not_found      the store holds nothing under that key
     ├── ConflictError
@@ -32,6 +33,7 @@
     │   ├── UploadNotFinishedError  upload_not_finished   a partial upload that is to be joined is not whole
     │   ├── TooManyWebhooksError    too_many_webhooks     as many subscriptions as there may be
     │   ├── WebhookDisabledError    webhook_disabled      nothing is sent to a subscription that is switched off
+    │   ├── OperatorTenantError     operator_tenant       the operator's own tenant can't be disabled
     │   ├── KeyRevokedError         key_revoked           the key was revoked; it can't be rotated
     │   ├── DeliveryPendingError    delivery_pending      a delivery that is still under way can't be repeated
     │   └── HostUnknownError        webhook_host_unknown  the name in a subscription's URL has no address
@@ -42,6 +44,11 @@
     ├── UploadFinalError            upload_is_final       bytes come for an upload that joins others
     ├── TooManyUploadsError         too_many_uploads      as many open uploads as there may be
     ├── StoreFullError              store_full            the disk has no room for an upload of that size
+    ├── QuotaError
+    │   ├── JobQuotaError           quota_jobs            as many jobs of the tenant wait as may
+    │   ├── StreamQuotaError        quota_streams         as many event streams of the tenant are open as may be
+    │   ├── StorageQuotaError       quota_bytes           the tenant stores as much as it may
+    │   └── TenantBusyError         tenant_busy           as many jobs of the tenant run as may: the job waits
     ├── UnusableModelError          unusable_model        the artifact is no model
     ├── OptionsConflictError        options_conflict      options of a job exclude each other
     ├── ObjectDamagedError          object_damaged        the bytes under a key are not those that were stored
@@ -116,6 +123,12 @@ class KeyNotFoundError(NotFoundError):
     """No key has that id."""
 
     code = "key_not_found"
+
+
+class TenantNotFoundError(NotFoundError):
+    """No key names that tenant, and nothing was set for it."""
+
+    code = "tenant_not_found"
 
 
 class ResultMissingError(NotFoundError):
@@ -262,6 +275,12 @@ class WebhookDisabledError(ConflictError):
     code = "webhook_disabled"
 
 
+class OperatorTenantError(ConflictError):
+    """The operator's own tenant can't be disabled."""
+
+    code = "operator_tenant"
+
+
 class KeyRevokedError(ConflictError):
     """The key was revoked."""
 
@@ -320,6 +339,40 @@ class StoreFullError(JobkitError):
     """The disk has no room for an upload of that size."""
 
     code = "store_full"
+
+
+class QuotaError(JobkitError):
+    """A tenant has what it may have of something: `used` of `limit`."""
+
+    code = "quota_exceeded"
+
+    def __init__(self, message: str = "", limit: int = 0, used: int = 0) -> None:
+        super().__init__(message)
+        self.limit, self.used = limit, used
+
+
+class JobQuotaError(QuotaError):
+    """As many jobs of the tenant wait as may."""
+
+    code = "quota_jobs"
+
+
+class StreamQuotaError(QuotaError):
+    """As many event streams of the tenant are open as may be."""
+
+    code = "quota_streams"
+
+
+class StorageQuotaError(QuotaError):
+    """The tenant stores as much as it may."""
+
+    code = "quota_bytes"
+
+
+class TenantBusyError(QuotaError):
+    """As many jobs of the tenant run as may: the job waits."""
+
+    code = "tenant_busy"
 
 
 class UnusableModelError(JobkitError):

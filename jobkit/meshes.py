@@ -13,6 +13,7 @@ from sqlalchemy.orm import Session
 from jobkit.database.clock import shared_now, utc_now
 from jobkit.database.expiry import expiry
 from jobkit.database.job_rows import names_mesh
+from jobkit.database.quotas import admit_bytes
 from jobkit.database.readable_rows import readable
 from jobkit.database.searching import ALWAYS, Period, cursor_of, matches, older_than
 from jobkit.database.session import Database
@@ -85,21 +86,41 @@ class Meshes:
         self._database = database
         self._retention_days = retention_days
 
-    def add(self, stored: StoredObject, filename: str | None, mesh_format: Format | None) -> tuple[Mesh, bool]:
+    def add(
+        self,
+        stored: StoredObject,
+        filename: str | None,
+        mesh_format: Format | None,
+        *,
+        is_counted: bool = False,
+    ) -> tuple[Mesh, bool]:
         """Record an upload; the same bytes are the same mesh, which has its latest name.
 
         A mesh that was rejected is analysed again when it comes back under another format, or its bytes were missing.
+
+        Parameters
+        ----------
+        stored : StoredObject
+        filename : str, optional
+        mesh_format : str, optional
+        is_counted : bool
+            Whether the quota of the tenant counts these bytes already, as those of a resumable upload.
 
         Returns
         -------
         Mesh, bool
             The mesh, and whether it is new.
+
+        Raises
+        ------
+        StorageQuotaError
+            If it is new, and the tenant would store more than it may.
         """
         try:
-            return self._add(stored, filename, mesh_format)
+            return self._add(stored, filename, mesh_format, is_counted)
         except RowConflictError:
             # The same bytes arrived twice at the same moment; the other upload has written the row.
-            return self._add(stored, filename, mesh_format)
+            return self._add(stored, filename, mesh_format, is_counted)
 
     def get(self, mesh_id: str) -> Mesh:
         """Return a mesh; raise MeshNotFoundError."""
@@ -203,7 +224,9 @@ class Meshes:
         values = {"lease_until": None, "enqueued_at": None, "forgiven": MeshRow.forgiven + 1}
         self._write(analysis, values, delay_s)
 
-    def _add(self, stored: StoredObject, filename: str | None, mesh_format: Format | None) -> tuple[Mesh, bool]:
+    def _add(
+        self, stored: StoredObject, filename: str | None, mesh_format: Format | None, is_counted: bool
+    ) -> tuple[Mesh, bool]:
         now = utc_now()
         with self._database.write() as session:
             mesh_id = mesh_id_of(self._database.tenant, stored.sha256)
@@ -222,6 +245,8 @@ class Meshes:
                 row.filename = filename
             row.updated_at = row.used_at = now
             session.flush()
+            if is_new and not is_counted:
+                admit_bytes(session, stored.size_bytes)
             return self._show(session, row), is_new
 
     def _show(self, session: Session, row: MeshRow) -> Mesh:

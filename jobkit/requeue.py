@@ -11,10 +11,12 @@ from typing import Any
 from sqlalchemy import Row, exists, or_, select, update
 
 from jobkit.database.clock import shared_now
+from jobkit.database.quotas import free_places, quotas_of
 from jobkit.database.session import Database
 from jobkit.database.tables import JobRow, MeshRow, ModelRow
 from jobkit.database.tenancy import mesh_id_of, own_name
 from jobkit.jobs.timeouts import TimeLimits, end_overdue
+from jobkit.jobs.turns import is_startable
 from jobkit.meshes import MAX_ANALYSES
 from jobkit.models.proofs import give_up_proofs, parts_of, reference_of
 from jobkit.queue import TaskQueue, job_entry, mesh_entry, model_entry
@@ -24,6 +26,8 @@ from jobkit.schema import JobState, MeshProblem, MeshState, ModelState
 _OPEN_STATES = tuple(state.value for state in JobState if not state.is_terminal)
 # Between the pop and the start of the attempt an entry is in neither place.
 GRACE_S = 10.0
+# Jobs of a tenant that are looked at for one that has no entry in the queue.
+_MOST_NEXT = 32
 
 
 @dataclass(frozen=True)
@@ -90,6 +94,25 @@ def submit_job(database: Database, queue: TaskQueue, job_id: str, attempt: int, 
         )
 
 
+def submit_next(database: Database, queue: TaskQueue, tenant: str) -> None:
+    """Put the next job of a tenant into the queue, where its jobs at once have a limit and leave room for one.
+
+    Raises
+    ------
+    QueueUnavailableError
+        If Redis does not answer; `reconcile` picks the job up later.
+    """
+    with database.read() as session:
+        if not quotas_of(session, tenant).jobs_at_once or free_places(session).get(tenant) == 0:
+            return
+        query = select(JobRow.id, JobRow.attempt).where(JobRow.tenant == tenant, is_startable(shared_now(session)))
+        rows = session.execute(query.order_by(JobRow.priority, JobRow.id).limit(_MOST_NEXT)).all()
+    entries = queue.entries() if rows else set()
+    row = next((row for row in rows if _entry(row) not in entries), None)
+    if row is not None:
+        submit_job(database, queue, row.id, row.attempt)
+
+
 def submit_analysis(database: Database, queue: TaskQueue, mesh_id: str) -> None:
     """Put a mesh that waits for its analysis into the queue; nothing happens where none is due. Raises like above."""
     mesh_id = mesh_id_of(database.tenant, mesh_id)
@@ -129,8 +152,9 @@ def _is_anything_open(database: Database) -> bool:
 def _enqueue_jobs(database: Database, queue: TaskQueue, entries: set[str], now: datetime) -> int:
     with database.read() as session:
         is_due = or_(JobRow.not_before.is_(None), JobRow.not_before <= now)
-        query = select(JobRow.id, JobRow.attempt, JobRow.enqueued_at, JobRow.memory_wait_since)
+        query = select(JobRow.id, JobRow.attempt, JobRow.tenant, JobRow.enqueued_at, JobRow.memory_wait_since)
         rows = session.execute(query.where(JobRow.state == JobState.QUEUED.value, is_due).order_by(JobRow.id)).all()
+        places = free_places(session)
     waiting_jobs = sorted(
         (row for row in rows if row.memory_wait_since is not None), key=lambda row: row.memory_wait_since
     )
@@ -139,9 +163,24 @@ def _enqueue_jobs(database: Database, queue: TaskQueue, entries: set[str], now: 
         # One is enough: the worker that takes it looks which of them fit.
         missing_jobs += waiting_jobs[:1]
     missing_jobs = [row for row in missing_jobs if _entry(row) not in entries]
+    for entry_row in rows:
+        if _entry(entry_row) in entries and entry_row.tenant in places:
+            places[entry_row.tenant] -= 1
+    missing_jobs = _with_a_place(missing_jobs, places)
     for row in missing_jobs:
         submit_job(database, queue, row.id, row.attempt, at_front=row.memory_wait_since is not None)
     return len(missing_jobs)
+
+
+def _with_a_place(rows: list[Row[*tuple[Any, ...]]], places: dict[str, int]) -> list[Row[*tuple[Any, ...]]]:
+    """Leave out jobs of tenants that run as many as they may: each entry of theirs would start nothing."""
+    found = []
+    for row in rows:
+        if row.tenant in places:
+            places[row.tenant] -= 1
+        if places.get(row.tenant, 0) >= 0:
+            found.append(row)
+    return found
 
 
 def _entry(row: Row[*tuple[Any, ...]]) -> str:

@@ -54,6 +54,61 @@ class Settings(BaseSettings):
         description=f"Keys of the tenant `default` for everything, comma-separated, {MIN_KEY_LENGTH} characters or "
         "more each. Others are made by `python -m service keys create`.",
     )
+    oidc_issuer: str = Field(
+        default="",
+        pattern=r"^(https?://[^\s?#]+)?$",
+        description="Issuer of OIDC tokens that are taken besides keys, as they name it in `iss`; empty: none are.",
+    )
+    oidc_audience: str = Field(default="", description="What tokens have to name in `aud`; needed with an issuer.")
+    oidc_tenant_claim: str = Field(
+        default="tenant", min_length=1, description="Claim of a token that names the tenant."
+    )
+    oidc_scope_claim: str = Field(
+        default="scope",
+        min_length=1,
+        description="Claim of a token that names its scopes: a list, or a text with spaces in between.",
+    )
+    oidc_allowed_networks: str = Field(
+        default="",
+        description="Networks in CIDR notation, comma-separated, where the issuer may be although they are not "
+        "reachable from the whole internet; within them by http, too.",
+    )
+    tenant_stored_mb: int = Field(
+        default=102_400,
+        ge=0,
+        le=2**32,
+        description="Most MiB that a tenant stores, meshes, results, models and open uploads together; 0: no limit. "
+        "This and the next four hold for tenants for which nothing else was set, and never for the tenant `default`.",
+    )
+    tenant_jobs_waiting: int = Field(
+        default=10_000, ge=0, le=2**31, description="Most jobs of a tenant that wait for a worker; 0: no limit."
+    )
+    tenant_jobs_at_once: int = Field(
+        default=0, ge=0, le=2**31, description="Most jobs of a tenant at work at the same time; 0: no limit."
+    )
+    tenant_streams: int = Field(
+        default=100, ge=0, le=2**31, description="Most event streams of a tenant at the same time; 0: no limit."
+    )
+    tenant_requests_per_minute: int = Field(
+        default=6_000, ge=0, le=2**31, description="Most requests of a tenant within a minute; 0: no limit."
+    )
+    address_requests_per_minute: int = Field(
+        default=600,
+        ge=0,
+        le=2**31,
+        description="Most requests without a valid key within a minute from one address; 0: no limit.",
+    )
+    health_requests_per_minute: int = Field(
+        default=1_200,
+        ge=0,
+        le=2**31,
+        description="The same for `/healthz` and `/readyz`, which are counted apart; 0: no limit.",
+    )
+    disk_reserve_mb: int = Field(
+        default=512,
+        ge=0,
+        description="MiB of the disk that uploads leave free for jobs; one that would take of them is refused.",
+    )
     max_upload_mb: int = Field(default=1024, ge=1, description="Largest mesh or model, in MiB.")
     max_json_kb: int = Field(default=1024, ge=1, description="Largest JSON body, in KiB.")
     max_wait_s: float = Field(default=30.0, ge=0, le=300, description="Longest that a request may wait, in seconds.")
@@ -160,7 +215,7 @@ class Settings(BaseSettings):
     )
     metrics_open: bool = Field(default=False, description="Whether `/metrics` answers without a key.")
 
-    @field_validator("webhook_allowed_networks")
+    @field_validator("webhook_allowed_networks", "oidc_allowed_networks")
     @classmethod
     def _are_networks(cls, text: str) -> str:
         parse_networks(text)
@@ -170,6 +225,11 @@ class Settings(BaseSettings):
     def webhook_networks(self) -> Networks:
         """The networks that webhooks may be sent to besides the internet."""
         return parse_networks(self.webhook_allowed_networks)
+
+    @property
+    def oidc_networks(self) -> Networks:
+        """The networks where the issuer of tokens may be besides the internet."""
+        return parse_networks(self.oidc_allowed_networks)
 
     @property
     def effective_database_url(self) -> str:
@@ -209,6 +269,10 @@ def load_settings() -> Settings:
         raise SettingsError("; ".join(lines)) from None
     if any(len(key) < MIN_KEY_LENGTH for key in settings.key_list):
         raise SettingsError(f"{PREFIX}API_KEYS: every key needs at least {MIN_KEY_LENGTH} characters")
+    if settings.oidc_issuer and not settings.oidc_audience:
+        raise SettingsError(
+            f"{PREFIX}OIDC_AUDIENCE: an issuer needs one, or its tokens for other services would be taken"
+        )
     if settings.lease_s < 2 * settings.heartbeat_s:
         raise SettingsError(
             f"{PREFIX}LEASE_S: {settings.lease_s} s is less than two heartbeats of {settings.heartbeat_s} s"

@@ -12,6 +12,7 @@ import os
 import sys
 from contextlib import ExitStack, closing
 
+from jobkit.database.quotas import default_quotas
 from jobkit.database.session import Database
 from jobkit.errors import SettingsError
 from jobkit.logs import log_about, set_up_logs
@@ -52,6 +53,7 @@ def _run(settings: Settings, store: ObjectStore) -> int:
     n_threads = usable_threads()
     with ExitStack() as stack:
         database = stack.enter_context(closing(Database(settings.effective_database_url)))
+        database = database.limited(default_quotas(settings))
         database.migrate()
         context = Context(
             name=worker_name(os.getpid()),

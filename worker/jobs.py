@@ -8,13 +8,20 @@ import logging
 from opentelemetry.trace import SpanKind, StatusCode
 from tenacity import Retrying, retry_if_exception_type, stop_after_delay, stop_when_event_set, wait_fixed
 
-from jobkit.errors import DatabaseUnavailableError, MemoryFullError, NotFoundError, StaleAttemptError
+from jobkit.errors import (
+    DatabaseUnavailableError,
+    MemoryFullError,
+    NotFoundError,
+    StaleAttemptError,
+    TenantBusyError,
+)
 from jobkit.logs import log_about
 from jobkit.requeue import GRACE_S
 from jobkit.schema import JobState
 from worker.analyses import analyse
 from worker.context import Context, current_context
 from worker.memory import memory_given_back, submit_fitting
+from worker.places import place_given_back
 from worker.proofs import prove
 from worker.repairs import repair
 
@@ -34,11 +41,12 @@ def run_job(job_id: str) -> None:
         _log.info("%s", error)
         submit_fitting(context)
         return
-    except (StaleAttemptError, NotFoundError, DatabaseUnavailableError) as error:
+    except (StaleAttemptError, NotFoundError, DatabaseUnavailableError, TenantBusyError) as error:
         _log.info("nothing to do: %s", error)
         return
     attempt = started.attempt
     with (
+        place_given_back(context, started.tenant),
         memory_given_back(context),
         log_about(job_id=attempt.job_id, attempt=attempt.number, request_id=started.request_id),
         context.telemetry.span(

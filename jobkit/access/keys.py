@@ -17,6 +17,7 @@ from sqlalchemy.orm import Session
 from jobkit.database.access_tables import KeyRow
 from jobkit.database.clock import shared_now, utc_now
 from jobkit.database.idempotency import Idempotency, make_once
+from jobkit.database.quotas import note_tenant
 from jobkit.database.readable_rows import readable
 from jobkit.database.session import Database
 from jobkit.database.tenancy import DEFAULT_TENANT, tenant_of
@@ -133,6 +134,7 @@ def _create(session: Session, new: NewKey) -> tuple[KeyWithSecret, str]:
         created_at=utc_now(),
     )
     session.add(row)
+    note_tenant(session, row.tenant)
     session.flush()
     return _with_key(row, key), row.id
 

@@ -1,15 +1,42 @@
-"""Tables of keys, and of the audit log.
+"""Tables of tenants, of keys, of open event streams, and of the audit log.
 
 Tested in `tests/service/routes/test_keys.py`.
 """
 
 from datetime import datetime
 
-from sqlalchemy import JSON, Index, String
+from sqlalchemy import JSON, BigInteger, Index, String
 from sqlalchemy.orm import Mapped, mapped_column
 
 from jobkit.database.table_base import Base
 from jobkit.database.tenancy import Owned
+
+
+class TenantRow(Base):
+    """A tenant, and what was set for it: of each quota null is the default of the service, and 0 no limit.
+
+    The row is locked while something of the tenant is admitted; see `jobkit/database/quotas.py`.
+    """
+
+    __tablename__ = "tenants"
+    name: Mapped[str] = mapped_column(String(64), primary_key=True)
+    stored_bytes: Mapped[int | None] = mapped_column(BigInteger)
+    jobs_waiting: Mapped[int | None] = mapped_column(BigInteger)
+    jobs_at_once: Mapped[int | None] = mapped_column(BigInteger)
+    streams: Mapped[int | None] = mapped_column(BigInteger)
+    requests_per_minute: Mapped[int | None] = mapped_column(BigInteger)
+    disabled: Mapped[bool] = mapped_column(default=False)
+    created_at: Mapped[datetime]
+
+
+class StreamRow(Owned, Base):
+    """An event stream that is open; that of a killed process counts until `until`."""
+
+    __tablename__ = "streams"
+    id: Mapped[str] = mapped_column(String(40), primary_key=True)
+    process: Mapped[str] = mapped_column(String(40))
+    until: Mapped[datetime]
+    __table_args__ = (Index(None, "tenant"), Index(None, "process"))
 
 
 class KeyRow(Owned, Base):

@@ -30,6 +30,7 @@ from sqlalchemy.orm import Session
 from jobkit.database.tenancy import TenantSession
 from jobkit.database.write_queue import BUSY_TIMEOUT_MS, WriteQueue
 from jobkit.errors import DatabaseError, DatabaseUnavailableError, RowConflictError, SettingsError
+from jobkit.schema import Quotas
 from shared_rules.text import encodable
 
 # Any number, the same for all processes of this project.
@@ -72,6 +73,7 @@ class Database:
         self._writer = self._engine.execution_options(quadpatch_write=True)
         self._write_queue: AbstractContextManager[object] = nullcontext()
         self._tenant: str | None = None
+        self._quotas: Quotas | None = None
         if self._engine.dialect.name == "sqlite":
             self._write_queue = WriteQueue()
         if self._engine.dialect.name == "postgresql":
@@ -94,6 +96,12 @@ class Database:
         view._tenant = tenant
         return view
 
+    def limited(self, quotas: Quotas) -> Self:
+        """Return the same database, with quotas for all tenants for which no others were set."""
+        view = copy.copy(self)
+        view._quotas = quotas
+        return view
+
     @contextmanager
     def read(self) -> Iterator[Session]:
         """Open a session that sees one snapshot and writes nothing."""
@@ -112,7 +120,7 @@ class Database:
             yield session
 
     def _session(self, engine: Engine) -> TenantSession:
-        return TenantSession(engine, expire_on_commit=False, info={"tenant": self._tenant})
+        return TenantSession(engine, expire_on_commit=False, info={"tenant": self._tenant, "quotas": self._quotas})
 
     def ping(self) -> None:
         """Raise DatabaseUnavailableError if the database does not answer."""

@@ -59,6 +59,7 @@ class MeshRow(Owned, Base):
         Index(None, "used_at"),
         Index(None, "checked_at", "created_at"),
         Index(None, "key"),
+        Index(None, "tenant", "size_bytes"),
     )
 
 
@@ -71,7 +72,7 @@ class JobRow(Owned, Base):
     the name of the file that was uploaded for this job: the mesh itself may have another one later. `task`,
     `priority` and `reference_id`, the mesh that it learns from, are those of the spec. A queued job that did not fit
     into the memory of a machine waits since `memory_wait_since` for `needed_memory_mb`, in MiB, and `memory_wait_at` is
-    the machine that holds back others for it in the end.
+    the machine that holds back others for it in the end. `result_bytes` is the size of all files of the result.
     """
 
     __tablename__ = "jobs"
@@ -92,6 +93,7 @@ class JobRow(Owned, Base):
     model: Mapped[dict[str, Any]]
     error: Mapped[dict[str, Any] | None]
     result: Mapped[dict[str, Any] | None]
+    result_bytes: Mapped[int] = mapped_column(BigInteger, default=0, server_default="0")
     rerun_of: Mapped[str | None] = mapped_column(String(40))
     worker: Mapped[str | None] = mapped_column(String(128))
     lease_until: Mapped[datetime | None]
@@ -113,6 +115,8 @@ class JobRow(Owned, Base):
     __table_args__ = (
         Index(None, "state", "id"),
         Index(None, "tenant", "id"),
+        Index(None, "tenant", "state"),
+        Index(None, "tenant", "result_bytes"),
         Index(None, "mesh_id"),
         Index(None, "reference_id"),
         Index(None, "finished_at"),

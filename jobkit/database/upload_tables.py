@@ -33,7 +33,7 @@ class UploadRow(Owned, Base):
     created_at: Mapped[datetime]
     updated_at: Mapped[datetime]
     expires_at: Mapped[datetime]
-    __table_args__ = (Index(None, "state"), Index(None, "expires_at"))
+    __table_args__ = (Index(None, "state"), Index(None, "expires_at"), Index(None, "tenant"))
 
 
 class UploadPartRow(Base):

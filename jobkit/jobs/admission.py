@@ -31,6 +31,7 @@ from jobkit.jobs.reservations import (
     room_of,
 )
 from jobkit.jobs.transitions import update_job
+from jobkit.jobs.turns import busy_tenants
 from jobkit.schema import JobState
 
 # A job that did not fit is not tried again sooner.
@@ -148,12 +149,13 @@ class Admission:
             room, held = room_of(session, self._machine, self._worker, now), self._held(session, now)
             left_mb = room.left_mb
             found: list[_Waiting] = []
+            has_turn = _has_turn(session)
             # Where no job runs the first one starts, whatever it needs.
-            first = held or (None if room.has_job else next(iter(_waiting(session, now, 1)), None))
+            first = held or (None if room.has_job else next(iter(_waiting(session, now, 1, has_turn)), None))
             if first is not None:
                 left_mb -= first.needed_mb
                 found += [first] if left_mb >= 0 or not room.has_job else []
-            for waiting in _waiting(session, now, _MOST_FITTING, JobRow.needed_memory_mb <= left_mb):
+            for waiting in _waiting(session, now, _MOST_FITTING, has_turn, JobRow.needed_memory_mb <= left_mb):
                 if waiting.needed_mb <= left_mb and waiting != first:
                     left_mb -= waiting.needed_mb
                     found.append(waiting)
@@ -170,7 +172,7 @@ class Admission:
         """Return the job for which this machine holds back others."""
         latest = now - timedelta(seconds=self._rules.wait_s)
         is_here = JobRow.memory_wait_at == self._machine.name
-        return next(iter(_waiting(session, latest, 1, is_here)), None)
+        return next(iter(_waiting(session, latest, 1, is_here, _has_turn(session))), None)
 
     def _may_run_alone(self, session: Session, row: JobRow, needed_mb: int, room: Room, now: datetime) -> bool:
         """Tell whether the job may start without the memory that it needs, if no other job runs."""
@@ -248,6 +250,11 @@ class _Waiting:
     attempt: int
     needed_mb: int
     not_before: datetime
+
+
+def _has_turn(session: Session) -> ColumnElement[bool]:
+    """Return the condition on jobs whose tenants may run another one; the memory of others is not kept free."""
+    return JobRow.tenant.not_in(busy_tenants(session))
 
 
 def _is_waiting(latest: datetime) -> tuple[ColumnElement[bool], ...]:

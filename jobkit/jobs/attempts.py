@@ -14,9 +14,10 @@ from sqlalchemy.orm import Session
 
 from jobkit.database.clock import shared_now, utc_now
 from jobkit.database.job_rows import existing_job, to_job
+from jobkit.database.quotas import admit_attempt, check_places
 from jobkit.database.session import Database
 from jobkit.database.tables import AttemptRow, JobRow
-from jobkit.errors import JobNotFoundError, MemoryFullError, StaleAttemptError
+from jobkit.errors import JobNotFoundError, MemoryFullError, StaleAttemptError, TenantBusyError
 from jobkit.jobs.admission import Admission, Grant
 from jobkit.jobs.endings import (
     Attempt,
@@ -78,7 +79,7 @@ class Attempts:
 
         Raises
         ------
-        JobNotFoundError, MemoryFullError, StaleAttemptError
+        JobNotFoundError, MemoryFullError, StaleAttemptError, TenantBusyError
             As `start` does, for the last job that was tried.
         """
         tried: set[str] = set()
@@ -90,7 +91,7 @@ class Attempts:
                 break
             tried.add(chosen)
             # Where it has to wait for memory, or another worker was faster, it is the turn of another one.
-            with contextlib.suppress(MemoryFullError, StaleAttemptError, JobNotFoundError):
+            with contextlib.suppress(MemoryFullError, StaleAttemptError, JobNotFoundError, TenantBusyError):
                 return self.start(chosen, worker, lease_s, admission)
         return self.start(job_id, worker, lease_s, admission)
 
@@ -115,15 +116,20 @@ class Attempts:
             If the job does not fit into the memory of the worker's machine now: it waits.
         StaleAttemptError
             If the job is not queued, or not to be started yet: another worker has it, or it has ended.
+        TenantBusyError
+            If its tenant runs as many jobs as it may: it waits for the end of one.
         """
         with self._database.write() as session:
             now = shared_now(session)
             row = existing_job(session, job_id)
             if row.state != JobState.QUEUED or (row.not_before is not None and row.not_before > now):
                 raise _not_startable(row)
+            check_places(session, row.tenant)
             grant = Grant() if admission is None else admission.admit(session, row, lease_s, now)
             if grant is not None:
                 attempt = _start(session, row, worker, lease_s, now)
+                session.flush()
+                admit_attempt(session, row.tenant)
                 row = existing_job(session, job_id)
                 return StartedAttempt(attempt, to_job(row), row.tenant, row.request_id, row.traceparent, grant.limit_mb)
         raise MemoryFullError(f"job {job_id} waits for memory")

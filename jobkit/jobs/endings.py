@@ -40,7 +40,8 @@ class Ending:
 def success(result: JobResult) -> Ending:
     """Publish a result."""
     target = JobState.SUCCEEDED_WITH_WARNINGS if result.warnings else JobState.SUCCEEDED
-    values = {"result": result.model_dump(mode="json"), "percent": 100.0}
+    size_bytes = sum(file.size_bytes for file in result.files)
+    values = {"result": result.model_dump(mode="json"), "result_bytes": size_bytes, "percent": 100.0}
     return Ending(target, "succeeded", target.value, values)
 
 

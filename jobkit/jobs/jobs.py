@@ -10,6 +10,7 @@ from sqlalchemy.orm import Session
 from jobkit.database.clock import shared_now, utc_now
 from jobkit.database.idempotency import Idempotency, earlier_row, remember
 from jobkit.database.job_rows import existing_job, to_job
+from jobkit.database.quotas import admit_job
 from jobkit.database.readable_rows import readable
 from jobkit.database.session import Database
 from jobkit.database.tables import JobRow, MeshRow
@@ -83,6 +84,8 @@ class Jobs:
             If the key came before with another request.
         MeshNotFoundError, ModelNotFoundError
             If the mesh, its reference or the version of the model is not there.
+        JobQuotaError
+            If as many jobs of the tenant wait as may.
         """
         try:
             return self._create(new, idempotency)
@@ -191,6 +194,8 @@ class Jobs:
             session.flush()
             append_event(session, row.id, "queued", row.created_at, {"state": row.state, "task": row.task})
             remember(session, idempotency, job_id=row.id)
+            session.flush()
+            admit_job(session)
             return self._show(row), True
 
     def _show(self, row: JobRow) -> Job:

@@ -13,10 +13,11 @@ from collections.abc import Iterable, Mapping
 from datetime import UTC, datetime
 from typing import Protocol, TypeVar
 
-from sqlalchemy import func, or_, select
+from sqlalchemy import ColumnElement, func, or_, select
 from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.orm import Session
 
+from jobkit.database.quotas import free_places
 from jobkit.database.tables import JobRow, TurnRow
 from jobkit.schema import JobState, Priority
 
@@ -47,14 +48,27 @@ def rank_of(priority: Priority) -> int:
 
 
 def next_in_turn(session: Session, now: datetime) -> str | None:
-    """Return the job whose turn it is, of those that may start and don't wait for memory; None where there is none."""
-    is_due = or_(JobRow.not_before.is_(None), JobRow.not_before <= now)
-    is_waiting = (JobRow.state == JobState.QUEUED.value) & is_due & JobRow.memory_wait_since.is_(None)
+    """Return the job whose turn it is, of those that may start and don't wait for memory; None where there is none.
+
+    A tenant that runs as many jobs as it may has no turn.
+    """
+    is_waiting = is_startable(now) & JobRow.tenant.not_in(busy_tenants(session))
     urgent = select(func.min(JobRow.priority)).where(is_waiting).scalar_subquery()
     first = select(JobRow.tenant, func.min(JobRow.id).label("id")).where(is_waiting, JobRow.priority == urgent)
     rows = session.execute(first.group_by(JobRow.tenant)).all()
     turns = last_turns(session) if len(rows) > 1 else {}
     return min(rows, key=lambda row: (turns.get(row.tenant, _LONG_AGO), row.id)).id if rows else None
+
+
+def is_startable(now: datetime) -> ColumnElement[bool]:
+    """Return the condition on jobs that may start now and don't wait for memory."""
+    is_due = or_(JobRow.not_before.is_(None), JobRow.not_before <= now)
+    return (JobRow.state == JobState.QUEUED.value) & is_due & JobRow.memory_wait_since.is_(None)
+
+
+def busy_tenants(session: Session) -> list[str]:
+    """Return the tenants that run as many jobs as they may."""
+    return [tenant for tenant, n_free in free_places(session).items() if not n_free]
 
 
 def note_turn(session: Session, tenant: str, now: datetime) -> None:

@@ -14,6 +14,7 @@ from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
 from jobkit.database.clock import utc_now
+from jobkit.database.quotas import admit_bytes
 from jobkit.database.readable_rows import readable
 from jobkit.database.session import Database
 from jobkit.database.tables import AliasRow, DeletedModelRow, ModelRow
@@ -103,6 +104,8 @@ class Registry:
             If an alias has that name, or the name is reserved, or the version number is taken.
         UnusableModelError
             If the bytes are no model.
+        StorageQuotaError
+            If the version is new, and the tenant would store more than it may.
         """
         assure(self._database, self._store, stored.key)
         kind, artifact, full_card = self._inspect(stored, card)
@@ -275,6 +278,7 @@ class Registry:
             )
             session.add(new_row)
             session.flush()
+            admit_bytes(session, row.size_bytes)
             return to_version(session, new_row), True
 
 

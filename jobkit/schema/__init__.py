@@ -63,7 +63,7 @@ from jobkit.schema.models import (
     ModelVersion,
     ResolvedModel,
 )
-from jobkit.schema.problems import PROBLEM_MEDIA_TYPE, FieldError, Problem
+from jobkit.schema.problems import PROBLEM_MEDIA_TYPE, FieldError, Problem, ProblemQuota
 from jobkit.schema.spec import (
     Format,
     HoleRule,
@@ -87,6 +87,19 @@ from jobkit.schema.tasks import (
     RegionBox,
     RegionByProperty,
     Restoring,
+)
+from jobkit.schema.tenants import (
+    BodyLimits,
+    CallerLimits,
+    JobLimits,
+    Quotas,
+    RatePolicy,
+    Tenant,
+    TenantChanges,
+    TenantList,
+    TenantWithUse,
+    Usage,
+    Version,
 )
 from jobkit.schema.uploads import Upload, UploadKind, UploadLinks, UploadProblem, UploadState
 from jobkit.schema.webhooks import (
@@ -126,7 +139,9 @@ __all__ = [
     "AuditEntry",
     "AuditPage",
     "AutoMethod",
+    "BodyLimits",
     "BoundingBox",
+    "CallerLimits",
     "CnnMethod",
     "Delivery",
     "DeliveryDetail",
@@ -156,6 +171,7 @@ __all__ = [
     "HoleSelection",
     "Job",
     "JobError",
+    "JobLimits",
     "JobLinks",
     "JobPage",
     "JobResult",
@@ -198,6 +214,9 @@ __all__ = [
     "Preset",
     "Priority",
     "Problem",
+    "ProblemQuota",
+    "Quotas",
+    "RatePolicy",
     "Recipe",
     "Region",
     "RegionBox",
@@ -213,11 +232,17 @@ __all__ = [
     "Scope",
     "SmoothMethod",
     "Task",
+    "Tenant",
+    "TenantChanges",
+    "TenantList",
+    "TenantWithUse",
     "Upload",
     "UploadKind",
     "UploadLinks",
     "UploadProblem",
     "UploadState",
+    "Usage",
+    "Version",
     "Webhook",
     "WebhookChange",
     "WebhookEvent",

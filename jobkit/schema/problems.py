@@ -16,6 +16,13 @@ class FieldError(Response):
     code: str = Field(description="Kind of the error.", examples=["greater_than"])
 
 
+class ProblemQuota(Response):
+    """The quota that a request was refused by."""
+
+    limit: int = Field(description="What the tenant may have.", examples=[10_000])
+    used: int = Field(description="What it had.", examples=[10_000])
+
+
 class Problem(Response):
     """An error (RFC 9457)."""
 
@@ -30,3 +37,4 @@ class Problem(Response):
     )
     retryable: bool = Field(default=False, description="Whether the same request may succeed later.")
     errors: list[FieldError] = Field(default_factory=list, description="One entry per wrong field.")
+    quota: ProblemQuota | None = Field(default=None, description="Of a quota alone: how much there was of how much.")

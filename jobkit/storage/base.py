@@ -94,8 +94,13 @@ class ObjectStore(Protocol):
         """Raise StoreUnavailableError if objects can't be written."""
         ...
 
-    def has_room(self, n_bytes: int) -> bool:
-        """Tell whether the disk has room for an object that comes in parts, and is put together from them."""
+    @property
+    def is_local(self) -> bool:
+        """Whether objects lie on the disk that incoming bytes are written to."""
+        ...
+
+    def free_bytes(self) -> int:
+        """Return what is free on the disk that incoming bytes are written to."""
         ...
 
     def delete(self, key: str) -> None:

@@ -119,10 +119,15 @@ class S3Store:
             writer.write(b"0")
             writer.commit(_CHECK_KEY)
 
-    def has_room(self, n_bytes: int) -> bool:
-        """Compare with the free bytes of the scratch folder, where the whole is spooled; a bucket is never full."""
+    @property
+    def is_local(self) -> bool:
+        """Objects lie in the bucket, which is never full."""
+        return False
+
+    def free_bytes(self) -> int:
+        """Return what is free on the disk of the scratch folder, where each object is spooled as a whole."""
         with translated_os_errors():
-            return n_bytes <= shutil.disk_usage(self._scratch.folder).free
+            return shutil.disk_usage(self._scratch.folder).free
 
     def delete(self, key: str) -> None:
         """Remove the object."""

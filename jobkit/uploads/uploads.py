@@ -20,6 +20,7 @@ from sqlalchemy.orm import Session
 
 from jobkit.database.clock import shared_now
 from jobkit.database.idempotency import Idempotency, forget_made, make_once
+from jobkit.database.quotas import admit_bytes
 from jobkit.database.session import Database
 from jobkit.database.upload_tables import UploadPartRow, UploadRow
 from jobkit.errors import (
@@ -89,6 +90,8 @@ class Uploads:
             If it is larger than the limit.
         TooManyUploadsError
             If there are too many.
+        StorageQuotaError
+            If the tenant would store more than it may.
         UploadNotFoundError, UploadNotFinishedError
             If what it joins is not there, or no partial upload that is whole.
         """
@@ -199,6 +202,8 @@ class Uploads:
         session.add(row)
         session.flush()
         add_parts(session, row.id, parts)
+        session.flush()
+        admit_bytes(session, size)
         return _to_upload(row)
 
     def _end(self, upload_id: str, values: dict[str, object]) -> list[str]:

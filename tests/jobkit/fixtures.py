@@ -152,8 +152,12 @@ class AgingStore:
     def check(self) -> None:
         self._store.check()
 
-    def has_room(self, n_bytes: int) -> bool:
-        return self._store.has_room(n_bytes)
+    @property
+    def is_local(self) -> bool:
+        return self._store.is_local
+
+    def free_bytes(self) -> int:
+        return self._store.free_bytes()
 
     def delete(self, key: str) -> None:
         self.on_delete(key)

@@ -7,6 +7,7 @@ from rq import Queue
 from rq.serializers import JSONSerializer
 from sqlalchemy import update
 
+from jobkit.access.tenants import Tenants
 from jobkit.database.clock import utc_now
 from jobkit.database.session import Database
 from jobkit.database.tables import JobRow
@@ -17,7 +18,7 @@ from jobkit.jobs.timeouts import TimeLimits
 from jobkit.meshes import MAX_ANALYSES, Meshes
 from jobkit.queue import INSPECT_MESH, RUN_JOB, TaskQueue, job_entry, mesh_entry
 from jobkit.requeue import GRACE_S, reconcile, submit_analysis, submit_job
-from jobkit.schema import Job, JobState, Mesh, MeshState
+from jobkit.schema import Job, JobState, Mesh, MeshState, TenantChanges
 from jobkit.settings import Settings
 
 LIMITS = TimeLimits(queue_s=1e6, total_s=1e6, memory_mb=1000)
@@ -169,3 +170,17 @@ def test_the_password_of_the_queue_stands_in_no_error(settings: Settings) -> Non
 def test_the_connection_is_the_one_of_the_settings(queue: TaskQueue) -> None:
     assert isinstance(queue.connection, Redis)
     queue.ping()
+
+
+def test_only_so_many_jobs_of_a_tenant_come_back_as_may_run(
+    database: Database, queue: TaskQueue, rq_queue: Queue, new_job: NewJob
+) -> None:
+    jobs = [Jobs(database).create(new_job)[0].id for _ in range(6)]
+    Tenants(database).change("default", TenantChanges(jobs_at_once=3))
+    for job_id in jobs[:2]:
+        Attempts(database).start(job_id, "w", 600)
+    reconcile(database, queue, LIMITS)
+    assert [job.id for job in rq_queue.get_jobs() if job.func_name == RUN_JOB] == [job_entry(jobs[2], 1)]
+    # Nor does it get another one while that waits for a worker.
+    reconcile(database, queue, LIMITS, utc_now() + timedelta(seconds=2 * GRACE_S), takes_leases=False)
+    assert [job.id for job in rq_queue.get_jobs() if job.func_name == RUN_JOB] == [job_entry(jobs[2], 1)]

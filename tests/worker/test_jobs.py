@@ -16,6 +16,7 @@ from opentelemetry.sdk.trace.export import SimpleSpanProcessor
 from opentelemetry.sdk.trace.export.in_memory_span_exporter import InMemorySpanExporter
 from sqlalchemy import delete, select, update
 
+from jobkit.access.tenants import Tenants
 from jobkit.database.clock import utc_now
 from jobkit.database.session import Database
 from jobkit.database.tables import JobRow, ReservationRow, StageRow
@@ -23,7 +24,7 @@ from jobkit.jobs.jobs import Jobs, NewJob
 from jobkit.logs import _add_subject
 from jobkit.meshes import Meshes
 from jobkit.queue import TaskQueue, job_entry
-from jobkit.schema import Job, JobSpec, JobState, ResolvedModel
+from jobkit.schema import Job, JobError, JobSpec, JobState, ResolvedModel, TenantChanges
 from jobkit.settings import Settings
 from jobkit.storage.base import ObjectStore
 from jobkit.telemetry import Telemetry
@@ -32,6 +33,7 @@ from worker.context import Context, use_context
 from worker.engine.client import ForkServer
 from worker.jobs import run_job
 from worker.memory import memory_given_back, reserve_memory, submit_fitting
+from worker.places import place_given_back
 
 TRACE = "0af7651916cd43dd8448eb211c80319c"
 SENT = f"00-{TRACE}-b7ad6b7169203331-01"
@@ -146,6 +148,28 @@ def test_the_end_of_a_task_submits_the_jobs_that_waited_for_its_memory(context: 
     assert context.jobs.get(second.id).state is JobState.SUCCEEDED
     assert context.queue.entries() == {job_entry(first.id, 1)}
     submit_fitting(context)
+    assert context.queue.depth() == 1
+
+
+def test_the_end_of_a_job_submits_the_next_one_of_a_tenant_that_ran_what_it_may(context: Context) -> None:
+    Tenants(context.database).change("default", TenantChanges(jobs_at_once=1))
+    mesh_bytes = ply_bytes(*punched_relief(24))
+    first, second, third = (new_job(context, mesh_bytes) for _ in range(3))
+    attempt = context.attempts.start(first.id, "w-2", 600).attempt
+    # The entries of both start nothing meanwhile, and are gone then.
+    for job in (second, third):
+        run_job(job.id)
+        assert context.jobs.get(job.id).attempt == 0
+    assert context.queue.entries() == set()
+    with place_given_back(context, "default"):
+        pass
+    assert context.queue.entries() == set()
+    context.attempts.fail(attempt, JobError(code="engine_crashed", message="it died", retryable=True))
+    run_job(second.id)
+    assert context.jobs.get(second.id).state is JobState.SUCCEEDED
+    assert context.queue.entries() == {job_entry(third.id, 1)}
+    with place_given_back(context, "default"):
+        pass
     assert context.queue.depth() == 1
 
 

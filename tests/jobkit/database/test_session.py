@@ -1,7 +1,8 @@
 """Also tests `jobkit/migrations/versions/0001_first_tables.py`,
-`jobkit/migrations/versions/0002_leases_and_webhooks.py`, `jobkit/migrations/versions/0007_tasks_of_jobs.py` and
-`jobkit/migrations/versions/0010_tenants_and_keys.py`."""
+`jobkit/migrations/versions/0002_leases_and_webhooks.py`, `jobkit/migrations/versions/0007_tasks_of_jobs.py`,
+`jobkit/migrations/versions/0010_tenants_and_keys.py` and `jobkit/migrations/versions/0013_tenants.py`."""
 
+import json
 import multiprocessing
 import signal
 import threading
@@ -15,6 +16,7 @@ from alembic.migration import MigrationContext
 from sqlalchemy import func, inspect, select, text
 from sqlalchemy.exc import DataError
 
+from jobkit.access.tenants import Tenants
 from jobkit.database.session import Database
 from jobkit.database.table_base import Base
 from jobkit.database.tables import JobRow, MeshRow, ModelRow
@@ -97,6 +99,29 @@ def test_sums_of_stages_come_through_an_upgrade_and_back(empty_url: str) -> None
     with database.engine.connect() as connection:
         found = connection.execute(text("SELECT stage, count, seconds FROM stages")).all()
     assert [tuple(row) for row in found] == [rows["fill"]]
+    database.close()
+
+
+def test_tenants_that_keys_name_and_sizes_of_results_come_through_an_upgrade(empty_url: str) -> None:
+    database = Database(empty_url)
+    database.migrate("0001")
+    with database.engine.begin() as connection:
+        values = {"now": NOW if database.engine.dialect.name == "postgresql" else "2026-11-22 10:00:00.000000"}
+        for statement in ROWS_OF_0001:
+            connection.execute(text(statement), values)
+    database.migrate("0012")
+    result = json.dumps({"format": "ply", "files": [{"size_bytes": 1 << 33}, {"size_bytes": 5}]})
+    key = "INSERT INTO keys (id, name, scopes, sha256, created_at, tenant) VALUES ('k', 'x', '[]', 's', :now, 'plant')"
+    with database.engine.begin() as connection:
+        connection.execute(text("UPDATE jobs SET result = :result"), {"result": result})
+        connection.execute(text(key), values)
+    database.migrate()
+    with database.read() as session:
+        assert session.get_one(JobRow, "job_a").result_bytes == (1 << 33) + 5
+    assert [tenant.name for tenant in Tenants(database).list_all().items] == ["default", "plant"]
+    for revision in ("0012", "head"):
+        database.migrate(revision)
+    assert differences(database) == []
     database.close()
 
 
