@@ -209,7 +209,9 @@ def _raise_for_problem(response: httpx.Response) -> None:
     if not response.is_error:
         return
     error = _error_of(response)
-    if response.status_code in _TRY_AGAIN:
+    # 507 where the disk is full for now; without a time it is the quota of a tenant, which waiting does not change.
+    is_full = response.status_code == httpx.codes.INSUFFICIENT_STORAGE and "Retry-After" in response.headers
+    if response.status_code in _TRY_AGAIN or is_full:
         raise TryAgainError(error, retry_after_s(response))
     raise error
 

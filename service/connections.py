@@ -235,7 +235,7 @@ def _problem_bytes(status: HTTPStatus, code: str, detail: str) -> bytes:
         instance="urn:quadpatch:request:none",
         retryable=status == HTTPStatus.SERVICE_UNAVAILABLE,
     )
-    body = json.dumps(problem.model_dump(mode="json")).encode()
+    body = json.dumps(problem.model_dump(mode="json", exclude_none=True)).encode()
     lines = [
         f"HTTP/1.1 {status.value} {status.phrase}",
         f"content-type: {PROBLEM_MEDIA_TYPE}",

@@ -15,7 +15,7 @@ from starlette.responses import JSONResponse
 
 from jobkit import errors
 from jobkit.models import errors as model_errors
-from jobkit.schema import PROBLEM_MEDIA_TYPE, FieldError, Problem
+from jobkit.schema import PROBLEM_MEDIA_TYPE, FieldError, Problem, ProblemQuota
 from shared_rules.text import printable
 
 # The narrowest class decides; classes that are not here are faults of this service.
@@ -30,6 +30,9 @@ STATUS_BY_ERROR: Mapping[type[errors.JobkitError], HTTPStatus] = {
     errors.UploadFinalError: HTTPStatus.FORBIDDEN,
     errors.TooManyUploadsError: HTTPStatus.SERVICE_UNAVAILABLE,
     errors.StoreFullError: HTTPStatus.INSUFFICIENT_STORAGE,
+    errors.StorageQuotaError: HTTPStatus.INSUFFICIENT_STORAGE,
+    errors.JobQuotaError: HTTPStatus.TOO_MANY_REQUESTS,
+    errors.StreamQuotaError: HTTPStatus.TOO_MANY_REQUESTS,
     errors.TooLargeError: HTTPStatus.REQUEST_ENTITY_TOO_LARGE,
     errors.UnusableModelError: HTTPStatus.UNPROCESSABLE_ENTITY,
     errors.OptionsConflictError: HTTPStatus.UNPROCESSABLE_ENTITY,
@@ -47,6 +50,9 @@ _RETRY_LATER = (
     errors.StoreUnavailableError,
 )
 RETRY_AFTER_S = "2"
+# A job starts, a stream ends, the sweep makes room: that takes longer than an outage that passes.
+_RETRY_AFTER_A_WHILE_S = "10"
+_WAITING_HELPS = (errors.JobQuotaError, errors.StreamQuotaError, errors.StoreFullError)
 
 # A body of a megabyte may hold a hundred thousand wrong fields; its sender corrects some and tries again.
 MOST_FIELD_ERRORS = 50
@@ -90,6 +96,7 @@ class ProblemError(Exception):
         super().__init__(detail)
         self.status, self.code, self.detail = status, code, printable(detail)
         self.headers, self.field_errors = dict(headers or {}), list(field_errors)
+        self.quota: ProblemQuota | None = None
 
 
 def to_problem_error(error: errors.JobkitError) -> ProblemError:
@@ -98,7 +105,12 @@ def to_problem_error(error: errors.JobkitError) -> ProblemError:
         status = STATUS_BY_ERROR.get(kind)
         if status is not None:
             headers = {"Retry-After": RETRY_AFTER_S} if isinstance(error, _RETRY_LATER) else {}
-            return ProblemError(status, error.code, str(error), headers)
+            if isinstance(error, _WAITING_HELPS):
+                headers = {"Retry-After": _RETRY_AFTER_A_WHILE_S}
+            problem = ProblemError(status, error.code, str(error), headers)
+            if isinstance(error, errors.QuotaError):
+                problem.quota = ProblemQuota(limit=error.limit, used=error.used)
+            return problem
     return internal_error()
 
 
@@ -118,9 +130,13 @@ def problem_response(request: Request, error: ProblemError) -> JSONResponse:
         instance=f"urn:quadpatch:request:{getattr(request.state, 'request_id', 'unknown')}",
         retryable="Retry-After" in error.headers,
         errors=error.field_errors,
+        quota=error.quota,
     )
     return JSONResponse(
-        problem.model_dump(mode="json"), error.status.value, headers=error.headers, media_type=PROBLEM_MEDIA_TYPE
+        problem.model_dump(mode="json", exclude_none=True),
+        error.status.value,
+        headers=error.headers,
+        media_type=PROBLEM_MEDIA_TYPE,
     )
 
 

@@ -12,6 +12,7 @@ from fastapi import Depends, Request
 
 from jobkit.access.audit import AuditLog
 from jobkit.access.keys import Holder
+from jobkit.database.quotas import default_quotas
 from jobkit.database.session import Database
 from jobkit.egress import check_url
 from jobkit.jobs.attempts import Attempts
@@ -29,7 +30,9 @@ from jobkit.uploads.uploads import Uploads
 from jobkit.webhooks.deliveries import Deliveries
 from jobkit.webhooks.subscriptions import Webhooks
 from service.audit import AuditTrail
+from service.full_tenants import FullTenants
 from service.job_cache import JobCache, OwnJobs
+from service.room import DiskRoom
 from service.single_flight import SingleFlight
 from service.streams import EventStreams
 from service.waiting import Waiters
@@ -47,6 +50,8 @@ class Services:
     attempts: Attempts
     meshes: Meshes
     uploads: Uploads
+    room: DiskRoom
+    full_tenants: FullTenants
     completions: SingleFlight
     registry: Registry
     proofs: Proofs
@@ -89,7 +94,7 @@ def open_services(settings: Settings) -> Services:
     SettingsError
         If a URL names something that is not supported.
     """
-    database = Database(settings.effective_database_url)
+    database = Database(settings.effective_database_url).limited(default_quotas(settings))
     database.migrate()
     store = open_store(settings.effective_object_store_url, settings.scratch_dir)
     registry = Registry(database, store)
@@ -108,6 +113,8 @@ def open_services(settings: Settings) -> Services:
         Attempts(database),
         meshes,
         Uploads(database, settings.upload_hours, settings.max_uploads, settings.max_upload_mb << 20),
+        DiskRoom(store, database, settings.disk_reserve_mb << 20),
+        FullTenants(),
         SingleFlight(),
         registry,
         proofs,

@@ -75,10 +75,13 @@ def submit(services: Services, submission: Submission) -> tuple[Job, bool]:
         If the spec asks for more time or memory than the service grants.
     IdempotencyError
         If the key came before with another request.
+    JobQuotaError, StorageQuotaError
+        If as many jobs of the tenant wait as may, or it stores as much as it may.
     """
     idempotency = submission.idempotency
     if idempotency is not None and (earlier := services.jobs.earlier(idempotency)) is not None:
         return earlier, False
+    services.full_tenants.check(services.database)
     model = _check(services, submission.spec)
     new = NewJob(
         submission.spec.model_copy(update={"mesh_name": clean_filename(submission.spec.mesh_name)}),

@@ -56,7 +56,8 @@ def _complete(services: Services, upload: Upload) -> None:
     except _WrongDigestError:
         keys = services.uploads.fail(upload.id, _WRONG)
     else:
-        mesh, _ = register_mesh(services, uploading.Upload(stored, upload.filename, ""), None, upload.format)
+        whole = uploading.Upload(stored, upload.filename, "")
+        mesh, _ = register_mesh(services, whole, None, upload.format, is_counted=True)
         keys = services.uploads.complete(upload.id, mesh.id)
     drop_objects(services.store, keys)
 

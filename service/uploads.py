@@ -3,7 +3,7 @@
 Tested in `tests/service/routes/test_meshes.py`.
 """
 
-from collections.abc import Mapping
+from collections.abc import AsyncIterator, Mapping
 from dataclasses import dataclass, field
 from http import HTTPStatus
 from urllib.parse import unquote
@@ -12,11 +12,13 @@ from fastapi import Request
 from python_multipart.multipart import parse_options_header
 from starlette.concurrency import run_in_threadpool
 
+from jobkit.database.quotas import check_bytes
 from jobkit.errors import TooLargeError
 from jobkit.storage.base import ObjectStore, ObjectWriter, StoredObject
 from service.digests import CheckedBody, StatedDigests, decoder_of, refuse_coding
 from service.multipart import PartData, PartStart, malformed_multipart, read_parts
 from service.problems import ProblemError, invalid_request
+from service.services import Services
 
 MAX_FIELD_BYTES = 1 << 20
 # The frame of a multipart body around its file.
@@ -59,13 +61,15 @@ class Upload:
     fields: Mapping[str, bytes] = field(default_factory=dict)
 
 
-async def receive_upload(request: Request, store: ObjectStore, rules: UploadRules) -> Upload:
+async def receive_upload(request: Request, services: Services, rules: UploadRules) -> Upload:
     """Stream the request's body into the store.
 
     Raises
     ------
     TooLargeError
         If the file is larger than the limit; at once where the client has stated its size.
+    StoreFullError, StorageQuotaError
+        If the disk has no room for it, or the tenant would store more than it may.
     ProblemError
         415 for a body of another type or coding, or a part with a coding, 400 for an empty file, a broken
         multipart body, bytes that are not in their coding or a digest that does not fit, 422 for missing or unknown
@@ -79,17 +83,35 @@ async def receive_upload(request: Request, store: ObjectStore, rules: UploadRule
     most = rules.max_bytes + (_FRAME_BYTES if is_multipart else 0)
     if stated.isdecimal() and int(stated) > most:
         raise TooLargeError(f"the body has {stated} bytes; the limit is {rules.max_bytes}")
-    if is_multipart:
-        return await _receive_multipart(request, body, store, rules)
     media_type = kind.decode("latin-1")
-    if not rules.allows_raw or not (media_type in _RAW_TYPES or media_type.startswith("model/")):
+    is_raw = rules.allows_raw and (media_type in _RAW_TYPES or media_type.startswith("model/"))
+    if not (is_multipart or is_raw):
         accepted = "multipart/form-data" + (", application/octet-stream or model/*" if rules.allows_raw else "")
         raise ProblemError(
             HTTPStatus.UNSUPPORTED_MEDIA_TYPE,
             "unsupported_media_type",
             f"the body must be {accepted}; it is {media_type or 'of no stated type'}",
         )
-    return await _receive_raw(request, body, store, rules)
+    n_bytes = int(stated) if stated.isdecimal() else 0
+    await run_in_threadpool(_check_quota, services, n_bytes)
+    receive = _receive_multipart if is_multipart else _receive_raw
+    with services.room.kept(n_bytes) as room:
+        await run_in_threadpool(room.check)
+        return await receive(request, _Arriving(body, room.watch(body.stream())), services.store, rules)
+
+
+@dataclass(frozen=True)
+class _Arriving:
+    """A body, and its bytes as they are watched."""
+
+    body: CheckedBody
+    chunks: AsyncIterator[bytes]
+
+
+def _check_quota(services: Services, n_bytes: int) -> None:
+    """Refuse a file that the tenant may not store before it is sent in vain; its row decides when all of it is here."""
+    with services.database.read() as session:
+        check_bytes(session, n_bytes)
 
 
 def upload_of(request: Request, stored: StoredObject) -> Upload:
@@ -101,23 +123,23 @@ def upload_of(request: Request, stored: StoredObject) -> Upload:
     return Upload(stored, name, media_type.decode("latin-1"))
 
 
-async def _receive_raw(request: Request, body: CheckedBody, store: ObjectStore, rules: UploadRules) -> Upload:
+async def _receive_raw(request: Request, arriving: _Arriving, store: ObjectStore, rules: UploadRules) -> Upload:
     is_empty = True
     with store.writer(rules.prefix, rules.max_bytes) as writer:
-        async for chunk in body.stream():
+        async for chunk in arriving.chunks:
             is_empty = is_empty and not chunk
             await run_in_threadpool(writer.write, chunk)
         if is_empty:
             raise _empty_file()
-        body.check()
+        arriving.body.check()
         stored = await run_in_threadpool(writer.commit)
     return upload_of(request, stored)
 
 
-async def _receive_multipart(request: Request, body: CheckedBody, store: ObjectStore, rules: UploadRules) -> Upload:
+async def _receive_multipart(request: Request, arriving: _Arriving, store: ObjectStore, rules: UploadRules) -> Upload:
     with store.writer(rules.prefix, rules.max_bytes) as writer:
         sorter = _PartSorter(rules, writer)
-        async for event in read_parts(request.headers["content-type"], body.stream()):
+        async for event in read_parts(request.headers["content-type"], arriving.chunks):
             if isinstance(event, PartStart):
                 sorter.start(event)
             elif isinstance(event, PartData):
@@ -128,7 +150,7 @@ async def _receive_multipart(request: Request, body: CheckedBody, store: ObjectS
             raise _part_error(rules.file_part, "Field required", "missing")
         if sorter.is_empty:
             raise _empty_file()
-        body.check()
+        arriving.body.check()
         stored = await run_in_threadpool(writer.commit)
     return Upload(stored, sorter.filename, "", {name: bytes(value) for name, value in sorter.fields.items()})
 

@@ -94,7 +94,7 @@ CONDITIONAL = [Depends(_conditional_headers)]
 
 BINARY: Mapping[str, Any] = {"type": "string", "format": "binary"}
 FILE: Mapping[str, Any] = {**BINARY, "minLength": 1}
-_ALWAYS = (401, 403, 422, 500, 503)
+_ALWAYS = (401, 403, 422, 429, 500, 503)
 MEANINGS = {
     304: "What the entity tag names has not changed.",
     400: "The body can't be read.",
@@ -108,10 +108,11 @@ MEANINGS = {
     415: "The body is of a type that is not read here.",
     416: "The range lies outside.",
     422: "The request is not valid.",
+    429: "Too many requests, jobs or event streams of the tenant, or too many requests from the address.",
     460: "The checksum is not that of the bytes.",
     500: "A fault of the service.",
     503: "Database, store or queue do not answer.",
-    507: "The disk has no room for it.",
+    507: "The disk has no room for it, or the tenant stores what it may.",
 }
 
 

@@ -57,7 +57,7 @@ Cursor = Annotated[str | None, Query(pattern=JOB_ID_PATTERN, description="`next_
     responses={
         **ACCEPTED,
         200: {"model": Plan | Job, "description": "The plan of a dry run, or the job if it has ended already."},
-        **problems(400, 404, 409, 413, 415),
+        **problems(400, 404, 409, 413, 415, 507),
     },
 )
 async def create_job(
@@ -125,7 +125,7 @@ def cancel_job(services: ServicesDep, job_id: JobIdPath) -> Response:
     "/v1/jobs/{job_id}/rerun",
     status_code=202,
     response_model=None,
-    responses={**ACCEPTED, **_ENDED, **problems(400, 404, 409, 413, 415)},
+    responses={**ACCEPTED, **_ENDED, **problems(400, 404, 409, 413, 415, 507)},
 )
 async def rerun_job(
     services: ServicesDep,

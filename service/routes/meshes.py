@@ -104,7 +104,7 @@ def _file_headers(
     responses={
         201: {"description": "The mesh is new; a worker will analyse it.", **_UPLOADED},
         200: {"model": Mesh, "description": "The same bytes were uploaded before.", **_UPLOADED},
-        **problems(400, 404, 409, 413, 415),
+        **problems(400, 404, 409, 413, 415, 507),
     },
     openapi_extra=_UPLOAD_BODY,
     dependencies=[Depends(_file_headers)],
@@ -129,7 +129,7 @@ async def upload_mesh(
         raise MeshNotFoundError(f"there is no mesh {sha256} with its bytes; send them")
     else:
         rules = UploadRules("file", frozenset(), MESH_PREFIX, services.settings.max_upload_mb << 20)
-        upload = await receive_upload(request, services.store, rules)
+        upload = await receive_upload(request, services, rules)
     request_parts = ("upload_mesh", upload.stored.sha256, filename or upload.filename or "", format or "")
     idempotency = caller.idempotency(*request_parts)
     await run_in_threadpool(refuse_conflict, services.database, idempotency)
@@ -197,11 +197,14 @@ def _known_bytes(services: Services, sha256: str) -> StoredObject | None:
     return None if is_lost or size != mesh.size_bytes else StoredObject(key, size, sha256)
 
 
-def register_mesh(services: Services, upload: Upload, filename: str | None, given: Format | None) -> tuple[Mesh, bool]:
-    """Note an upload and ask for its analysis; return the mesh, and whether it is new."""
+def register_mesh(
+    services: Services, upload: Upload, filename: str | None, given: Format | None, *, is_counted: bool = False
+) -> tuple[Mesh, bool]:
+    """Note an upload and ask for its analysis; return the mesh, and whether it is new. `is_counted`: as for `add`."""
     assure(services.database, services.store, upload.stored.key)
     name = clean_filename(filename or upload.filename)
-    mesh, is_new = services.meshes.add(upload.stored, name, stated_format(given, name, upload.content_type))
+    mesh_format = stated_format(given, name, upload.content_type)
+    mesh, is_new = services.meshes.add(upload.stored, name, mesh_format, is_counted=is_counted)
     if mesh.state is MeshState.ANALYSING:
         request_analysis(services, mesh.id)
     return mesh, is_new

@@ -173,7 +173,7 @@ def get_model_artifact(
         201: {"description": "The version is new, and proven.", **_LOCATION},
         200: {"model": ModelVersion, "description": "The same bytes are a version of this model already.", **_LOCATION},
         202: {"model": ModelVersion, "description": "A worker is yet to prove the version.", **_LOCATION},
-        **problems(400, 409, 413, 415),
+        **problems(400, 409, 413, 415, 507),
     },
     openapi_extra=_BODY,
 )
@@ -191,7 +191,7 @@ async def publish_model(
     `Prefer: wait=N` says otherwise; after that it is 202. A version that is refused is answered with 422.
     """
     rules = UploadRules("artifact", frozenset({"card"}), MODEL_PREFIX, services.settings.max_upload_mb << 20)
-    upload = await receive_upload(request, services.store, rules)
+    upload = await receive_upload(request, services, rules)
     card = _read_card(upload.fields.get("card"))
     if shared and services.database.tenant != DEFAULT_TENANT:
         raise SharedModelError("only the operator shares models: keys of the tenant default")

@@ -50,7 +50,7 @@ _BODY: dict[str, Any] = {
     responses={
         **ACCEPTED,
         200: {**ACCEPTED[202], "description": "The job has ended already."},
-        **problems(400, 404, 409, 413, 415),
+        **problems(400, 404, 409, 413, 415, 507),
     },
     openapi_extra=_BODY,
 )
@@ -64,7 +64,7 @@ async def repair(
     """Upload a mesh in the part `mesh`, say what to do with it in the part `spec` (JSON), get a job."""
     most = services.settings.max_upload_mb << 20
     rules = UploadRules("mesh", frozenset({"spec"}), MESH_PREFIX, most, allows_raw=False)
-    upload = await receive_upload(request, services.store, rules)
+    upload = await receive_upload(request, services, rules)
     spec = _read_spec(upload.fields.get("spec", b"{}"))
     mesh, _ = await run_in_threadpool(register_mesh, services, upload, None, None)
     name = clean_filename(upload.filename)

@@ -5,6 +5,7 @@ Deferred lengths are not offered: the size of a file is known before it is sent,
 
 from datetime import datetime
 from email.utils import format_datetime
+from functools import partial
 from http import HTTPStatus
 from typing import Annotated, Any
 
@@ -12,7 +13,7 @@ from fastapi import APIRouter, Depends, Header, Path, Request
 from starlette.concurrency import run_in_threadpool
 from starlette.responses import Response
 
-from jobkit.errors import StoreFullError, TooLargeError
+from jobkit.errors import TooLargeError
 from jobkit.ids import UPLOAD_ID_PATTERN
 from jobkit.schema import Upload, UploadKind
 from jobkit.schema.uploads import EXAMPLE_UPLOAD_ID
@@ -111,7 +112,8 @@ async def create_upload(
         _refuse_body(request)
         if new.kind is UploadKind.FINAL:
             raise ProblemError(HTTPStatus.BAD_REQUEST, "unexpected_body", "an upload that joins others takes no body")
-    await run_in_threadpool(_refuse_without_room, services, new.size_bytes)
+    if new.size_bytes <= _max_bytes(services):
+        await run_in_threadpool(partial(services.room.check, new.size_bytes, is_resumable=True))
     idempotency = caller.idempotency(
         "create_upload", str(new.size_bytes), new.upload_metadata or "", new.upload_concat or ""
     )
@@ -160,7 +162,7 @@ async def get_upload(request: Request, services: ServicesDep, upload_id: UploadI
     response_class=Response,
     responses={
         204: {"description": "The bytes are stored.", "headers": _HEADERS},
-        **problems(400, 404, 409, 410, 412, 413, 415, 460),
+        **problems(400, 404, 409, 410, 412, 413, 415, 460, 507),
     },
     openapi_extra={"requestBody": {**_BODY["requestBody"], "required": True}},
     dependencies=_TUS,
@@ -216,15 +218,11 @@ def _refuse_body(request: Request) -> None:
         raise ProblemError(HTTPStatus.UNSUPPORTED_MEDIA_TYPE, "unsupported_media_type", detail)
 
 
-def _refuse_without_room(services: Services, size: int) -> None:
-    if size <= _max_bytes(services) and not services.store.has_room(size):
-        raise StoreFullError(f"the disk has no room for an upload of {size} bytes")
-
-
 async def _append(request: Request, services: Services, upload: Upload, checksum: str | None) -> Upload:
     length = request.headers.get("content-length", "")
     if length.isdecimal() and int(length) > upload.size_bytes - upload.offset_bytes:
         raise TooLargeError(f"the upload is to have {upload.size_bytes} bytes, and more are announced")
+    await run_in_threadpool(services.room.check_reserve)
     digests = StatedDigests("the body", request.headers.items())
     checks: list[Check] = [] if checksum is None else [Checksum(checksum)]
     if digests.are_stated:

@@ -30,8 +30,9 @@ def test_a_request_is_repeated_after_a_dropped_line(server: Any, answers: Any) -
     assert [body for _, _, _, body in server.requests] == [b"parts"] * 3
 
 
-def test_a_busy_service_is_asked_again_after_the_time_it_names(server: Any, answers: Any) -> None:
-    busy = answers["answer"](503, BUSY, Content_Type=PROBLEM_MEDIA_TYPE, Retry_After="1")
+@pytest.mark.parametrize("status", [429, 503, 507])
+def test_a_busy_service_is_asked_again_after_the_time_it_names(server: Any, answers: Any, status: int) -> None:
+    busy = answers["answer"](status, BUSY, Content_Type=PROBLEM_MEDIA_TYPE, Retry_After="1")
     server.answers = [busy, answers["answer"](200)]
     with Transport(server.url) as transport:
         assert transport.request("GET", "/").is_success
@@ -46,6 +47,23 @@ def test_a_service_that_stays_busy_is_reported_with_its_own_problem(server: Any,
         transport.request("GET", "/")
     assert caught.value.problem.code == "queue_unavailable"
     assert len(server.requests) == 2
+
+
+def test_a_quota_that_stays_used_up_is_told_in_the_words_of_the_service(server: Any, answers: Any) -> None:
+    full = {"status": 429, "code": "quota_jobs", "detail": "7 jobs of tenant plant-north wait; the limit is 7"}
+    problem = json.dumps({**json.loads(PROBLEM), **full, "quota": {"limit": 7, "used": 7}}).encode()
+    server.answers = [answers["answer"](429, problem, Content_Type=PROBLEM_MEDIA_TYPE, Retry_After="9999")]
+    with Transport(server.url, patience_s=GUARD_S) as transport, pytest.raises(RefusedError) as caught:
+        transport.request("POST", "/")
+    assert str(caught.value) == "7 jobs of tenant plant-north wait; the limit is 7 (quota_jobs)"
+    assert (caught.value.problem.quota and caught.value.problem.quota.limit) == 7
+
+
+def test_a_quota_that_waiting_does_not_change_is_told_at_once(server: Any, answers: Any) -> None:
+    server.answers = [answers["answer"](507, PROBLEM.replace(b"404", b"507"), Content_Type=PROBLEM_MEDIA_TYPE)]
+    with Transport(server.url, patience_s=GUARD_S) as transport, pytest.raises(RefusedError):
+        transport.request("POST", "/")
+    assert len(server.requests) == 1
 
 
 def test_a_problem_is_raised_at_once_with_its_code(server: Any, answers: Any) -> None:

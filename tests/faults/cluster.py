@@ -205,6 +205,8 @@ class Cluster:
             "QUADPATCH_HOST": self.network.host(name),
             "QUADPATCH_PORT": str(self.network.port(name)),
             "QUADPATCH_API_KEYS": API_KEY,
+            # The disks of the campaign are small.
+            "QUADPATCH_DISK_RESERVE_MB": "16",
             READY_FILE_VARIABLE: str(self._ready_file(name)),
             **thread_environment(1),
             **self._setup.environment,

@@ -26,7 +26,7 @@ SMOOTH: dict[str, Any] = {"method": "smooth"}
 # Learns from the mesh itself: seconds in native code, long enough to be killed in.
 LEARN: dict[str, Any] = {"method": "dictionary", "model": "self"}
 _ANSWER_TIMEOUT_S = 2 * GUARD_S
-_TRY_AGAIN = frozenset({429, 502, 503, 504})
+_TRY_AGAIN = frozenset({429, 502, 503, 504, 507})
 
 
 class NoAnswerError(AssertionError):

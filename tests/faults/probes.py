@@ -41,8 +41,8 @@ class Probe:
                 )
             except httpx.TransportError:
                 continue
-            if answer.status_code == httpx.codes.SERVICE_UNAVAILABLE:
-                return f"503 {answer.json()['code']}"
+            if answer.status_code in (httpx.codes.SERVICE_UNAVAILABLE, httpx.codes.INSUFFICIENT_STORAGE):
+                return f"{answer.status_code} {answer.json()['code']}"
             assert time.monotonic() < deadline, f"uploads are still accepted: {answer.status_code} {answer.text}"
             time.sleep(_PAUSE_S)
         raise AssertionError("there is no API")
