@@ -1,6 +1,6 @@
 """`python -m service` serves; with `openapi` it prints the OpenAPI document, with `settings` the table of settings.
 
-With `keys` it makes, lists, rotates and revokes keys of clients.
+With `keys` it makes, lists, rotates and revokes keys of clients, with `tenants` it sets what tenants may have.
 """
 
 import socket
@@ -16,7 +16,7 @@ from jobkit.logs import set_up_logs
 from jobkit.privacy import hide_memory
 from jobkit.settings import Settings, load_settings, settings_table
 from jobkit.telemetry import open_telemetry
-from service import key_commands
+from service import key_commands, tenant_commands
 from service.app import create_app
 from service.auth import check_exposure
 from service.connections import ConnectionLimits, limited_protocol, raise_descriptor_limit
@@ -26,7 +26,7 @@ from service.malloc import return_large_buffers
 # As of `uvicorn.run`.
 _START_FAILED = 3
 _BACKLOG = 4096
-USAGE = "usage: python -m service [openapi | settings | keys]"
+USAGE = "usage: python -m service [openapi | settings | keys | tenants]"
 
 
 def main(arguments: list[str]) -> int:
@@ -39,6 +39,8 @@ def main(arguments: list[str]) -> int:
         return 0
     if arguments[:1] == ["keys"]:
         return _with_settings(lambda settings: key_commands.run(arguments[1:], settings))
+    if arguments[:1] == ["tenants"]:
+        return _with_settings(lambda settings: tenant_commands.run(arguments[1:], settings))
     if arguments:
         sys.stderr.write(USAGE + "\n")
         return 2

@@ -64,6 +64,11 @@ def _print_new(key: KeyWithSecret) -> None:
 def _print_table(keys: Sequence[Key]) -> None:
     rows = [("ID", "TENANT", "NAME", "SCOPES", "LAST USED", "STATE")]
     rows += [(key.id, key.tenant, printable(key.name), ",".join(key.scopes), _use(key), _state(key)) for key in keys]
+    print_columns(rows)
+
+
+def print_columns(rows: Sequence[Sequence[str]]) -> None:
+    """Print a table; its first row is the head."""
     widths = [max(len(row[column]) for row in rows) for column in range(len(rows[0]))]
     for row in rows:
         sys.stdout.write("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() + "\n")

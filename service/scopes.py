@@ -67,8 +67,21 @@ OPERATIONS: Mapping[Scope, tuple[str, ...]] = {
         "restore_model_version",
         "delete_model_version",
     ),
-    Scope.ADMIN: ("create_key", "list_keys", "get_key", "rotate_key", "revoke_key", "list_audit", "metrics"),
+    Scope.ADMIN: (
+        "create_key",
+        "list_keys",
+        "get_key",
+        "rotate_key",
+        "revoke_key",
+        "list_tenants",
+        "get_tenant",
+        "change_tenant",
+        "list_audit",
+        "metrics",
+    ),
 }
+# Every key may ask what it may do.
+OF_ALL = frozenset({"get_limits", "get_version"})
 # What sends a mesh and starts a job at once needs both.
 ALSO_NEEDS: Mapping[str, Scope] = {"repair": Scope.UPLOAD}
 # Of the service itself; `service.auth.PUBLIC_PATHS` names those that need no key.
@@ -78,7 +91,7 @@ _SCOPE_OF: Mapping[str, Scope] = {name: scope for scope, names in OPERATIONS.ite
 
 def scopes_of(operation: str) -> frozenset[Scope] | None:
     """Return the scopes that an operation needs; None for one that is not known."""
-    if operation in PUBLIC:
+    if operation in PUBLIC | OF_ALL:
         return frozenset()
     scope = _SCOPE_OF.get(operation)
     if scope is None:

@@ -17,6 +17,7 @@ import anyio.to_thread
 from fastapi.sse import KEEPALIVE_COMMENT, EventSourceResponse, format_sse_event
 from starlette.types import Receive, Scope, Send
 
+from jobkit.access.stream_leases import RENEW_S, StreamLeases
 from jobkit.database.session import Database
 from jobkit.errors import DatabaseError, DatabaseUnavailableError
 from jobkit.jobs.events import NewEvents, read_new_events
@@ -38,10 +39,14 @@ _logger = logging.getLogger("service")
 
 
 class EventStream:
-    """The stream of events of one job to one client; `after` is the number of the last one."""
+    """The stream of events of one job to one client; `after` is the number of the last one.
 
-    def __init__(self, job_id: str, after: int, ping_s: float) -> None:
+    `lease` is what it is counted by for its tenant, None where it is not.
+    """
+
+    def __init__(self, job_id: str, after: int, ping_s: float, lease: str | None = None) -> None:
         self.job_id = job_id
+        self.lease = lease
         self.after = after
         self._ping_s = ping_s
         self._pending: list[bytes] = []
@@ -104,6 +109,7 @@ class EventStreams:
         self._database = database
         self._most = most
         self._ping_s = ping_s
+        self._leases = StreamLeases(database)
         self._streams: set[EventStream] = set()
         self._woken = asyncio.Event()
         self._is_closed = False
@@ -112,7 +118,24 @@ class EventStreams:
         """Count the streams that are open."""
         return len(self._streams)
 
-    def respond(self, job_id: str, after: int) -> EventSourceResponse:
+    async def respond_to(self, tenant: str, job_id: str, after: int) -> EventSourceResponse:
+        """Answer as `respond` does, and count the stream for its tenant, over all processes.
+
+        Raises
+        ------
+        StreamQuotaError
+            If the tenant has as many as it may.
+        ProblemError
+            503 if there are too many streams.
+        """
+        lease = await anyio.to_thread.run_sync(self._leases.take, tenant)
+        try:
+            return self.respond(job_id, after, lease)
+        except ProblemError:
+            await self.give_back(lease)
+            raise
+
+    def respond(self, job_id: str, after: int, lease: str | None = None) -> EventSourceResponse:
         """Answer with the events of a job that follow number `after`, until it has ended.
 
         Raises
@@ -127,7 +150,7 @@ class EventStreams:
                 f"{self._most} event streams are open, which is the limit; poll the job, or come back later",
                 {"Retry-After": RETRY_AFTER_S},
             )
-        stream = EventStream(job_id, after, self._ping_s)
+        stream = EventStream(job_id, after, self._ping_s, lease)
         self._streams.add(stream)
         self._woken.set()
         if self._is_closed:
@@ -137,6 +160,17 @@ class EventStreams:
     def remove(self, stream: EventStream) -> None:
         """Remove a stream whose client has disconnected, or has all events."""
         self._streams.discard(stream)
+
+    async def give_back(self, lease: str | None) -> None:
+        """Count a stream for its tenant no more; in an outage of the database it counts until its lease is over."""
+        if lease is None:
+            return
+        # Also where the request is canceled, as it is when its client disconnects.
+        with anyio.CancelScope(shield=True):
+            try:
+                await anyio.to_thread.run_sync(self._leases.give_back, lease)
+            except (DatabaseUnavailableError, DatabaseError) as error:
+                _logger.warning("an event stream counts until its lease is over: %r", error.__cause__ or error)
 
     def close(self) -> None:
         """End all streams; their clients come back with the number of the last event that they have."""
@@ -149,6 +183,7 @@ class EventStreams:
         """Serve streams for the length of a with block."""
         async with anyio.create_task_group() as tasks:
             tasks.start_soon(self._poll)
+            tasks.start_soon(self._renew_leases)
             yield
             self.close()
             tasks.cancel_scope.cancel()
@@ -166,6 +201,16 @@ class EventStreams:
                 await self._read_news()
             except Exception:  # the outermost handler of a task without which all streams would stop
                 _logger.exception("a look for new events failed")
+
+    async def _renew_leases(self) -> None:
+        while True:
+            await anyio.sleep(RENEW_S)
+            if not any(stream.lease for stream in self._streams):
+                continue
+            try:
+                await anyio.to_thread.run_sync(self._leases.renew)
+            except (DatabaseUnavailableError, DatabaseError) as error:
+                _logger.warning("leases of event streams are renewed later: %r", error.__cause__ or error)
 
     async def _read_news(self) -> None:
         streams = [stream for stream in self._streams if stream.has_room]
@@ -207,6 +252,7 @@ class _StreamResponse(EventSourceResponse):
             await super().__call__(scope, receive, send)
         finally:
             self._streams.remove(self._stream)
+            await self._streams.give_back(self._stream.lease)
 
 
 def _frame(event: Event) -> bytes:

@@ -10,7 +10,7 @@ from starlette.responses import Response
 
 from jobkit.schema import EventPage
 from service.routes.common import JobIdPath, json_response, problems
-from service.services import ServicesDep
+from service.services import ServicesDep, get_principal
 from service.strict_validation import StrictRoute
 
 router = APIRouter(tags=["jobs"], route_class=StrictRoute)
@@ -57,7 +57,7 @@ async def list_events(
     job = await run_in_threadpool(services.jobs.status, job_id)
     if job.state.is_terminal and known >= job.revision:
         return Response(status_code=HTTPStatus.NO_CONTENT, headers={"Vary": "Accept"})
-    return services.streams.respond(job_id, known)
+    return await services.streams.respond_to((await get_principal(request)).tenant, job_id, known)
 
 
 def accepts_stream(accept: str) -> bool:

@@ -21,7 +21,7 @@ from jobkit.database.tenancy import Owned, TenantSession
 from jobkit.schema import JobResult, ResultFile
 from jobkit.settings import Settings
 from service.app import create_app
-from service.scopes import OPERATIONS, PUBLIC, scopes_of
+from service.scopes import OF_ALL, OPERATIONS, PUBLIC, scopes_of
 from service.services import Services
 from tests.service.conftest import FILES
 
@@ -122,7 +122,9 @@ LISTS = {
     "list_audit": "items",
 }
 MAKES = {"describe_uploads", "create_upload", "upload_mesh", "repair", "publish_model", "metrics"}
-MAKES |= {"create_key", "create_webhook"}
+MAKES |= {"create_key", "create_webhook", "get_limits", "get_version"}
+# The operator's own: 403 for the keys of all others, whatever tenant is named.
+OPERATORS = {"list_tenants", "get_tenant", "change_tenant"}
 
 
 @dataclass(frozen=True)
@@ -151,13 +153,13 @@ def test_every_operation_has_a_scope() -> None:
     assert len(names) > 40
     assert [name for name in names if scopes_of(name) is None] == []
     known = [name for operations in OPERATIONS.values() for name in operations]
-    assert sorted(known) == sorted(set(names))
+    assert sorted([*known, *OF_ALL]) == sorted(set(names))
 
 
 def test_a_foreign_key_finds_nothing_on_any_route(plants: Plants) -> None:
     answers = {}
     for route in _routes():
-        if route.name in LISTS or route.name in MAKES:
+        if route.name in LISTS or route.name in MAKES or route.name in OPERATORS:
             continue
         body = _body(route.name, plants.ids)
         headers = HEADERS.get(route.name, {})
@@ -282,6 +284,18 @@ def test_a_key_does_what_its_scopes_say_and_no_more(plants: Plants) -> None:
     ):
         refused = plants.call("looker", method, path, json=body)
         assert (refused.status_code, refused.json()["code"]) == (403, "scope_missing"), path
+
+
+def test_tenants_and_their_quotas_are_the_operators(plants: Plants) -> None:
+    routes = [route for route in _routes() if route.name in OPERATORS]
+    assert len(routes) == len(OPERATORS)
+    for route in routes:
+        path = route.path.replace("{tenant}", OWN)
+        body: dict[str, Any] | None = {} if route.method == "patch" else None
+        refused = plants.call(FOREIGN, route.method, path, json=body)
+        assert (refused.status_code, refused.json()["code"]) == (403, "foreign_tenant")
+    own = plants.call(FOREIGN, "GET", "/v1/limits").json()
+    assert (own["tenant"], own["use"]["stored_bytes"], own["use"]["jobs_waiting"]) == (FOREIGN, 0, 0)
 
 
 def test_metrics_count_all_tenants_and_are_the_operators(plants: Plants) -> None:

@@ -1,4 +1,4 @@
-"""The command line, and that of keys: `service/key_commands.py`."""
+"""The command line, and those of keys and tenants: `service/key_commands.py`, `service/tenant_commands.py`."""
 
 import os
 import subprocess
@@ -81,3 +81,31 @@ def test_keys_are_made_listed_rotated_and_revoked_without_http(
         with pytest.raises(SystemExit, match="2"):
             main(["keys", "create", "x", *wrong])
         assert capsys.readouterr().err.startswith("quadpatch: argument --")
+
+
+def test_tenants_are_listed_shown_and_limited_without_http(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    monkeypatch.setenv("QUADPATCH_DATA_DIR", str(tmp_path))
+    assert main(["tenants", "show", "plant-north"]) == 1
+    assert "there is no tenant plant-north" in capsys.readouterr().err
+    assert main(["tenants", "set", "plant-north", "--jobs-waiting", "7", "--streams", "0"]) == 0
+    shown = capsys.readouterr().out
+    assert [line.split() for line in shown.splitlines() if line.startswith("jobs_waiting")] == [
+        ["jobs_waiting", "7", "yes", "0"]
+    ]
+    assert main(["tenants", "set", "plant-north", "--jobs-waiting", "default", "--disable"]) == 0
+    assert "disabled" in capsys.readouterr().out
+    assert main(["tenants", "list"]) == 0
+    table = [line.split()[0] for line in capsys.readouterr().out.splitlines()]
+    assert table == ["TENANT", "default", "plant-north"]
+    assert main(["tenants", "set", "plant-north", "--enable"]) == 0
+    assert "disabled" not in capsys.readouterr().out
+    assert main(["tenants", "set", "default", "--disable"]) == 1
+    assert main(["tenants", "set", "plant-north", "--streams", str(2**60)]) == 2
+    for wrong in (["--jobs-waiting", "many"], ["--disable", "--enable"], ["--jobs", "1"]):
+        with pytest.raises(SystemExit) as ended:
+            main(["tenants", "set", "plant-north", *wrong])
+        assert ended.value.code == 2
+    with pytest.raises(SystemExit):
+        main(["tenants", "set", "Plant North"])
