@@ -20,6 +20,7 @@ from service.handlers import install_handlers
 from service.head_requests import HeadMiddleware
 from service.metrics import StateCollector, new_registry
 from service.pacing import Pacer, PacingMiddleware
+from service.rate_limits import RateLimiter
 from service.request_context import RequestContextMiddleware
 from service.request_telemetry import RequestTelemetryMiddleware
 from service.routes import (
@@ -30,6 +31,7 @@ from service.routes import (
     health,
     jobs,
     keys,
+    limits,
     meshes,
     metrics,
     model_lifetime,
@@ -37,11 +39,13 @@ from service.routes import (
     repairs,
     results,
     retention,
+    tenants,
     uploads,
     webhooks,
 )
 from service.scopes import check_scope
 from service.services import open_services
+from service.shares import SharesMiddleware
 from service.tus import TusMiddleware
 
 
@@ -73,10 +77,11 @@ def create_app(settings: Settings, telemetry: Telemetry | None = None) -> FastAP
     app.state.settings = settings
     app.state.max_json_bytes = settings.max_json_kb << 10
     app.state.registry = new_registry()
+    app.state.rates = RateLimiter(settings, app.state.registry)
     app.state.readiness = CachedAnswer(READINESS_CACHE_S)
     app.state.documents = {}
     app.state.telemetry = telemetry or Telemetry()
-    about_access = (keys, audit)
+    about_access = (keys, tenants, limits, audit)
     about_jobs = (meshes, uploads, jobs, events, results, repairs, retention)
     modules = (*about_jobs, models, model_lifetime, webhooks, deliveries, *about_access, health, documentation, metrics)
     routers = [module.router for module in modules]
@@ -87,6 +92,7 @@ def create_app(settings: Settings, telemetry: Telemetry | None = None) -> FastAP
     # The last one added is the outermost: ids and headers also stand on the answers of the auth middleware.
     app.add_middleware(HeadMiddleware)
     app.add_middleware(BodyLimitMiddleware, most=settings.max_bodies)
+    app.add_middleware(SharesMiddleware)
     app.add_middleware(AuthMiddleware, settings=settings)
     app.add_middleware(AuditMiddleware)
     app.add_middleware(TusMiddleware)
@@ -111,5 +117,6 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     finally:
         app.state.registry.unregister(collector)
         services.close()
+        await app.state.rates.close()
         # Here, since uvicorn ends the process by the signal that it got.
         app.state.telemetry.close()

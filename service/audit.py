@@ -13,6 +13,7 @@ from collections import deque
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from datetime import UTC, datetime
+from http import HTTPStatus
 
 import anyio.to_thread
 from cachetools import TTLCache
@@ -104,7 +105,8 @@ class AuditMiddleware:
         try:
             await self._app(scope, receive, send_and_look)
         finally:
-            if scope["method"] not in _READING or status in _REFUSALS:
+            # What was too much changed nothing, and one who asks too often must not fill the log.
+            if status != HTTPStatus.TOO_MANY_REQUESTS and (scope["method"] not in _READING or status in _REFUSALS):
                 _note(Request(scope), status)
 
 

@@ -19,6 +19,7 @@ from jobkit.schema import Scope as KeyScope
 from jobkit.settings import Settings
 from service.host_header import Authority, parse_origin, plain_host, requested_authority
 from service.problems import ProblemError, problem_response, to_problem_error
+from service.rate_limits import RateLimiter
 
 _DOCUMENTATION = (
     "docs",
@@ -140,6 +141,8 @@ class AuthMiddleware:
             request.state.principal = await self._principal(request)
         except (ProblemError, JobkitError) as error:
             problem = error if isinstance(error, ProblemError) else to_problem_error(error)
+            if problem.status == HTTPStatus.UNAUTHORIZED:
+                problem = await _counted(request, problem)
             await problem_response(request, problem)(scope, receive, send)
             return
         await self._app(scope, receive, send)
@@ -184,6 +187,21 @@ class AuthMiddleware:
             raise ProblemError(
                 HTTPStatus.FORBIDDEN, "foreign_origin", "pages of another origin may not change anything here"
             )
+
+
+def address_of(request: Request) -> str:
+    """Return the address that a request came from."""
+    return request.client.host if request.client else "unknown"
+
+
+async def _counted(request: Request, refusal: ProblemError) -> ProblemError:
+    """Count a request without a valid key; return its refusal, a 429 where its address has sent too many."""
+    rates: RateLimiter = request.app.state.rates
+    try:
+        refusal.headers |= await rates.count(rates.address, address_of(request))
+    except ProblemError as error:
+        return error
+    return refusal
 
 
 def presented_key(request: Request) -> str:

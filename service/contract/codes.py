@@ -5,7 +5,7 @@ Tested in `tests/test_documents.py`.
 
 from collections.abc import Iterator, Mapping
 
-from jobkit.errors import ConflictError, JobkitError, NotFoundError
+from jobkit.errors import ConflictError, JobkitError, NotFoundError, QuotaError
 from service.problems import STATUS_BY_ERROR
 
 # Those that the service gives by itself; the others belong to errors of the contract.
@@ -21,6 +21,8 @@ OWN_CODES = (
     "internal_error",
     "invalid_host",
     "invalid_request",
+    "invalid_token",
+    "issuer_unavailable",
     "malformed_body",
     "malformed_digest",
     "malformed_encoding",
@@ -31,9 +33,12 @@ OWN_CODES = (
     "not_ready",
     "precondition_failed",
     "range_not_satisfiable",
+    "rate_limited",
     "request_timeout",
     "route_not_found",
     "scope_missing",
+    "tenant_disabled",
+    "tenant_missing",
     "too_many_bodies",
     "too_many_connections",
     "too_many_streams",
@@ -58,12 +63,13 @@ EXAMPLE_CODES: Mapping[int, str] = {
     415: "unsupported_media_type",
     416: "range_not_satisfiable",
     422: "invalid_request",
+    429: "rate_limited",
     460: "checksum_mismatch",
     500: "internal_error",
     503: "database_unavailable",
     507: "store_full",
 }
-_BASES = (JobkitError, NotFoundError, ConflictError)
+_BASES = (JobkitError, NotFoundError, ConflictError, QuotaError)
 
 
 def problem_codes() -> list[str]:

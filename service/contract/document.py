@@ -60,6 +60,28 @@ _RETRY_AFTER = {
     "schema": {"type": "string", "pattern": "^[0-9]+$"},
     "example": "2",
 }
+_RATE_LIMIT = {
+    "description": "Of counted requests: `r` are left, and more in `t` seconds (draft-ietf-httpapi-ratelimit-headers).",
+    "schema": {"type": "string"},
+    "example": '"tenant";r=5997;t=43',
+}
+_RATE_POLICY = {
+    "description": "Of counted requests: the policy, `q` requests within `w` seconds.",
+    "schema": {"type": "string"},
+    "example": '"tenant";q=6000;w=60',
+}
+# The request id with every answer, the others with counted requests.
+_COMMON_HEADERS = {
+    "X-Request-Id": {"$ref": "#/components/headers/RequestId"},
+    "RateLimit": {"$ref": "#/components/headers/RateLimit"},
+    "RateLimit-Policy": {"$ref": "#/components/headers/RateLimitPolicy"},
+}
+_RETRYABLE = (
+    HTTPStatus.CONFLICT,
+    HTTPStatus.TOO_MANY_REQUESTS,
+    HTTPStatus.SERVICE_UNAVAILABLE,
+    HTTPStatus.INSUFFICIENT_STORAGE,
+)
 
 
 def install_document(app: FastAPI) -> None:
@@ -106,14 +128,19 @@ def _build(app: FastAPI) -> dict[str, Any]:
     _add_repair_spec(schemas)
     schemas["Problem"]["properties"]["code"] |= open_enum(problem_codes())
     schemas["Problem"]["properties"]["code"].pop("type")
-    components["headers"] = {"RequestId": _REQUEST_ID, "RetryAfter": _RETRY_AFTER}
+    components["headers"] = {
+        "RequestId": _REQUEST_ID,
+        "RetryAfter": _RETRY_AFTER,
+        "RateLimit": _RATE_LIMIT,
+        "RateLimitPolicy": _RATE_POLICY,
+    }
     components["responses"] = {_name_of(status): _problem(status) for status in MEANINGS if status >= 400}
     components["securitySchemes"] = {
-        "bearer": {"type": "http", "scheme": "bearer", "description": "One of the service's API keys."},
+        "bearer": {"type": "http", "scheme": "bearer", "description": "A key, or a token of the trusted issuer."},
         "api_key": {"type": "apiKey", "in": "header", "name": "X-API-Key", "description": "The same, in a header."},
     }
     document["security"] = [{"bearer": []}, {"api_key": []}]
-    if not app.state.settings.key_list:
+    if not (app.state.settings.key_list or app.state.settings.oidc_issuer):
         document["security"].append({})  # as it stands, no key is asked for
     public = public_paths(app.state.settings)
     for path, operation in _operations(document["paths"]):
@@ -124,7 +151,7 @@ def _build(app: FastAPI) -> dict[str, Any]:
         _complete(operation, schemas)
         for response in operation["responses"].values():
             if "$ref" not in response:
-                response.setdefault("headers", {})["X-Request-Id"] = {"$ref": "#/components/headers/RequestId"}
+                response["headers"] = response.get("headers", {}) | _COMMON_HEADERS
     for _, operation in _operations(document["webhooks"]):
         operation["security"] = []
         operation["responses"].pop("422")
@@ -167,8 +194,8 @@ def _share_problems(responses: dict[str, Any], shared: Mapping[str, Any]) -> Non
 
 def _problem(status: int) -> dict[str, Any]:
     """Return an error that operations share; problems have a media type of their own."""
-    headers = {"X-Request-Id": {"$ref": "#/components/headers/RequestId"}}
-    if status in (HTTPStatus.CONFLICT, HTTPStatus.SERVICE_UNAVAILABLE):
+    headers = dict(_COMMON_HEADERS)
+    if status in _RETRYABLE:
         headers["Retry-After"] = {"$ref": "#/components/headers/RetryAfter"}
     code, title = EXAMPLE_CODES[status], _phrase(status)
     example = Problem(
@@ -178,9 +205,9 @@ def _problem(status: int) -> dict[str, Any]:
         code=code,
         detail=MEANINGS[status],
         instance="urn:quadpatch:request:d63eb55a-11a0-4400-a36b-f9604e3cf4a3",
-        retryable=status == HTTPStatus.SERVICE_UNAVAILABLE,
+        retryable=status in (HTTPStatus.TOO_MANY_REQUESTS, HTTPStatus.SERVICE_UNAVAILABLE),
     )
-    content = {"schema": {"$ref": f"{REFERENCE}Problem"}, "example": example.model_dump(mode="json")}
+    content = {"schema": {"$ref": f"{REFERENCE}Problem"}, "example": example.model_dump(mode="json", exclude_none=True)}
     return {"description": MEANINGS[status], "headers": headers, "content": {PROBLEM_MEDIA_TYPE: content}}
 
 
