@@ -1,4 +1,4 @@
-"""Authentication: API keys; without keys only requests from this machine and from pages of the same origin."""
+"""Authentication: keys and tokens; without any only requests from this machine and from pages of the same origin."""
 
 import hmac
 import ipaddress
@@ -20,6 +20,7 @@ from jobkit.settings import Settings
 from service.host_header import Authority, parse_origin, plain_host, requested_authority
 from service.problems import ProblemError, problem_response, to_problem_error
 from service.rate_limits import RateLimiter
+from service.tokens import TokenVerifier, is_token
 
 _DOCUMENTATION = (
     "docs",
@@ -43,7 +44,8 @@ _SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
 
 def check_exposure(settings: Settings) -> None:
     """Raise SettingsError where the service would listen to others without a key."""
-    if not settings.key_list and not is_loopback(settings.host) and not _has_keys(settings):
+    has_some = settings.key_list or settings.oidc_issuer
+    if not has_some and not is_loopback(settings.host) and not _has_keys(settings):
         raise SettingsError(
             f"QUADPATCH_HOST is {settings.host}, which other machines can reach, and QUADPATCH_API_KEYS is empty; "
             "set keys, make one (python -m service keys create NAME), or listen on 127.0.0.1"
@@ -128,6 +130,7 @@ class AuthMiddleware:
     def __init__(self, app: ASGIApp, settings: Settings) -> None:
         self._app = app
         self._keys = KeyRing(settings.key_list)
+        self._tokens = TokenVerifier(settings) if settings.oidc_issuer else None
         self._public_paths = public_paths(settings)
         self._own_names = _LOCAL_NAMES | {plain_host(settings.host)}
 
@@ -153,7 +156,7 @@ class AuthMiddleware:
         is_needed = await self._is_needed(keys, is_public=is_public)
         if is_needed and is_public:
             return ANONYMOUS
-        holder = await self._keys.holder(presented_key(request), keys)
+        holder = await self._holder(presented_key(request), keys)
         if holder is None and not is_needed:
             self._refuse_foreign_pages(request, authority)
             return LOCAL
@@ -166,7 +169,15 @@ class AuthMiddleware:
             )
         return holder
 
+    async def _holder(self, key: str, keys: Keys) -> Holder | None:
+        # A key of the settings may have any shape.
+        if self._tokens is not None and is_token(key) and self._keys.of_settings(key) is None:
+            return await self._tokens.holder(key)
+        return await self._keys.holder(key, keys)
+
     async def _is_needed(self, keys: Keys, *, is_public: bool) -> bool:
+        if self._tokens is not None:
+            return True
         try:
             return await self._keys.is_needed(keys)
         except (DatabaseUnavailableError, DatabaseError):
