@@ -42,9 +42,9 @@ DOCUMENTS = [
 ]
 PACKAGES = ("quadpatch", "jobkit", "service", "worker", "training", "client", "onebox", "benchmarks", "tests")
 # Only bases of others; nothing raises them.
-BASES = {"quadpatch_error", "invalid_mesh", "jobkit_error", "not_found", "conflict"}
+BASES = {"quadpatch_error", "invalid_mesh", "jobkit_error", "not_found", "conflict", "quota_exceeded"}
 # They stop a process or an attempt, and reach no client.
-INNER = {"invalid_settings", "stale_attempt", "memory_full"}
+INNER = {"invalid_settings", "stale_attempt", "memory_full", "tenant_busy"}
 
 
 def read(path: str) -> str:
