@@ -6,7 +6,7 @@ attempt was lost, or that wait for memory, go to the front, since they have wait
 """
 
 import hashlib
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 
 from redis import Redis
@@ -55,6 +55,29 @@ class TaskQueue:
     def enqueue_job(self, job_id: str, attempt: int, *, at_front: bool = False) -> None:
         """Ask for an attempt at a job; `attempt` is the number that it will have. Raise QueueUnavailableError."""
         self._enqueue(RUN_JOB, job_id, job_entry(job_id, attempt), at_front=attempt > 1 or at_front)
+
+    def enqueue_jobs(self, jobs: Iterable[tuple[str, int]]) -> None:
+        """Ask for an attempt at each of many jobs, in one exchange; raise QueueUnavailableError.
+
+        Parameters
+        ----------
+        jobs : iterable of (str, int)
+            The id of each, and the number that the attempt will have. Those that had one before go to the front.
+        """
+        with _translated():
+            entries = [
+                Queue.prepare_data(
+                    RUN_JOB,
+                    args=(job_id,),
+                    timeout=self._timeout_s,
+                    result_ttl=0,
+                    failure_ttl=3600,
+                    job_id=job_entry(job_id, attempt),
+                    at_front=attempt > 1,
+                )
+                for job_id, attempt in jobs
+            ]
+            self._queue.enqueue_many(entries)
 
     def enqueue_inspection(self, mesh_id: str, attempt: int) -> None:
         """Ask for the analysis of a mesh; raise QueueUnavailableError."""

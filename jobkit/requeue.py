@@ -4,6 +4,7 @@ The queue may lose entries: a Valkey without its log, a worker killed right afte
 database and is not in the queue is put there again; a second entry is harmless, since only one can start an attempt.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 from typing import Any
@@ -28,6 +29,8 @@ _OPEN_STATES = tuple(state.value for state in JobState if not state.is_terminal)
 GRACE_S = 10.0
 # Jobs of a tenant that are looked at for one that has no entry in the queue.
 _MOST_NEXT = 32
+# Of jobs, at one time.
+MOST_ENQUEUED = 500
 
 
 @dataclass(frozen=True)
@@ -113,6 +116,23 @@ def submit_next(database: Database, queue: TaskQueue, tenant: str) -> None:
         submit_job(database, queue, row.id, row.attempt)
 
 
+def submit_jobs(database: Database, queue: TaskQueue, jobs: Sequence[tuple[str, int]]) -> None:
+    """Put many queued jobs into the queue and note when; raises as `submit_job`.
+
+    Parameters
+    ----------
+    database : Database
+    queue : TaskQueue
+    jobs : sequence of (str, int)
+        The id of each, and the attempt that it has now.
+    """
+    queue.enqueue_jobs((job_id, attempt + 1) for job_id, attempt in jobs)
+    is_waiting = JobRow.state == JobState.QUEUED.value
+    ids = [job_id for job_id, _ in jobs]
+    with database.write() as session:
+        session.execute(update(JobRow).where(JobRow.id.in_(ids), is_waiting).values(enqueued_at=shared_now(session)))
+
+
 def submit_analysis(database: Database, queue: TaskQueue, mesh_id: str) -> None:
     """Put a mesh that waits for its analysis into the queue; nothing happens where none is due. Raises like above."""
     mesh_id = mesh_id_of(database.tenant, mesh_id)
@@ -161,14 +181,19 @@ def _enqueue_jobs(database: Database, queue: TaskQueue, entries: set[str], now: 
     missing_jobs = [row for row in rows if row.memory_wait_since is None and _is_overdue(row.enqueued_at, now)]
     if not any(_entry(row) in entries for row in waiting_jobs):
         # One is enough: the worker that takes it looks which of them fit.
-        missing_jobs += waiting_jobs[:1]
+        missing_jobs = [*waiting_jobs[:1], *missing_jobs]
     missing_jobs = [row for row in missing_jobs if _entry(row) not in entries]
     for entry_row in rows:
         if _entry(entry_row) in entries and entry_row.tenant in places:
             places[entry_row.tenant] -= 1
-    missing_jobs = _with_a_place(missing_jobs, places)
-    for row in missing_jobs:
-        submit_job(database, queue, row.id, row.attempt, at_front=row.memory_wait_since is not None)
+    # The rest follows within seconds: an entry is a turn, and few of them keep all workers busy.
+    missing_jobs = _with_a_place(missing_jobs, places)[:MOST_ENQUEUED]
+    waiting = [row for row in missing_jobs if row.memory_wait_since is not None]
+    for row in waiting:
+        submit_job(database, queue, row.id, row.attempt, at_front=True)
+    others = [(row.id, row.attempt) for row in missing_jobs if row.memory_wait_since is None]
+    if others:
+        submit_jobs(database, queue, others)
     return len(missing_jobs)
 
 
