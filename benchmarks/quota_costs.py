@@ -7,7 +7,7 @@ from collections.abc import Callable
 from sqlalchemy import insert, text
 
 from jobkit.database.clock import utc_now
-from jobkit.database.quotas import admit_job, stored_bytes
+from jobkit.database.quotas import admit_jobs, stored_bytes
 from jobkit.database.session import Database
 from jobkit.database.tables import JobRow, MeshRow
 from jobkit.schema import Quotas
@@ -41,7 +41,7 @@ def main(url: str) -> None:
     own = database.of(TENANT)
     with own.write() as session:
         print(f"sum of the bytes of {2 * N} rows: {_ms(lambda: stored_bytes(session, TENANT)):.1f} ms")  # noqa: T201
-        print(f"admission of a job beside {N_WAITING}: {_ms(lambda: admit_job(session)):.1f} ms")  # noqa: T201
+        print(f"admission of a job beside {N_WAITING}: {_ms(lambda: admit_jobs(session)):.1f} ms")  # noqa: T201
     database.close()
 
 

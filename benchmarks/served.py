@@ -15,7 +15,8 @@ import psutil
 from jobkit.database.session import Database
 from jobkit.jobs.attempts import Attempts
 from jobkit.jobs.endings import Attempt
-from jobkit.jobs.jobs import Jobs, NewJob
+from jobkit.jobs.jobs import Jobs
+from jobkit.jobs.new_jobs import NewJob
 from jobkit.meshes import Meshes
 from jobkit.schema import HoleCounts, JobResult, JobSpec, ResolvedModel
 from jobkit.settings import Settings

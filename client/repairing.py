@@ -110,7 +110,7 @@ def repair(client: "Client", screen: Screen, task: Task) -> "Job":
     rest = _rest(task, "" if task.reference is None else _upload(client, screen, task.reference))
     spec = make_spec(mesh_id, task.holes, task.method, mesh_name=sent_name(task.source) or None, **rest)
     with HeldInterrupt(screen.complain) as interrupt:
-        job = client.create_job(spec) if task.again else client.create_job_once(spec)
+        job = client.create_job(spec, runs_anew=True) if task.again else client.create_job_once(spec)
         job = _wait(client, screen, job, task.timeout_s, interrupt)
     fetch(client, screen, _files(task), job)
     return job

@@ -104,7 +104,7 @@ class Client:
                 return mesh
         raise WaitTimeoutError(f"mesh {mesh_id} was not analysed within {timeout_s:g} s")
 
-    def create_job(self, spec: JobSpec, idempotency_key: str | None = None) -> Job:
+    def create_job(self, spec: JobSpec, idempotency_key: str | None = None, *, runs_anew: bool = False) -> Job:
         """Start a job. Repeated on a broken line, it is still started once.
 
         A spec without `mesh_name` takes the name of the file that this client uploaded last as that mesh.
@@ -114,6 +114,8 @@ class Client:
         spec : JobSpec
         idempotency_key : str, optional
             Give your own to be safe across a restart of your program.
+        runs_anew : bool
+            Whether it runs although an equal job has left a result.
         """
         if spec.mesh_name is None:
             spec = spec.model_copy(update={"mesh_name": self._names.get(spec.mesh_id) or None})
@@ -121,7 +123,10 @@ class Client:
             "POST",
             "/v1/jobs",
             json=spec.model_dump(mode="json"),
-            headers={"Idempotency-Key": idempotency_key or str(uuid.uuid4())},
+            headers={
+                "Idempotency-Key": idempotency_key or str(uuid.uuid4()),
+                **({"Cache-Control": "no-cache"} if runs_anew else {}),
+            },
         )
         return parse(Job, response)
 

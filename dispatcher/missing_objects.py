@@ -18,7 +18,8 @@ from jobkit.database.tables import JobRow, MeshRow, ModelRow
 from jobkit.errors import ObjectNotFoundError
 from jobkit.meshes import MESH_MISSING, is_missing, restart
 from jobkit.schema import JobState, MeshProblem, MeshState
-from jobkit.storage.base import ObjectStore, result_key
+from jobkit.storage.base import ObjectStore
+from jobkit.storage.result_files import file_keys
 
 # Rows of one kind in one look: a request each to a remote store.
 MOST = 1000
@@ -108,12 +109,12 @@ class MissingObjects:
             return "missing" if result.rowcount else ""
 
     def _lacks_files(self, row: JobRow) -> bool:
-        names = [file["name"] for file in (row.result or {}).get("files", [])]
-        if all(self._is_there(result_key(row.id, row.attempt, name)) for name in names):
+        if all(map(self._is_there, file_keys(row))):
             return False
-        with self._database.read() as session:
-            # No files are missing where the job was deleted meanwhile.
-            return session.scalars(select(JobRow.id).where(JobRow.id == row.id)).first() is not None
+        with self._database.write() as session:
+            # No files are missing where the job was deleted meanwhile. No other job takes over what is left.
+            result: Any = session.execute(update(JobRow).where(JobRow.id == row.id).values(fingerprint=None))
+            return bool(result.rowcount)
 
     def _is_there(self, key: str) -> bool:
         try:

@@ -12,19 +12,19 @@ from dataclasses import dataclass
 from datetime import datetime, timedelta
 from typing import Any
 
-from sqlalchemy import ColumnElement, CursorResult, Select, select, update
+from sqlalchemy import ColumnElement, CursorResult, Select, or_, select, update
 from sqlalchemy.orm import Session
 
 from dispatcher.backoff import next_delay_s
 from dispatcher.sending import Answer, Outgoing
 from jobkit.database.clock import shared_now
 from jobkit.database.session import Database
-from jobkit.database.tables import DeliveryRow, DeliveryTryRow, WebhookRow
+from jobkit.database.tables import CallbackSecretRow, DeliveryRow, DeliveryTryRow, WebhookRow
 from jobkit.schema import DeliveryState
 from jobkit.webhooks.deliveries import message_id
 from jobkit.webhooks.subscriptions import give_up_pending
 
-MAX_PER_WEBHOOK = 4
+MAX_PER_RECEIVER = 4
 # A subscription that has failed for this long when a message is given up is disabled.
 DISABLE_AFTER = timedelta(days=3)
 _BATCH = 100
@@ -32,10 +32,10 @@ _BATCH = 100
 
 @dataclass(frozen=True)
 class Claim:
-    """The right to send a delivery once."""
+    """The right to send a delivery once; `receiver` is the id of the subscription, where there is one."""
 
     delivery_id: str
-    webhook_id: str
+    receiver: str
     number: int
     at: datetime
     outgoing: Outgoing
@@ -56,7 +56,7 @@ def claim_due(database: Database, most: int, at_work: Mapping[str, int], claim_s
     most : int
         Most claims.
     at_work : mapping of str to int
-        How many deliveries to each subscriber are being sent now; none gets more than MAX_PER_WEBHOOK at a time, so a
+        How many deliveries to each receiver are being sent now; none gets more than MAX_PER_RECEIVER at a time, so a
         slow one holds up no other.
     claim_s : float
         Seconds after which a delivery without an answer is due again.
@@ -67,12 +67,13 @@ def claim_due(database: Database, most: int, at_work: Mapping[str, int], claim_s
     with database.write() as session:
         now = shared_now(session)
         while len(claims) < most:
-            busy_ids = [webhook_id for webhook_id, count in n_sending.items() if count >= MAX_PER_WEBHOOK]
-            rows = session.execute(_due(now, busy_ids).limit(_BATCH)).all()
-            for delivery, webhook in rows:
-                if len(claims) < most and n_sending[webhook.id] < MAX_PER_WEBHOOK:
-                    claims += _claim(session, delivery, webhook, now, claim_s)
-                    n_sending[webhook.id] += 1
+            busy = [receiver for receiver, count in n_sending.items() if count >= MAX_PER_RECEIVER]
+            rows = session.execute(_due(now, busy).limit(_BATCH)).all()
+            for delivery, webhook, secret in rows:
+                signer = webhook or secret
+                if signer is not None and len(claims) < most and n_sending[delivery.receiver] < MAX_PER_RECEIVER:
+                    claims += _claim(session, delivery, signer, now, claim_s)
+                    n_sending[delivery.receiver] += 1
             if len(rows) < _BATCH:
                 break
     return claims
@@ -92,9 +93,9 @@ def note_answer(database: Database, claim: Claim, answer: Answer, chance: float)
     with database.write() as session:
         now = shared_now(session)
         # The subscription before the delivery, as all code that writes both: else two writers wait for each other.
-        query = select(WebhookRow).where(WebhookRow.id == claim.webhook_id).with_for_update()
+        query = select(WebhookRow).where(WebhookRow.id == claim.receiver).with_for_update()
         webhook = session.scalars(query).one_or_none()
-        if webhook is None or session.get(DeliveryRow, claim.delivery_id) is None:
+        if session.get(DeliveryRow, claim.delivery_id) is None:
             return
         session.add(
             DeliveryTryRow(
@@ -106,45 +107,54 @@ def note_answer(database: Database, claim: Claim, answer: Answer, chance: float)
                 milliseconds=answer.milliseconds,
             )
         )
+        if webhook is not None:
+            webhook.failing_since = None if answer.is_delivered else webhook.failing_since or now
         if answer.is_delivered:
-            webhook.failing_since = None
             _end(session, claim, DeliveryState.DELIVERED, now)
             return
-        webhook.failing_since = webhook.failing_since or now
         delay_s = None if answer.is_gone else next_delay_s(claim.number, chance, answer.retry_after_s)
         if delay_s is not None:
             _write(session, claim, {"next_try_at": now + timedelta(seconds=delay_s)}, *_still_mine(claim))
             return
         is_given_up = _end(session, claim, DeliveryState.DEAD, now, *_still_mine(claim))
-        if is_given_up and (answer.is_gone or webhook.failing_since <= now - DISABLE_AFTER):
+        if webhook is None or not is_given_up:
+            return
+        if answer.is_gone or (webhook.failing_since or now) <= now - DISABLE_AFTER:
             webhook.enabled, webhook.updated_at = False, now
             give_up_pending(session, webhook.id)
 
 
-def _due(now: datetime, busy_ids: list[str]) -> Select[DeliveryRow, WebhookRow]:
-    query = select(DeliveryRow, WebhookRow).join(WebhookRow, WebhookRow.id == DeliveryRow.webhook_id)
+def _due(now: datetime, busy: list[str]) -> Select[DeliveryRow, WebhookRow | None, CallbackSecretRow | None]:
+    query = (
+        select(DeliveryRow, WebhookRow, CallbackSecretRow)
+        .outerjoin(WebhookRow, WebhookRow.id == DeliveryRow.webhook_id)
+        .outerjoin(CallbackSecretRow, CallbackSecretRow.tenant == DeliveryRow.tenant)
+    )
     return query.where(
-        WebhookRow.enabled,
+        or_(WebhookRow.enabled, DeliveryRow.callback_url.is_not(None)),
         DeliveryRow.state == DeliveryState.PENDING.value,
         DeliveryRow.next_try_at <= now,
-        DeliveryRow.webhook_id.not_in(busy_ids),
+        DeliveryRow.receiver.not_in(busy),
     ).order_by(DeliveryRow.next_try_at, DeliveryRow.id)
 
 
-def _claim(session: Session, delivery: DeliveryRow, webhook: WebhookRow, now: datetime, claim_s: float) -> list[Claim]:
+def _claim(
+    session: Session, delivery: DeliveryRow, signer: WebhookRow | CallbackSecretRow, now: datetime, claim_s: float
+) -> list[Claim]:
     """Return the claim, an empty list where another dispatcher has it."""
     number = delivery.tries + 1
-    outgoing = Outgoing(webhook.url, message_id(delivery), _secrets(webhook, now), _body(delivery.payload))
-    claim = Claim(delivery.id, webhook.id, number, now, outgoing)
+    url = signer.url if isinstance(signer, WebhookRow) else delivery.callback_url or ""
+    outgoing = Outgoing(url, message_id(delivery), _secrets(signer, now), _body(delivery.payload))
+    claim = Claim(delivery.id, delivery.receiver, number, now, outgoing)
     values = {"tries": number, "next_try_at": now + timedelta(seconds=claim_s)}
     is_unclaimed = (_is_pending(), DeliveryRow.tries == number - 1, DeliveryRow.next_try_at <= now)
     return [claim] if _write(session, claim, values, *is_unclaimed) else []
 
 
-def _secrets(webhook: WebhookRow, now: datetime) -> tuple[str, ...]:
-    if webhook.old_secret is None or webhook.old_secret_until is None or webhook.old_secret_until < now:
-        return (webhook.secret,)
-    return webhook.secret, webhook.old_secret
+def _secrets(signer: WebhookRow | CallbackSecretRow, now: datetime) -> tuple[str, ...]:
+    if signer.old_secret is None or signer.old_secret_until is None or signer.old_secret_until < now:
+        return (signer.secret,)
+    return signer.secret, signer.old_secret
 
 
 def _body(payload: dict[str, Any]) -> str:

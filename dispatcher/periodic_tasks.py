@@ -1,5 +1,6 @@
 """Everything that a leading dispatcher does, and how often."""
 
+from dispatcher.batches import follow_batches
 from dispatcher.lease_reaper import LeaseReaper
 from dispatcher.loop import PeriodicTask
 from dispatcher.retention import Sweeper, forget_audit, remove_expired
@@ -39,6 +40,7 @@ def periodic_tasks(
     sweeper = Sweeper(database, store)
     return [
         PeriodicTask("jobs", settings.dispatch_s, reaper.look),
+        PeriodicTask("batches", settings.dispatch_s, lambda is_over: follow_batches(database, is_over)),
         PeriodicTask("webhooks", settings.dispatch_s, lambda is_over: deliver_webhooks(database, settings, is_over)),
         PeriodicTask(
             "webhook log", _HOUR_S, lambda is_over: forget_old_deliveries(database, settings.webhook_log_days, is_over)

@@ -7,6 +7,7 @@ from datetime import datetime, timedelta
 from dispatcher.missing_objects import MissingCounts, MissingObjects
 from dispatcher.unreferenced_objects import SweepResult, sweep_objects
 from jobkit.access.audit import AuditLog
+from jobkit.batches.progress import expire_batches
 from jobkit.database.clock import shared_now
 from jobkit.database.idempotency import forget_keys
 from jobkit.database.session import Database
@@ -20,15 +21,18 @@ _log = logging.getLogger("quadpatch.retention")
 
 
 def remove_expired(settings: Settings, database: Database, store: ObjectStore, is_over: Callable[[], bool]) -> str:
-    """Remove jobs, meshes and resumable uploads past their retention; return how many were removed, in words."""
+    """Remove what is past its retention: jobs, batches, meshes, resumable uploads; return how many, in words."""
     with database.read() as session:
         now = shared_now(session)
     jobs = expire_jobs(database, store, settings.job_retention_days, now, is_over)
+    batches = expire_batches(database, settings.job_retention_days, now)
     # After the jobs: a mesh is kept as long as a job names it.
     meshes = expire_meshes(database, settings.mesh_retention_days, now, is_over)
     uploads = _remove_uploads(database, store, now, is_over)
     forget_keys(database, now)
-    return f"removed {jobs} jobs, {meshes} meshes and {uploads} uploads" if jobs or meshes or uploads else ""
+    removed = {"jobs": jobs, "batches": batches, "meshes": meshes, "uploads": uploads}
+    words = ", ".join(f"{count} {name}" for name, count in removed.items() if count)
+    return f"removed {words}" if words else ""
 
 
 def _remove_uploads(database: Database, store: ObjectStore, now: datetime, is_over: Callable[[], bool]) -> int:

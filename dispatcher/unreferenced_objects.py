@@ -18,7 +18,7 @@ from datetime import datetime, timedelta
 from functools import partial
 from itertools import islice
 
-from sqlalchemy import func, select
+from sqlalchemy import func, or_, select
 
 from jobkit.database.session import Database
 from jobkit.database.tables import JobRow, MeshRow, ModelRow
@@ -26,6 +26,7 @@ from jobkit.errors import ObjectNotFoundError
 from jobkit.schema import JobState
 from jobkit.storage.base import ListedObject, ObjectStore, result_key
 from jobkit.storage.removals import START_S, claim, named_keys, release
+from jobkit.storage.result_files import file_keys
 from jobkit.uploads.parts import PART_PREFIX, named_parts
 
 GRACE = timedelta(hours=24)
@@ -111,14 +112,14 @@ def _job_of(key: str) -> str:
 
 
 def _wanted_results(database: Database, job_ids: set[str]) -> dict[str, set[str]]:
-    """Return, for each job that is there, the keys that it names; those of an attempt at work as `results/…/1/`."""
+    """Return, for each job, the keys that rows name of it; those of an attempt at work as `results/…/1/`."""
     wanted: dict[str, set[str]] = {}
     with database.read() as session:
-        query = select(JobRow.id, JobRow.state, JobRow.attempt, JobRow.result).where(JobRow.id.in_(job_ids))
-        for job_id, state, attempt, result in session.execute(query):
-            files = [file["name"] for file in (result or {}).get("files", [])]
-            names = files if JobState(state).is_terminal else [""]
-            wanted[job_id] = {result_key(job_id, attempt, name) for name in names}
+        query = select(JobRow).where(or_(JobRow.id.in_(job_ids), JobRow.cached_from.in_(job_ids)))
+        for row in session.scalars(query):
+            is_over = JobState(row.state).is_terminal
+            keys = set(file_keys(row)) if is_over else {result_key(row.id, row.attempt, "")}
+            wanted.setdefault(row.cached_from or row.id, set()).update(keys)
     return wanted
 
 

@@ -83,7 +83,7 @@ class _Round:
 
     async def _start_due_deliveries(self) -> bool:
         """Start to send what is due, and return whether anything is being sent."""
-        n_sending = Counter(claim.webhook_id for claim in self._at_work.values())
+        n_sending = Counter(claim.receiver for claim in self._at_work.values())
         n_free = MAX_PARALLEL - len(self._at_work)
         for claim in await asyncio.to_thread(claim_due, self._database, n_free, n_sending, self._claim_s):
             self._at_work[asyncio.create_task(self._send(claim))] = claim

@@ -7,6 +7,7 @@
     ├── NotFoundError
     │   ├── MeshNotFoundError       mesh_not_found
     │   ├── JobNotFoundError        job_not_found
+    │   ├── BatchNotFoundError      batch_not_found
     │   ├── ModelNotFoundError      model_not_found       no such name, version or alias
     │   ├── WebhookNotFoundError    webhook_not_found     no subscription has that id
     │   ├── UploadNotFoundError     upload_not_found      no upload has that id, or it has expired
@@ -32,6 +33,10 @@
     │   ├── UploadOffsetError       upload_offset_conflict   bytes come for another offset than the upload has
     │   ├── UploadNotFinishedError  upload_not_finished   a partial upload that is to be joined is not whole
     │   ├── TooManyWebhooksError    too_many_webhooks     as many subscriptions as there may be
+    │   ├── CallbackSecretMissingError  callback_secret_missing  a callback is asked for, and nothing could sign it
+    │   ├── BatchNotFinishedError   batch_not_finished    a batch is to be deleted or fetched before it has ended
+    │   ├── BatchFinishedError      batch_finished        the batch ended before it could be canceled
+    │   ├── BatchSizeError          batch_size            a batch would have no job, or more than it may have
     │   ├── WebhookDisabledError    webhook_disabled      nothing is sent to a subscription that is switched off
     │   ├── OperatorTenantError     operator_tenant       the operator's own tenant can't be disabled
     │   ├── KeyRevokedError         key_revoked           the key was revoked; it can't be rotated
@@ -111,6 +116,12 @@ class JobNotFoundError(NotFoundError):
     """No job has that id."""
 
     code = "job_not_found"
+
+
+class BatchNotFoundError(NotFoundError):
+    """No batch has that id."""
+
+    code = "batch_not_found"
 
 
 class ModelNotFoundError(NotFoundError):
@@ -267,6 +278,30 @@ class TooManyWebhooksError(ConflictError):
     """There are as many subscriptions as there may be."""
 
     code = "too_many_webhooks"
+
+
+class CallbackSecretMissingError(ConflictError):
+    """A callback is asked for while nothing could sign it."""
+
+    code = "callback_secret_missing"
+
+
+class BatchNotFinishedError(ConflictError):
+    """The batch is to be deleted, or its results are asked for, before it has ended."""
+
+    code = "batch_not_finished"
+
+
+class BatchFinishedError(ConflictError):
+    """The batch ended before it could be canceled."""
+
+    code = "batch_finished"
+
+
+class BatchSizeError(ConflictError):
+    """A batch would have no job, or more than it may have."""
+
+    code = "batch_size"
 
 
 class WebhookDisabledError(ConflictError):

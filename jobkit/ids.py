@@ -4,6 +4,7 @@ import secrets
 import time
 
 JOB_ID_PATTERN = r"^job_[0-9a-hjkmnp-tv-z]{26}$"
+BATCH_ID_PATTERN = r"^bat_[0-9a-hjkmnp-tv-z]{26}$"
 WEBHOOK_ID_PATTERN = r"^wh_[0-9a-hjkmnp-tv-z]{26}$"
 UPLOAD_ID_PATTERN = r"^upl_[0-9a-hjkmnp-tv-z]{26}$"
 MESSAGE_ID_PATTERN = r"^msg_[0-9a-hjkmnp-tv-z]{26}$"
@@ -21,6 +22,11 @@ _ALPHABET = "0123456789abcdefghjkmnpqrstvwxyz"
 def new_job_id() -> str:
     """Return a fresh id of a job."""
     return _new_id("job")
+
+
+def new_batch_id() -> str:
+    """Return a fresh id of a batch."""
+    return _new_id("bat")
 
 
 def new_webhook_id() -> str:

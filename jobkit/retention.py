@@ -2,15 +2,15 @@
 
 Rows go first, objects after them. A crash in between leaves objects that no row names, which the sweep removes
 (`dispatcher/unreferenced_objects.py`), and never a row whose file is gone. Files of a job lie under its own id, which
-is never used again, so they are removed at once. The key of a mesh follows from its bytes, and the same bytes may be
-uploaded again at that moment: those objects are left to the sweep.
+is never used again, so they are removed at once, unless an equal job has taken them over. The key of a mesh follows
+from its bytes, and the same bytes may be uploaded again at that moment: those objects are left to the sweep.
 """
 
 import logging
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from datetime import datetime, timedelta
 
-from sqlalchemy import CursorResult, Select, delete, exists, func, select, update
+from sqlalchemy import CursorResult, delete, exists, func, select, update
 from sqlalchemy.orm import Session
 
 from jobkit.database.clock import utc_now
@@ -28,6 +28,7 @@ from jobkit.errors import (
 )
 from jobkit.schema import JobState
 from jobkit.storage.base import ObjectStore
+from jobkit.storage.result_files import unnamed
 
 # Of one transaction: enough to be fast, few enough to delay no other transaction.
 BATCH = 50
@@ -67,8 +68,8 @@ def delete_job(database: Database, store: ObjectStore, job_id: str) -> None:
             raise JobNotFoundError(f"there is no job {job_id}")
         if row.state not in ENDED:
             raise JobNotFinishedError(f"job {job_id} is {row.state}; cancel it first, and delete it once it has ended")
-        _delete_jobs(session, [row])
-    _drop_files(store, job_id)
+        unnamed_ids = delete_rows(session, [row])
+    drop_files(store, unnamed_ids)
 
 
 def delete_mesh(database: Database, mesh_id: str) -> None:
@@ -120,11 +121,12 @@ def expire_jobs(
     query = select(JobRow).where(is_expired).order_by(JobRow.finished_at).limit(BATCH).with_for_update(skip_locked=True)
     n_removed = 0
     while not is_over():
-        removed_ids = _expire_batch(database, query)
-        for job_id in removed_ids:
-            _drop_files(store, job_id)
-        n_removed += len(removed_ids)
-        if len(removed_ids) < BATCH:
+        with database.write() as session:
+            rows = list(session.scalars(query))
+            unnamed_ids = delete_rows(session, rows)
+        drop_files(store, unnamed_ids)
+        n_removed += len(rows)
+        if len(rows) < BATCH:
             break
     return n_removed
 
@@ -165,15 +167,14 @@ def expire_meshes(database: Database, days: float, now: datetime, is_over: Calla
     return n_removed
 
 
-def _expire_batch(database: Database, query: Select[JobRow]) -> list[str]:
-    with database.write() as session:
-        rows = list(session.scalars(query))
-        _delete_jobs(session, rows)
-        return [row.id for row in rows]
+def delete_rows(session: Session, rows: Sequence[JobRow]) -> set[str]:
+    """Delete jobs with all that names them, and note on their meshes until when these were in use.
 
-
-def _delete_jobs(session: Session, rows: Sequence[JobRow]) -> None:
-    """Delete jobs with all that names them, and note on their meshes until when these were in use."""
+    Returns
+    -------
+    set of str
+        Ids of the jobs, these or others, whose files no row names any more.
+    """
     ids = [row.id for row in rows]
     # In one order everywhere, so that two transactions can't deadlock.
     uses = [(mesh_id, row.finished_at or utc_now()) for row in rows for mesh_id in (row.mesh_id, row.reference_id)]
@@ -184,13 +185,16 @@ def _delete_jobs(session: Session, rows: Sequence[JobRow]) -> None:
     for table in (IdempotencyRow, EventRow, AttemptRow):
         session.execute(delete(table).where(table.job_id.in_(ids)))
     session.execute(delete(JobRow).where(JobRow.id.in_(ids)))
+    return unnamed(session, {row.cached_from or row.id for row in rows})
 
 
-def _drop_files(store: ObjectStore, job_id: str) -> None:
-    try:
-        store.delete_prefix(f"results/{job_id}")
-    except StoreUnavailableError as error:
-        _log.warning("files of job %s are left to the sweep: %s", job_id, error)
+def drop_files(store: ObjectStore, job_ids: Iterable[str]) -> None:
+    """Remove what jobs have made, once their rows are deleted."""
+    for job_id in job_ids:
+        try:
+            store.delete_prefix(f"results/{job_id}")
+        except StoreUnavailableError as error:
+            _log.warning("files of job %s are left to the sweep: %s", job_id, error)
 
 
 def _has_matched(result: object) -> bool:

@@ -11,11 +11,12 @@ from fastapi import Depends, FastAPI
 
 from jobkit.settings import Settings
 from jobkit.telemetry import Telemetry
+from jobkit.version import VERSION
 from service.audit import AuditMiddleware
 from service.auth import AuthMiddleware, check_exposure
 from service.body_limit import BodyLimitMiddleware
 from service.cached_answer import READINESS_CACHE_S, CachedAnswer
-from service.contract.document import TITLE, VERSION, install_document, operation_id
+from service.contract.document import TITLE, install_document, operation_id
 from service.handlers import install_handlers
 from service.head_requests import HeadMiddleware
 from service.metrics import StateCollector, new_registry
@@ -25,6 +26,9 @@ from service.request_context import RequestContextMiddleware
 from service.request_telemetry import RequestTelemetryMiddleware
 from service.routes import (
     audit,
+    batch_results,
+    batches,
+    callbacks,
     deliveries,
     documentation,
     events,
@@ -82,8 +86,10 @@ def create_app(settings: Settings, telemetry: Telemetry | None = None) -> FastAP
     app.state.documents = {}
     app.state.telemetry = telemetry or Telemetry()
     about_access = (keys, tenants, limits, audit)
-    about_jobs = (meshes, uploads, jobs, events, results, repairs, retention)
-    modules = (*about_jobs, models, model_lifetime, webhooks, deliveries, *about_access, health, documentation, metrics)
+    about_jobs = (meshes, uploads, jobs, events, results, repairs, retention, batches, batch_results)
+    about_messages = (webhooks, callbacks, deliveries)
+    about_service = (health, documentation, metrics)
+    modules = (*about_jobs, models, model_lifetime, *about_messages, *about_access, *about_service)
     routers = [module.router for module in modules]
     for router in routers:
         app.include_router(router, dependencies=[Depends(check_scope)])

@@ -9,7 +9,7 @@ from fastapi import Depends, Query
 from pydantic import Field
 
 from jobkit.database.searching import Period
-from jobkit.ids import SHA256_PATTERN
+from jobkit.ids import BATCH_ID_PATTERN, SHA256_PATTERN
 from jobkit.jobs.search import JobSearch
 from jobkit.meshes import MeshSearch
 from jobkit.schema import Format, JobState, MeshState
@@ -37,6 +37,7 @@ def _job_search(  # noqa: PLR0913, PLR0917  each is a parameter of the query
     mesh_id: Annotated[
         str | None, Query(pattern=SHA256_PATTERN, description="Only jobs on this mesh, or that learn from it.")
     ] = None,
+    batch_id: Annotated[str | None, Query(pattern=BATCH_ID_PATTERN, description="Only jobs of this batch.")] = None,
     filename: Filename = None,
     label: Annotated[
         str | None, Query(max_length=255, pattern=TEXT_PATTERN, description=f"Label of the job. {_WILD}")
@@ -59,6 +60,7 @@ def _job_search(  # noqa: PLR0913, PLR0917  each is a parameter of the query
         states=tuple(state or ()),
         task=task,
         mesh_id=mesh_id,
+        batch_id=batch_id,
         filename=filename,
         label=label,
         metadata=dict(text.split(":", 1) for text in metadata or ()),

@@ -5,6 +5,7 @@ A job may come before the analysis: then the engine finds out.
 Tested in `tests/service/routes/test_tasks.py`.
 """
 
+from jobkit.batches.meshes import MeshOutline
 from jobkit.errors import MeshEncodedError, MeshNotEncodedError, MeshRejectedError
 from jobkit.schema import JobSpec, Mesh, MissingAsNan
 
@@ -13,7 +14,7 @@ _NOT_FINITE = "not_finite"
 _ENCODED = "qpz"
 
 
-def check_mesh(mesh: Mesh, spec: JobSpec) -> None:
+def check_mesh(mesh: MeshOutline, spec: JobSpec) -> None:
     """Raise where the job's task can't be done on the mesh.
 
     Raises
@@ -27,13 +28,13 @@ def check_mesh(mesh: Mesh, spec: JobSpec) -> None:
     """
     if not (_restores_nan(spec) and mesh.problem is not None and mesh.problem.code == _NOT_FINITE):
         _refuse_rejected(mesh, "mesh")
-    if mesh.facts is None:
+    if mesh.format is None:
         return
-    is_encoded = mesh.facts.format == _ENCODED
+    is_encoded = mesh.format == _ENCODED
     if is_encoded and spec.task != "decode":
         raise MeshEncodedError(f"mesh {mesh.id} is a .qpz file: decode it first, with a job of the task decode")
     if spec.task == "decode" and not is_encoded:
-        raise MeshNotEncodedError(f"mesh {mesh.id} is a {mesh.facts.format} file; only .qpz files can be decoded")
+        raise MeshNotEncodedError(f"mesh {mesh.id} is a {mesh.format} file; only .qpz files can be decoded")
 
 
 def check_reference(reference: Mesh) -> None:
@@ -43,7 +44,7 @@ def check_reference(reference: Mesh) -> None:
     ------
     MeshRejectedError, MeshEncodedError
     """
-    _refuse_rejected(reference, "the reference")
+    _refuse_rejected(MeshOutline.of(reference), "the reference")
     if reference.facts is not None and reference.facts.format == _ENCODED:
         raise MeshEncodedError(f"the reference {reference.id} is a .qpz file: decode it first")
 
@@ -52,6 +53,6 @@ def _restores_nan(spec: JobSpec) -> bool:
     return spec.task == "restore" and spec.restore is not None and isinstance(spec.restore.missing, MissingAsNan)
 
 
-def _refuse_rejected(mesh: Mesh, name: str) -> None:
+def _refuse_rejected(mesh: MeshOutline, name: str) -> None:
     if mesh.problem is not None:
         raise MeshRejectedError(f"{name} {mesh.id} was rejected ({mesh.problem.code}): {mesh.problem.message}")

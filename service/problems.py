@@ -43,6 +43,7 @@ STATUS_BY_ERROR: Mapping[type[errors.JobkitError], HTTPStatus] = {
 _RETRY_LATER = (
     errors.MeshNotReadyError,
     errors.JobNotFinishedError,
+    errors.BatchNotFinishedError,
     errors.TooManyUploadsError,
     model_errors.ModelNotProvenError,
     errors.QueueUnavailableError,
@@ -174,7 +175,8 @@ def _field_error(detail: Mapping[str, Any], root: str | None) -> FieldError:
 
 def _without_tag(where: list[str]) -> list[str]:
     """Take out of a location the tag of a union, which stands in no document."""
-    start = 1 if where[:1] == ["spec"] else 0
+    # A spec is the whole body, a part of it, or one of many.
+    start = {"spec": 1, "jobs": 2}.get(where[0] if where else "", 0)
     for union in _UNIONS:
         end = start + len(union)
         if tuple(where[start:end]) == union:

@@ -12,6 +12,7 @@ from fastapi import Depends, Request
 
 from jobkit.access.audit import AuditLog
 from jobkit.access.keys import Holder
+from jobkit.batches.batches import Batches
 from jobkit.database.quotas import default_quotas
 from jobkit.database.session import Database
 from jobkit.egress import check_url
@@ -27,6 +28,7 @@ from jobkit.settings import Settings
 from jobkit.storage.base import ObjectStore
 from jobkit.storage.open import open_store
 from jobkit.uploads.uploads import Uploads
+from jobkit.webhooks.callbacks import Callbacks
 from jobkit.webhooks.deliveries import Deliveries
 from jobkit.webhooks.subscriptions import Webhooks
 from service.audit import AuditTrail
@@ -55,7 +57,9 @@ class Services:
     completions: SingleFlight
     registry: Registry
     proofs: Proofs
+    batches: Batches
     webhooks: Webhooks
+    callbacks: Callbacks
     deliveries: Deliveries
     estimates: Estimates
     streams: EventStreams
@@ -75,7 +79,9 @@ class Services:
             meshes=Meshes(database, settings.mesh_retention_days),
             uploads=self.uploads.of(database),
             registry=Registry(database, self.store),
+            batches=Batches(database, settings.job_retention_days),
             webhooks=self.webhooks.of(database),
+            callbacks=self.callbacks.of(database),
             deliveries=Deliveries(database),
             job_cache=replace(self.job_cache, tenant=tenant),
         )
@@ -103,7 +109,7 @@ def open_services(settings: Settings) -> Services:
     queue = TaskQueue(redis_url, settings.queue_name, settings.job_time_limit_s)
     proofs = Proofs(database)
     jobs, meshes = Jobs(database, settings.job_retention_days), Meshes(database, settings.mesh_retention_days)
-    estimates = Estimates(database)
+    estimates, check = Estimates(database), partial(check_url, allowed=settings.webhook_networks)
     return Services(
         settings,
         database,
@@ -118,7 +124,9 @@ def open_services(settings: Settings) -> Services:
         SingleFlight(),
         registry,
         proofs,
-        Webhooks(database, partial(check_url, allowed=settings.webhook_networks)),
+        Batches(database, settings.job_retention_days),
+        Webhooks(database, check),
+        Callbacks(database, check),
         Deliveries(database),
         estimates,
         EventStreams(database, settings.max_streams),

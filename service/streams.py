@@ -1,13 +1,14 @@
-"""Event streams: server-sent events of jobs, replayed from the event log and followed to the end.
+"""Event streams: server-sent events of jobs and batches, replayed from the event log and followed to the end.
 
-One poller for each process queries the database for all watched jobs at once and gives new events to the streams, so a
-stream costs a connection and no thread. Each stream holds the number of the last event that it was given, and gets the
-following ones in their order. Old and new events take the same way, so none is lost or repeated between replay and
+One poller for each process queries the database for all that is watched at once and gives new events to the streams,
+so a stream costs a connection and no thread. Each stream holds the number of the last event that it was given, and gets
+the following ones in their order. Old and new events take the same way, so none is lost or repeated between replay and
 live events.
 """
 
 import asyncio
 import logging
+import re
 from collections.abc import AsyncIterator, Mapping
 from contextlib import asynccontextmanager
 from http import HTTPStatus
@@ -18,10 +19,12 @@ from fastapi.sse import KEEPALIVE_COMMENT, EventSourceResponse, format_sse_event
 from starlette.types import Receive, Scope, Send
 
 from jobkit.access.stream_leases import RENEW_S, StreamLeases
+from jobkit.batches.events import read_new_batch_events
 from jobkit.database.session import Database
 from jobkit.errors import DatabaseError, DatabaseUnavailableError
+from jobkit.ids import BATCH_ID_PATTERN
 from jobkit.jobs.events import NewEvents, read_new_events
-from jobkit.schema import Event
+from jobkit.schema import BatchEvent, Event
 from service.problems import RETRY_AFTER_S, ProblemError
 
 POLL_S = 0.25
@@ -39,13 +42,13 @@ _logger = logging.getLogger("service")
 
 
 class EventStream:
-    """The stream of events of one job to one client; `after` is the number of the last one.
+    """The stream of events of one job or batch to one client; `after` is the number of the last one.
 
     `lease` is what it is counted by for its tenant, None where it is not.
     """
 
-    def __init__(self, job_id: str, after: int, ping_s: float, lease: str | None = None) -> None:
-        self.job_id = job_id
+    def __init__(self, subject: str, after: int, ping_s: float, lease: str | None = None) -> None:
+        self.subject = subject
         self.lease = lease
         self.after = after
         self._ping_s = ping_s
@@ -59,7 +62,7 @@ class EventStream:
         """Whether the client reads fast enough."""
         return self._pending_bytes < _MOST_PENDING_BYTES
 
-    def hand(self, event: Event, frame: bytes) -> None:
+    def hand(self, event: Event | BatchEvent, frame: bytes) -> None:
         """Send an event, unless the client has it already."""
         if event.sequence <= self.after:
             return
@@ -75,7 +78,7 @@ class EventStream:
 
     async def chunks(self) -> AsyncIterator[bytes]:
         """Yield events as they come, and a comment after a time without events."""
-        yield format_sse_event(comment=f"events of {self.job_id}", retry=_RECONNECT_MS)
+        yield format_sse_event(comment=f"events of {self.subject}", retry=_RECONNECT_MS)
         while True:
             try:
                 async with asyncio.timeout(self._ping_s):
@@ -118,7 +121,7 @@ class EventStreams:
         """Count the streams that are open."""
         return len(self._streams)
 
-    async def respond_to(self, tenant: str, job_id: str, after: int) -> EventSourceResponse:
+    async def respond_to(self, tenant: str, subject: str, after: int) -> EventSourceResponse:
         """Answer as `respond` does, and count the stream for its tenant, over all processes.
 
         Raises
@@ -130,13 +133,13 @@ class EventStreams:
         """
         lease = await anyio.to_thread.run_sync(self._leases.take, tenant)
         try:
-            return self.respond(job_id, after, lease)
+            return self.respond(subject, after, lease)
         except ProblemError:
             await self.give_back(lease)
             raise
 
-    def respond(self, job_id: str, after: int, lease: str | None = None) -> EventSourceResponse:
-        """Answer with the events of a job that follow number `after`, until it has ended.
+    def respond(self, subject: str, after: int, lease: str | None = None) -> EventSourceResponse:
+        """Answer with the events of a job or batch that follow number `after`, until it has ended.
 
         Raises
         ------
@@ -147,10 +150,10 @@ class EventStreams:
             raise ProblemError(
                 HTTPStatus.SERVICE_UNAVAILABLE,
                 "too_many_streams",
-                f"{self._most} event streams are open, which is the limit; poll the job, or come back later",
+                f"{self._most} event streams are open, which is the limit; poll, or come back later",
                 {"Retry-After": RETRY_AFTER_S},
             )
-        stream = EventStream(job_id, after, self._ping_s, lease)
+        stream = EventStream(subject, after, self._ping_s, lease)
         self._streams.add(stream)
         self._woken.set()
         if self._is_closed:
@@ -216,7 +219,7 @@ class EventStreams:
         streams = [stream for stream in self._streams if stream.has_room]
         watched: dict[str, int] = {}
         for stream in streams:
-            watched[stream.job_id] = min(stream.after, watched.get(stream.job_id, stream.after))
+            watched[stream.subject] = min(stream.after, watched.get(stream.subject, stream.after))
         if not watched:
             return
         try:
@@ -225,17 +228,21 @@ class EventStreams:
             # The streams stay open: their clients get no events for a while, and lose none.
             _logger.warning("event streams wait for the database: %r", error.__cause__ or error)
             return
-        frames = {job_id: [(event, _frame(event)) for event in job_news.events] for job_id, job_news in news.items()}
+        frames = {subject: [(event, _frame(event)) for event in found.events] for subject, found in news.items()}
         for stream in streams:
-            job_news = news.get(stream.job_id)
-            for event, frame in frames.get(stream.job_id, ()):
+            found = news.get(stream.subject)
+            for event, frame in frames.get(stream.subject, ()):
                 stream.hand(event, frame)
-            if job_news is None or job_news.is_all:
+            if found is None or found.is_all:
                 stream.end()
 
-    def _read(self, watched: Mapping[str, int]) -> dict[str, NewEvents]:
+    def _read(self, watched: Mapping[str, int]) -> dict[str, NewEvents[Event] | NewEvents[BatchEvent]]:
+        batches = {subject: after for subject, after in watched.items() if re.match(BATCH_ID_PATTERN, subject)}
+        jobs = {subject: after for subject, after in watched.items() if subject not in batches}
         with self._database.read() as session:
-            return read_new_events(session, watched, _MOST_EVENTS)
+            of_jobs = read_new_events(session, jobs, _MOST_EVENTS) if jobs else {}
+            of_batches = read_new_batch_events(session, batches, _MOST_EVENTS) if batches else {}
+        return {**of_jobs, **of_batches}
 
 
 class _StreamResponse(EventSourceResponse):
@@ -255,5 +262,5 @@ class _StreamResponse(EventSourceResponse):
             await self._streams.give_back(self._stream.lease)
 
 
-def _frame(event: Event) -> bytes:
+def _frame(event: Event | BatchEvent) -> bytes:
     return format_sse_event(data_str=event.model_dump_json(), event=event.type, id=str(event.sequence))

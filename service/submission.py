@@ -4,16 +4,18 @@ Tested in `tests/service/routes/test_jobs.py`.
 """
 
 import logging
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
+from jobkit.batches.meshes import MeshOutline
 from jobkit.database.idempotency import Idempotency
 from jobkit.errors import (
     MeshNotReadyError,
+    ObjectNotFoundError,
     OptionsConflictError,
     OverLimitError,
     QueueUnavailableError,
 )
-from jobkit.jobs.jobs import NewJob
+from jobkit.jobs.new_jobs import NewJob
 from jobkit.logs import current_request_id
 from jobkit.models.resolution import resolve_decoding, resolve_method
 from jobkit.requeue import submit_analysis, submit_job, submit_proof
@@ -42,12 +44,17 @@ _logger = logging.getLogger("service")
 
 @dataclass(frozen=True)
 class Submission:
-    """A spec, and who sends it under which idempotency key; `rerun_of` names the job that it repeats."""
+    """A spec, and who sends it under which idempotency key.
+
+    `rerun_of` names the job that it repeats. `runs_because` says in the word of `Cache-Status` why the job runs in any
+    case; without it, it takes over the result of an equal one.
+    """
 
     spec: JobSpec
     principal: str
     key: str | None = None
     rerun_of: str | None = None
+    runs_because: str | None = None
 
     @property
     def idempotency(self) -> Idempotency | None:
@@ -71,6 +78,8 @@ def submit(services: Services, submission: Submission) -> tuple[Job, bool]:
         If the method's model can't be used.
     OptionsConflictError
         If options of the spec exclude each other.
+    CallbackSecretMissingError, AddressRefusedError, TlsRequiredError, HostUnknownError
+        If its callback URL can't be used.
     OverLimitError
         If the spec asks for more time or memory than the service grants.
     IdempotencyError
@@ -82,7 +91,8 @@ def submit(services: Services, submission: Submission) -> tuple[Job, bool]:
     if idempotency is not None and (earlier := services.jobs.earlier(idempotency)) is not None:
         return earlier, False
     services.full_tenants.check(services.database)
-    model = _check(services, submission.spec)
+    model = check_spec(services, submission.spec)
+    services.callbacks.check(submission.spec.callback_url)
     new = NewJob(
         submission.spec.model_copy(update={"mesh_name": clean_filename(submission.spec.mesh_name)}),
         model,
@@ -91,8 +101,9 @@ def submit(services: Services, submission: Submission) -> tuple[Job, bool]:
         current_request_id(),
         current_traceparent(),
     )
-    job, is_new = services.jobs.create(new, idempotency)
-    if is_new:
+    may_reuse = submission.runs_because is None and _is_in_store(services, new)
+    job, is_new = services.jobs.create(replace(new, may_reuse=may_reuse), idempotency)
+    if is_new and not job.state.is_terminal:
         try:
             is_urgent = job.spec.priority == "interactive"
             submit_job(services.database, services.queue, job.id, job.attempt, at_front=is_urgent)
@@ -104,7 +115,7 @@ def submit(services: Services, submission: Submission) -> tuple[Job, bool]:
 
 def plan(services: Services, spec: JobSpec) -> Plan:
     """Return what a job would do, without making it; raises as `submit`, and MeshNotReadyError."""
-    model = _check(services, spec)
+    model = check_spec(services, spec)
     mesh = services.meshes.get(spec.mesh_id)
     if mesh.state is MeshState.ANALYSING:
         raise MeshNotReadyError(f"mesh {mesh.id} is still being analysed; ask again, or send Prefer: wait=10")
@@ -129,13 +140,21 @@ def request_proof(services: Services, reference: str) -> None:
         _logger.warning("model %s waits for the queue: %s", reference, error)
 
 
-def _check(services: Services, spec: JobSpec) -> ResolvedModel:
-    conflict = conflict_of(spec)
-    if conflict is not None:
-        raise OptionsConflictError(conflict)
-    _check_limits(spec.limits, services.settings)
+def _is_in_store(services: Services, new: NewJob) -> bool:
+    """Tell whether no file is lost of the result that the job would take over."""
+    try:
+        for key in services.jobs.files_to_reuse(new):
+            services.store.size(key)
+    except ObjectNotFoundError:
+        return False
+    return True
+
+
+def check_spec(services: Services, spec: JobSpec) -> ResolvedModel:
+    """Check all that a job names, and return the model that it means now; raises as `submit`."""
+    _check_conflicts(spec, services.settings)
     mesh = services.meshes.get(spec.mesh_id)
-    check_mesh(mesh, spec)
+    check_mesh(MeshOutline.of(mesh), spec)
     if spec.reference_id is not None:
         check_reference(services.meshes.get(spec.reference_id))
     if mesh.facts is not None:
@@ -144,6 +163,19 @@ def _check(services: Services, spec: JobSpec) -> ResolvedModel:
     if encoded is not None and isinstance(spec.method, DictionaryMethod):
         return resolve_decoding(services.registry, spec.method, encoded)
     return resolve_method(services.registry, spec.method)
+
+
+def check_options(services: Services, spec: JobSpec) -> ResolvedModel:
+    """Check what a job asks for whatever its mesh, and return the model that it means now."""
+    _check_conflicts(spec, services.settings)
+    return resolve_method(services.registry, spec.method)
+
+
+def _check_conflicts(spec: JobSpec, settings: Settings) -> None:
+    conflict = conflict_of(spec)
+    if conflict is not None:
+        raise OptionsConflictError(conflict)
+    _check_limits(spec.limits, settings)
 
 
 def _check_limits(limits: Limits, settings: Settings) -> None:

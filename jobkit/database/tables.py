@@ -15,6 +15,7 @@ from sqlalchemy import JSON, BigInteger, ForeignKey, ForeignKeyConstraint, Index
 from sqlalchemy.engine.default import DefaultExecutionContext
 from sqlalchemy.orm import Mapped, mapped_column
 
+from jobkit.database import batch_tables  # noqa: F401 - jobs name batches
 from jobkit.database.table_base import Base
 from jobkit.database.tenancy import Owned, Shareable
 
@@ -73,6 +74,10 @@ class JobRow(Owned, Base):
     `priority` and `reference_id`, the mesh that it learns from, are those of the spec. A queued job that did not fit
     into the memory of a machine waits since `memory_wait_since` for `needed_memory_mb`, in MiB, and `memory_wait_at` is
     the machine that holds back others for it in the end. `result_bytes` is the size of all files of the result.
+
+    `fingerprint` stands for all that decides about the bytes of the result (`jobkit/jobs/fingerprints.py`). Where
+    `may_reuse` is set, the job takes over the result of another one with the same fingerprint. Then its files are those
+    of the attempt `cached_attempt` of the job `cached_from`, whose row may be gone.
     """
 
     __tablename__ = "jobs"
@@ -105,6 +110,11 @@ class JobRow(Owned, Base):
     memory_wait_at: Mapped[str | None] = mapped_column(String(128))
     cancel_requested_at: Mapped[datetime | None]
     pinned: Mapped[bool] = mapped_column(default=False)
+    batch_id: Mapped[str | None] = mapped_column(String(40), ForeignKey("batches.id"))
+    fingerprint: Mapped[str | None] = mapped_column(String(64))
+    may_reuse: Mapped[bool] = mapped_column(default=False, server_default="0")
+    cached_from: Mapped[str | None] = mapped_column(String(40))
+    cached_attempt: Mapped[int | None]
     request_id: Mapped[str | None] = mapped_column(String(64))
     traceparent: Mapped[str | None] = mapped_column(String(64))
     created_at: Mapped[datetime]
@@ -122,6 +132,9 @@ class JobRow(Owned, Base):
         Index(None, "finished_at"),
         Index(None, "checked_at", "finished_at"),
         Index(None, "memory_wait_since"),
+        Index(None, "batch_id", "state"),
+        Index(None, "fingerprint"),
+        Index(None, "cached_from"),
     )
 
 
@@ -318,12 +331,20 @@ class WebhookRow(Owned, Base):
 
 
 class DeliveryRow(Base):
-    """A message to a subscriber, written in the transaction of the change that it reports."""
+    """A message to a subscriber or to a callback URL, written in the transaction of the change that it reports.
+
+    `receiver` is the subscription, or the tenant and the host of the callback URL: to each of them only a few messages
+    are sent at a time. A message to a callback URL is signed with the secret of `tenant`.
+    """
 
     __tablename__ = "deliveries"
     id: Mapped[str] = mapped_column(String(40), primary_key=True)
-    webhook_id: Mapped[str] = mapped_column(String(40), ForeignKey("webhooks.id", ondelete="CASCADE"))
+    webhook_id: Mapped[str | None] = mapped_column(String(40), ForeignKey("webhooks.id", ondelete="CASCADE"))
+    callback_url: Mapped[str | None] = mapped_column(String(2048))
+    tenant: Mapped[str | None] = mapped_column(String(64))
+    receiver: Mapped[str] = mapped_column(String(400))
     job_id: Mapped[str | None] = mapped_column(String(40))
+    batch_id: Mapped[str | None] = mapped_column(String(40))
     type: Mapped[str] = mapped_column(String(64))
     payload: Mapped[dict[str, Any]]
     state: Mapped[str] = mapped_column(String(16))
@@ -332,7 +353,18 @@ class DeliveryRow(Base):
     replay_of: Mapped[str | None] = mapped_column(String(40))
     created_at: Mapped[datetime]
     finished_at: Mapped[datetime | None]
-    __table_args__ = (Index(None, "state", "next_try_at"), Index(None, "webhook_id", "id"))
+    __table_args__ = (Index(None, "state", "next_try_at"), Index(None, "webhook_id", "id"), Index(None, "job_id"))
+
+
+class CallbackSecretRow(Owned, Base):
+    """What signs messages to callback URLs of a tenant; as that of a subscription, it goes on for a while."""
+
+    __tablename__ = "callback_secrets"
+    tenant: Mapped[str] = mapped_column(String(64), primary_key=True)
+    secret: Mapped[str] = mapped_column(String(128))
+    old_secret: Mapped[str | None] = mapped_column(String(128))
+    old_secret_until: Mapped[datetime | None]
+    updated_at: Mapped[datetime]
 
 
 class DeliveryTryRow(Base):

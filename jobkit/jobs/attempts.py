@@ -32,6 +32,7 @@ from jobkit.jobs.endings import (
     uncounted_ending,
 )
 from jobkit.jobs.events import append_event
+from jobkit.jobs.reuse import reuse_result
 from jobkit.jobs.stage_seconds import StageSeconds, add_stages
 from jobkit.jobs.transitions import Transition, make_transition, update_job
 from jobkit.jobs.turns import next_in_turn, note_turn
@@ -115,7 +116,8 @@ class Attempts:
         MemoryFullError
             If the job does not fit into the memory of the worker's machine now: it waits.
         StaleAttemptError
-            If the job is not queued, or not to be started yet: another worker has it, or it has ended.
+            If the job is not queued, or not to be started yet: another worker has it, or it has ended. So it has, at
+            this very moment, where it takes over the result of an equal job that ended after it came.
         TenantBusyError
             If its tenant runs as many jobs as it may: it waits for the end of one.
         """
@@ -124,14 +126,18 @@ class Attempts:
             row = existing_job(session, job_id)
             if row.state != JobState.QUEUED or (row.not_before is not None and row.not_before > now):
                 raise _not_startable(row)
-            check_places(session, row.tenant)
-            grant = Grant() if admission is None else admission.admit(session, row, lease_s, now)
-            if grant is not None:
+            has_ended = row.may_reuse and reuse_result(session, row, now)
+            if not has_ended:
+                check_places(session, row.tenant)
+            grant = Grant() if admission is None or has_ended else admission.admit(session, row, lease_s, now)
+            if grant is not None and not has_ended:
                 attempt = _start(session, row, worker, lease_s, now)
                 session.flush()
                 admit_attempt(session, row.tenant)
                 row = existing_job(session, job_id)
                 return StartedAttempt(attempt, to_job(row), row.tenant, row.request_id, row.traceparent, grant.limit_mb)
+        if has_ended:
+            raise StaleAttemptError(f"job {job_id} has taken over the result of an equal one")
         raise MemoryFullError(f"job {job_id} waits for memory")
 
     def heartbeat(self, attempt: Attempt, lease_s: float, memory_mb: int = 0) -> bool:

@@ -15,6 +15,7 @@ from jobkit.database.tables import AttemptRow, JobRow
 from jobkit.errors import StaleAttemptError
 from jobkit.jobs.transitions import Transition, make_transition
 from jobkit.schema import EventType, JobError, JobResult, JobState
+from jobkit.version import VERSION
 
 
 @dataclass(frozen=True)
@@ -41,7 +42,8 @@ def success(result: JobResult) -> Ending:
     """Publish a result."""
     target = JobState.SUCCEEDED_WITH_WARNINGS if result.warnings else JobState.SUCCEEDED
     size_bytes = sum(file.size_bytes for file in result.files)
-    values = {"result": result.model_dump(mode="json"), "result_bytes": size_bytes, "percent": 100.0}
+    stored = {**result.model_dump(mode="json"), "version": VERSION}
+    values = {"result": stored, "result_bytes": size_bytes, "percent": 100.0}
     return Ending(target, "succeeded", target.value, values)
 
 

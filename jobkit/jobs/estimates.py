@@ -9,7 +9,7 @@ import heapq
 import math
 import threading
 import time
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass
 from datetime import datetime
 from typing import Any
@@ -158,6 +158,14 @@ class Estimates:
         if remaining_s is not None:
             remaining_s = round(max(remaining_s - (self._clock() - estimate.read_at), 0.0), 1)
         return job.model_copy(update={"queue_position": self.position(job.id, job.state), "eta_s": remaining_s})
+
+    def remaining_s(self, job_ids: Collection[str]) -> float | None:
+        """Return the seconds until all of some jobs that have not ended will have; None where it is not known."""
+        estimate = self._queue_estimate
+        found = [estimate.remaining_s[job_id] for job_id in job_ids if job_id in estimate.remaining_s]
+        if not found or len(found) < len(job_ids):
+            return None
+        return round(max(max(found) - (self._clock() - estimate.read_at), 0.0), 1)
 
     def position(self, job_id: str, state: JobState) -> int | None:
         """Return a waiting job's place in the queue; one that came after the last refresh is at the end."""

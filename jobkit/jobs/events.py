@@ -7,7 +7,7 @@ import logging
 from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import datetime
-from typing import Any
+from typing import Any, Generic, TypeVar
 
 from pydantic import ValidationError
 from sqlalchemy import Row, select
@@ -49,23 +49,26 @@ def _to_event(row: EventRow) -> Event:
         return Event.model_validate({"sequence": row.sequence, "type": row.type, "at": row.at, "attempt": row.attempt})
 
 
+E = TypeVar("E")
+
+
 @dataclass(frozen=True)
-class NewEvents:
-    """What has happened to a job since the last query.
+class NewEvents(Generic[E]):
+    """What has happened to a job, or to a batch, since the last query.
 
     Attributes
     ----------
-    events : list of Event
+    events : list of events
         Oldest first.
     is_all : bool
-        Whether these are the last that the job will ever have.
+        Whether these are the last that it will ever have.
     """
 
-    events: list[Event]
+    events: list[E]
     is_all: bool
 
 
-def read_new_events(session: Session, watched: Mapping[str, int], limit: int) -> dict[str, NewEvents]:
+def read_new_events(session: Session, watched: Mapping[str, int], limit: int) -> dict[str, NewEvents[Event]]:
     """Read events of many jobs: one query for all, and one more for each job that has changed.
 
     Parameters
@@ -83,7 +86,7 @@ def read_new_events(session: Session, watched: Mapping[str, int], limit: int) ->
     """
     rows = session.execute(select(JobRow.id, JobRow.revision, JobRow.state).where(JobRow.id.in_(watched))).all()
 
-    def read(row: Row[str, int, str]) -> tuple[str, NewEvents]:
+    def read(row: Row[str, int, str]) -> tuple[str, NewEvents[Event]]:
         job_id, revision, state = row
         events = read_events(session, job_id, watched[job_id], limit) if revision > watched[job_id] else []
         return job_id, NewEvents(events, JobState(state).is_terminal and len(events) < limit)

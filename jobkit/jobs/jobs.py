@@ -7,37 +7,24 @@ from typing import Any
 from sqlalchemy import Row, bindparam, select
 from sqlalchemy.orm import Session
 
-from jobkit.database.clock import shared_now, utc_now
+from jobkit.database.clock import shared_now
 from jobkit.database.idempotency import Idempotency, earlier_row, remember
 from jobkit.database.job_rows import existing_job, to_job
-from jobkit.database.quotas import admit_job
+from jobkit.database.quotas import admit_jobs
 from jobkit.database.readable_rows import readable
 from jobkit.database.session import Database
 from jobkit.database.tables import JobRow, MeshRow
-from jobkit.database.tenancy import mesh_id_of, tenant_of
+from jobkit.database.tenancy import DEFAULT_TENANT, mesh_id_of, tenant_of
 from jobkit.errors import JobFinishedError, JobNotFoundError, MeshNotFoundError, RowConflictError
 from jobkit.ids import new_job_id
 from jobkit.jobs.events import append_event, read_events
+from jobkit.jobs.fingerprints import fingerprint_of
+from jobkit.jobs.new_jobs import NewJob, lock_model, mesh_ids_of, values_of
+from jobkit.jobs.reuse import reuse_result, source_of
 from jobkit.jobs.search import JobSearch
 from jobkit.jobs.transitions import Transition, make_transition
-from jobkit.jobs.turns import rank_of
-from jobkit.models.rows import version_row
-from jobkit.schema import EventPage, Job, JobPage, JobSpec, JobState, ResolvedModel
-
-
-@dataclass(frozen=True)
-class NewJob:
-    """What a job is created from; `model` is already resolved, and stays.
-
-    `request_id` and `traceparent` name the request that makes it, for logs and traces.
-    """
-
-    spec: JobSpec
-    model: ResolvedModel
-    max_attempts: int
-    rerun_of: str | None = None
-    request_id: str | None = None
-    traceparent: str | None = None
+from jobkit.schema import EventPage, Job, JobPage, JobState
+from jobkit.storage.result_files import file_key, file_keys
 
 
 @dataclass(frozen=True)
@@ -102,6 +89,21 @@ class Jobs:
         """Return a job; raise JobNotFoundError."""
         with self._database.read() as session:
             return self._show(existing_job(session, job_id))
+
+    def with_files(self, job_id: str) -> tuple[Job, dict[str, str]]:
+        """Return a job, and the key of each file of its result by its name; raise JobNotFoundError."""
+        with self._database.read() as session:
+            row = existing_job(session, job_id)
+            job = self._show(row)
+            files = job.result.files if job.result else []
+            return job, {file.name: file_key(row, file.name) for file in files}
+
+    def files_to_reuse(self, new: NewJob) -> list[str]:
+        """Return the keys of the files that a job would take over from an equal one; none where it would run."""
+        with self._database.read() as session:
+            row = JobRow(fingerprint=fingerprint_of(new.spec, new.model), tenant=tenant_of(session) or DEFAULT_TENANT)
+            source = source_of(session, row, shared_now(session), self._retention_days, is_locked=False)
+            return [] if source is None else list(file_keys(source))
 
     def status(self, job_id: str) -> JobStatus:
         """Return what shows whether a job has changed, at a fraction of the cost of `get`; raise JobNotFoundError."""
@@ -184,18 +186,18 @@ class Jobs:
         with self._database.write() as session:
             if idempotency is not None and (earlier := self._earlier_job(session, idempotency)) is not None:
                 return earlier, False
-            mesh = _existing_mesh(session, new.spec.mesh_id)
-            reference = None
-            if new.spec.reference_id is not None:
-                reference = _existing_mesh(session, new.spec.reference_id)
-            _lock_model(session, new.model)
-            row = _new_row(new, mesh, reference)
+            meshes = {mesh_id: _existing_mesh(session, mesh_id) for mesh_id in mesh_ids_of(new.spec)}
+            lock_model(session, new.model)
+            row = JobRow(id=new_job_id(), **values_of(new, meshes))
             session.add(row)
             session.flush()
             append_event(session, row.id, "queued", row.created_at, {"state": row.state, "task": row.task})
             remember(session, idempotency, job_id=row.id)
-            session.flush()
-            admit_job(session)
+            if row.may_reuse and reuse_result(session, row, shared_now(session), self._retention_days):
+                row = existing_job(session, row.id)
+            else:
+                session.flush()
+                admit_jobs(session)
             return self._show(row), True
 
     def _show(self, row: JobRow) -> Job:
@@ -217,36 +219,3 @@ def _existing_mesh(session: Session, mesh_id: str) -> MeshRow:
     if mesh is None:
         raise MeshNotFoundError(f"there is no mesh {mesh_id}")
     return mesh
-
-
-def _lock_model(session: Session, model: ResolvedModel) -> None:
-    """Keep the version from being deleted until the job is written; raise ModelNotFoundError where it was."""
-    if model.name is None or model.version is None:
-        return
-    version_row(session, model.name, model.version, lock={"read": True})
-
-
-def _new_row(new: NewJob, mesh: MeshRow, reference: MeshRow | None) -> JobRow:
-    """Make the row of a job; its mesh's name is copied: later the same bytes may come under another one."""
-    now = utc_now()
-    return JobRow(
-        id=new_job_id(),
-        mesh_id=mesh.id,
-        mesh_name=new.spec.mesh_name or mesh.filename,
-        task=new.spec.task,
-        priority=rank_of(new.spec.priority),
-        reference_id=None if reference is None else reference.id,
-        state=JobState.QUEUED.value,
-        attempt=0,
-        max_attempts=new.max_attempts,
-        revision=1,
-        percent=0.0,
-        spec=new.spec.model_dump(mode="json"),
-        model=new.model.model_dump(mode="json"),
-        rerun_of=new.rerun_of,
-        request_id=new.request_id,
-        traceparent=new.traceparent,
-        queued_at=now,
-        created_at=now,
-        updated_at=now,
-    )

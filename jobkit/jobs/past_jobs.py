@@ -95,6 +95,7 @@ def read_past(session: Session) -> list[PastJob]:
     rows = session.execute(
         kinds_and_sizes(JobRow.started_at, JobRow.finished_at, peak_memory_mb)
         .where(JobRow.state.in_(_SUCCEEDED), JobRow.finished_at.is_not(None), JobRow.started_at.is_not(None))
+        .where(JobRow.cached_from.is_(None))
         .order_by(JobRow.finished_at.desc())
         .limit(_MAX_PAST)
     )

@@ -26,6 +26,8 @@ class JobSearch:
     task : Task, optional
     mesh_id : str, optional
         That they work on, or learn from.
+    batch_id : str, optional
+        That they belong to.
     filename : str, optional
         Name of the mesh's file.
     label : str, optional
@@ -39,6 +41,7 @@ class JobSearch:
     states: Collection[JobState] = ()
     task: Task | None = None
     mesh_id: str | None = None
+    batch_id: str | None = None
     filename: str | None = None
     label: str | None = None
     metadata: Mapping[str, str] = field(default_factory=dict)
@@ -52,6 +55,7 @@ class JobSearch:
             JobRow.state.in_([state.value for state in self.states]) if self.states else None,
             None if self.task is None else JobRow.task == self.task,
             None if self.mesh_id is None else names_mesh(mesh_id_of(tenant, self.mesh_id)),
+            None if self.batch_id is None else JobRow.batch_id == self.batch_id,
             None if self.filename is None else matches(JobRow.mesh_name, self.filename),
             None if self.label is None else matches(JobRow.spec["label"].as_string(), self.label),
             *(JobRow.spec["metadata"][name].as_string() == value for name, value in self.metadata.items()),

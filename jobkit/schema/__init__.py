@@ -4,6 +4,18 @@ Tested in `tests/jobkit/schema/test_spec.py`.
 """
 
 from jobkit.schema.base import Request, Response, rfc3339
+from jobkit.schema.batches import (
+    MOST_JOBS,
+    Batch,
+    BatchEvent,
+    BatchEventPage,
+    BatchEventType,
+    BatchLinks,
+    BatchPage,
+    BatchState,
+    MeshFilter,
+    NewBatch,
+)
 from jobkit.schema.conflicts import conflict_of
 from jobkit.schema.jobs import (
     Event,
@@ -103,6 +115,8 @@ from jobkit.schema.tenants import (
 )
 from jobkit.schema.uploads import Upload, UploadKind, UploadLinks, UploadProblem, UploadState
 from jobkit.schema.webhooks import (
+    ENDINGS,
+    CallbackSecret,
     Delivery,
     DeliveryDetail,
     DeliveryLinks,
@@ -129,6 +143,8 @@ __all__ = [
     "DEFAULT_NETWORK",
     "DEFAULT_PAPER_MODEL",
     "DEFAULT_PAPER_NETWORK",
+    "ENDINGS",
+    "MOST_JOBS",
     "PROBLEM_MEDIA_TYPE",
     "SELF",
     "STAGES",
@@ -139,8 +155,16 @@ __all__ = [
     "AuditEntry",
     "AuditPage",
     "AutoMethod",
+    "Batch",
+    "BatchEvent",
+    "BatchEventPage",
+    "BatchEventType",
+    "BatchLinks",
+    "BatchPage",
+    "BatchState",
     "BodyLimits",
     "BoundingBox",
+    "CallbackSecret",
     "CallerLimits",
     "CnnMethod",
     "Delivery",
@@ -183,6 +207,7 @@ __all__ = [
     "Limits",
     "Mesh",
     "MeshFacts",
+    "MeshFilter",
     "MeshLinks",
     "MeshPage",
     "MeshProblem",
@@ -203,6 +228,7 @@ __all__ = [
     "ModelProblem",
     "ModelState",
     "ModelVersion",
+    "NewBatch",
     "NewKey",
     "NewWebhook",
     "Output",

@@ -12,7 +12,7 @@ from typing import Annotated
 
 from pydantic import AwareDatetime, BaseModel, BeforeValidator, ConfigDict, Field, PlainSerializer
 
-from jobkit.ids import JOB_ID_PATTERN, MODEL_NAME, SHA256_PATTERN
+from jobkit.ids import BATCH_ID_PATTERN, JOB_ID_PATTERN, MODEL_NAME, SHA256_PATTERN
 
 # Without control characters: PostgreSQL stores no NUL, and a line break in a label breaks every log.
 TEXT_PATTERN = r"^[^\x00-\x1f\x7f]*$"
@@ -21,6 +21,7 @@ REFERENCE_PATTERN = rf"^{MODEL_NAME}(@[1-9][0-9]{{0,8}})?$"
 _RFC3339 = re.compile(r"^\d{4}-\d\d-\d\d[Tt ]\d\d:\d\d:\d\d(\.\d+)?([Zz]|[+-]\d\d:\d\d)$", re.ASCII)
 EXAMPLE_SHA256 = "3b1f5b1a4c6e5d7a9f0c2b4d6e8f10213243546576879809a1b2c3d4e5f60718"
 EXAMPLE_JOB_ID = "job_01jd7z3v5qk8m2x4c6b8n0a9de"
+EXAMPLE_BATCH_ID = "bat_01jd7z3v5qk8m2x4c6b8n0a9de"
 
 
 class Request(BaseModel):
@@ -69,6 +70,9 @@ SentMoment = Annotated[
 ]
 JobId = Annotated[
     str, Field(pattern=JOB_ID_PATTERN, description="Id of a job; ids sort by age.", examples=[EXAMPLE_JOB_ID])
+]
+BatchId = Annotated[
+    str, Field(pattern=BATCH_ID_PATTERN, description="Id of a batch; ids sort by age.", examples=[EXAMPLE_BATCH_ID])
 ]
 MeshId = Annotated[
     str,

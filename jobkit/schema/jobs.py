@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 from pydantic import ConfigDict, Field
 from typing_extensions import TypedDict
 
-from jobkit.schema.base import JobId, MeshId, Moment, Response, Sha256
+from jobkit.schema.base import BatchId, JobId, MeshId, Moment, Response, Sha256
 from jobkit.schema.codes import FailureCode
 from jobkit.schema.meshes import Hole
 from jobkit.schema.models import ResolvedModel
@@ -85,6 +85,11 @@ class JobResult(Response):
         description="Most memory that its engine had at once, in MiB; null of jobs by earlier versions.",
         examples=[312],
     )
+    version: str | None = Field(
+        default=None,
+        description="Version of the software that made it; null of jobs by earlier ones.",
+        examples=["0.2.0"],
+    )
     warnings: list[str] = Field(default_factory=list, description="Sentences for people.")
     files: list[ResultFile] = Field(default_factory=list, description="What can be fetched.")
 
@@ -144,6 +149,10 @@ class Job(Response):
     error: JobError | None = Field(default=None, description="Set once the state is `failed`.")
     result: JobResult | None = Field(default=None, description="Set once it succeeded.")
     rerun_of: JobId | None = Field(default=None, description="The job that this one repeats.")
+    batch_id: BatchId | None = Field(default=None, description="The batch that it belongs to.")
+    cached_from: JobId | None = Field(
+        default=None, description="The job that made the result, where this one took it over; it may be deleted by now."
+    )
     pinned: bool = Field(default=False, description="Whether it is kept whatever the retention.")
     expires_at: Moment | None = Field(
         default=None, description="When it is removed with all it left, RFC 3339; null: not ended, or kept."
@@ -166,6 +175,7 @@ class EventFacts(TypedDict, total=False):
     percent: Annotated[float, Field(description="Of `progress`: share of the job that is done.", examples=[62.5])]
     waits_for: Annotated[Literal["memory"], Field(description="Of a later `queued`: what the job waits for.")]
     memory_mb: Annotated[int, Field(description="Of the same: how much it needs, in MiB.", examples=[900])]
+    cached_from: Annotated[str, Field(description="Of `succeeded`: the job whose result was taken over.")]
     error: Annotated[JobError, Field(description="Of `failed` and `requeued`: why.")]
     forgiven: Annotated[bool, Field(description="Of `requeued`: the attempt does not count.", examples=[True])]
     delay_s: Annotated[float, Field(description="Of `requeued`: seconds before the next attempt.", examples=[5.0])]

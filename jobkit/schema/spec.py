@@ -7,6 +7,7 @@ from pydantic import Field, model_validator
 from jobkit.schema.base import TEXT_PATTERN, WHOLE, MeshId, Request
 from jobkit.schema.methods import SELF, AutoMethod, DictionaryMethod, DictionarySize, Method
 from jobkit.schema.tasks import Denoising, Encoding, Restoring
+from jobkit.schema.webhook_url import WebhookUrl
 from shared_rules.hole_selection import Cap, HoleKind, RuleAction, repeated_loop
 from shared_rules.option_words import CarriedAttribute, Colours, LengthUnit, OutputFormat
 from shared_rules.tasks import FILL, Task
@@ -29,6 +30,10 @@ def _name_property_pattern(schema: dict[str, Any]) -> None:
     schema.update(propertyNames={"pattern": _METADATA_KEY}, additionalProperties=values)
 
 
+Metadata = Annotated[
+    dict[MetadataKey, Text],
+    Field(max_length=16, json_schema_extra=_name_property_pattern, examples=[{"order": "A-17"}]),
+]
 HoleIds = Annotated[list[HoleId], Field(min_length=1, max_length=100_000)]
 
 
@@ -203,12 +208,15 @@ class RepairSpec(Request):
         examples=["normal"],
     )
     label: Text | None = Field(default=None, description="A name for people.", examples=["station 4, part 1187"])
-    metadata: dict[MetadataKey, Text] = Field(
-        default_factory=dict,
-        max_length=16,
-        description="Up to 16 facts of the sender's own, handed back unread.",
-        json_schema_extra=_name_property_pattern,
-        examples=[{"order": "A-17"}],
+    metadata: Metadata = Field(
+        default_factory=dict, description="Up to 16 facts of the sender's own, handed back unread."
+    )
+
+    callback_url: WebhookUrl | None = Field(
+        default=None,
+        description="Where to send the message of the job's end, besides to subscriptions; by the same rules, and "
+        "signed with the tenant's callback secret (`POST /v1/callback-secret`).",
+        examples=["https://mes.example.com/hooks/part-1187"],
     )
 
     @model_validator(mode="after")
@@ -240,7 +248,13 @@ class JobSpec(RepairSpec):
 
 
 # Fields that came after the first release of the contract, in groups that came together.
-_LATER_FIELDS = ({"task", "restore", "denoise", "encode"}, {"colours"}, {"priority"}, {"length_unit"})
+_LATER_FIELDS = (
+    {"task", "restore", "denoise", "encode"},
+    {"colours"},
+    {"priority"},
+    {"length_unit"},
+    {"callback_url"},
+)
 
 
 def identity_of(spec: JobSpec) -> str:

@@ -4,7 +4,7 @@ r"""The life of a job, of a mesh and of a model version, written once.
 
     queued -> running -> succeeded | succeeded_with_warnings | failed
        \         \-> queued (attempt lost or drained, attempts left)
-        \-> canceling -> canceled      (a queued job is canceled at once)
+        \-> canceling -> canceled      (a queued job is canceled at once, and one that takes over a result succeeds)
 """
 
 from enum import StrEnum
@@ -35,7 +35,15 @@ class JobState(StrEnum):
 
 TRANSITIONS = MappingProxyType(
     {
-        JobState.QUEUED: frozenset({JobState.RUNNING, JobState.CANCELED, JobState.FAILED}),
+        JobState.QUEUED: frozenset(
+            {
+                JobState.RUNNING,
+                JobState.SUCCEEDED,
+                JobState.SUCCEEDED_WITH_WARNINGS,
+                JobState.CANCELED,
+                JobState.FAILED,
+            }
+        ),
         JobState.RUNNING: frozenset(
             {
                 JobState.SUCCEEDED,

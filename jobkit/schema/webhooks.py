@@ -9,23 +9,15 @@ from typing import Annotated, Any, Literal, get_args
 from pydantic import Field, WithJsonSchema
 
 from jobkit.ids import MESSAGE_ID_PATTERN, WEBHOOK_ID_PATTERN
-from jobkit.schema.base import TEXT_PATTERN, JobId, Moment, Request, Response
+from jobkit.schema.base import TEXT_PATTERN, BatchId, JobId, Moment, Request, Response
+from jobkit.schema.webhook_url import WebhookUrl
 
 EXAMPLE_WEBHOOK_ID = "wh_01jd7z3v5qk8m2x4c6b8n0a9de"
 EXAMPLE_MESSAGE_ID = "msg_01jd7z3v5qk8m2x4c6b8n0a9de"
 EXAMPLE_SECRET = "whsec_MfKQ9r8GKYqrTwjUPD8ILPZIo2LaLaSwMfKQ9r8GKYo="
-_LABEL = r"[A-Za-z0-9]([A-Za-z0-9_-]{0,61}[A-Za-z0-9])?"
-_PORT = r":([1-9][0-9]{0,3}|[1-5][0-9]{4}|6[0-4][0-9]{3}|65[0-4][0-9]{2}|655[0-2][0-9]|6553[0-5])"
-_STEP = r"([A-Za-z0-9._~!$&'()*+,;=:@/{}-]|%[0-9A-Fa-f]{{2}})*"
-# Without a user, a password or a fragment: none of them would be sent.
-URL_PATTERN = (
-    rf"^https?://({_LABEL}(\.{_LABEL})*|\[[0-9A-Fa-f:.]{{2,45}}\])({_PORT})?"
-    rf"(/{_STEP.format('')})?(\?{_STEP.format('?')})?$"
-)
-
 
 # What a subscriber may want to hear of.
-WebhookEvent = Literal["job.started", "job.requeued", "job.succeeded", "job.failed", "job.canceled"]
+WebhookEvent = Literal["job.started", "job.requeued", "job.succeeded", "job.failed", "job.canceled", "batch.ended"]
 MessageType = WebhookEvent | Literal["webhook.test"]
 MESSAGE_TYPES: tuple[MessageType, ...] = (*get_args(WebhookEvent), "webhook.test")
 ENDINGS: tuple[WebhookEvent, ...] = ("job.succeeded", "job.failed", "job.canceled")
@@ -44,16 +36,6 @@ WebhookId = Annotated[
 ]
 MessageId = Annotated[
     str, Field(pattern=MESSAGE_ID_PATTERN, description="Id of a delivery.", examples=[EXAMPLE_MESSAGE_ID])
-]
-WebhookUrl = Annotated[
-    str,
-    Field(
-        pattern=URL_PATTERN,
-        max_length=2048,
-        description="Where to send messages: https, and an address that the whole internet can reach, unless the "
-        "operator allows others. Redirects are not followed.",
-        examples=["https://mes.example.com/hooks/quadpatch"],
-    ),
 ]
 WebhookEvents = Annotated[
     list[WebhookEvent],
@@ -131,6 +113,12 @@ class WebhookWithSecret(Webhook):
     secret: Secret
 
 
+class CallbackSecret(Response):
+    """What signs messages to the callback URLs of a tenant's jobs and batches."""
+
+    secret: Secret
+
+
 class WebhookList(Response):
     """All subscriptions."""
 
@@ -144,6 +132,7 @@ class DeliveryLinks(Response):
     webhook: str = Field(description="The subscription.")
     replay: str = Field(description="POST here to have the message sent again.")
     job: str | None = Field(default=None, description="The job that the message tells of.")
+    batch: str | None = Field(default=None, description="The batch that the message tells of.")
 
 
 class Delivery(Response):
@@ -153,6 +142,7 @@ class Delivery(Response):
     message_id: MessageId = Field(description="What the header `webhook-id` says: a replay has that of the original.")
     webhook_id: WebhookId
     job_id: JobId | None = Field(default=None, description="The job that the message tells of.")
+    batch_id: BatchId | None = Field(default=None, description="The batch that the message tells of.")
     type: MessageType = Field(description="What the message tells.", examples=["job.succeeded"])
     state: DeliveryState = Field(description="Where it stands.", examples=["delivered"])
     tries: int = Field(ge=0, description="Tries begun so far.", examples=[1])
@@ -179,12 +169,17 @@ MessageFacts = Annotated[
     WithJsonSchema(
         {
             "type": "object",
-            "description": "`job` of a message about a job, `webhook_id` of a test.",
+            "description": "`job` of a message about a job, `batch` of one about a batch, `webhook_id` of a test.",
             "properties": {
                 "job": {
                     "$ref": "#/components/schemas/Job",
                     "description": "The job right after the change, as `GET /v1/jobs/{job_id}` shows it, but for "
                     "`queue_position`, `eta_s` and `expires_at`.",
+                },
+                "batch": {
+                    "$ref": "#/components/schemas/Batch",
+                    "description": "The batch at its end, as `GET /v1/batches/{batch_id}` shows it, but for "
+                    "`expires_at`.",
                 },
                 "webhook_id": {"type": "string", "description": "The subscription.", "examples": [EXAMPLE_WEBHOOK_ID]},
             },

@@ -12,8 +12,8 @@ from sqlalchemy import ColumnElement, Select, and_, or_, select
 from sqlalchemy.orm import InstrumentedAttribute, Session
 
 from jobkit.database.tables import DamagedRow, JobRow, MeshRow, ModelRow
-from jobkit.storage.base import result_key
 from jobkit.storage.damage import NamedObject
+from jobkit.storage.result_files import file_keys
 
 RECHECK_DAMAGED_AFTER = timedelta(hours=1)
 # A tenth of the period is left for the reading itself.
@@ -97,8 +97,7 @@ def _models(session: Session, before: datetime) -> Iterator[ScheduledRead]:
 
 def _jobs(session: Session, before: datetime) -> Iterator[ScheduledRead]:
     for row in _rows(session, JobRow, JobRow.finished_at, before, JobRow.result.is_not(None)):
-        files = (row.result or {}).get("files", [])
-        named_object = [NamedObject("result", result_key(row.id, row.attempt, f["name"]), f["sha256"]) for f in files]
+        named_object = [NamedObject("result", key, sha256) for key, sha256 in file_keys(row).items()]
         yield ScheduledRead(
             row.checked_at or row.finished_at or before, tuple(named_object), JobRow, JobRow.id == row.id
         )

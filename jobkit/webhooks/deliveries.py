@@ -22,7 +22,7 @@ from jobkit.schema import (
     DeliveryTry,
     Message,
 )
-from jobkit.webhooks.outbox import new_delivery
+from jobkit.webhooks.outbox import Receiver, new_delivery
 from jobkit.webhooks.subscriptions import existing_webhook
 
 
@@ -90,7 +90,7 @@ class Deliveries:
         def make(session: Session) -> tuple[DeliveryDetail, str]:
             _enabled(session, webhook_id)
             message = Message(type="webhook.test", timestamp=utc_now(), data={"webhook_id": webhook_id})
-            return _add(session, new_delivery(session, webhook_id, message))
+            return _add(session, new_delivery(session, Receiver(webhook_id), message))
 
         return self._make_once(webhook_id, idempotency, make)
 
@@ -120,7 +120,8 @@ class Deliveries:
             _enabled(session, webhook_id)
             if row.state == DeliveryState.PENDING.value:
                 raise DeliveryPendingError(f"delivery {delivery_id} is still under way")
-            delivery = new_delivery(session, webhook_id, Message.model_validate(row.payload), row.job_id)
+            message, about = Message.model_validate(row.payload), {"job_id": row.job_id, "batch_id": row.batch_id}
+            delivery = new_delivery(session, Receiver(webhook_id), message, **about)
             delivery.payload, delivery.replay_of = row.payload, message_id(row)
             return _add(session, delivery)
 
@@ -183,5 +184,6 @@ def _wire(row: DeliveryRow) -> dict[str, Any]:
     path = f"{webhook}/deliveries/{row.id}"
     job = None if row.job_id is None else f"/v1/jobs/{row.job_id}"
     names = Delivery.model_fields.keys() - {"links", "message_id"}
-    links = DeliveryLinks(self=path, webhook=webhook, replay=f"{path}/replay", job=job)
+    batch = None if row.batch_id is None else f"/v1/batches/{row.batch_id}"
+    links = DeliveryLinks(self=path, webhook=webhook, replay=f"{path}/replay", job=job, batch=batch)
     return {name: getattr(row, name) for name in names} | {"links": links, "message_id": message_id(row)}

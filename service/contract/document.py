@@ -6,7 +6,6 @@ Tested in `tests/service/contract/test_document.py`.
 import re
 from collections.abc import Iterator, Mapping
 from http import HTTPStatus
-from importlib.metadata import version
 from typing import Any
 
 import yaml
@@ -16,6 +15,7 @@ from fastapi.routing import APIRoute
 
 from jobkit.schema import PROBLEM_MEDIA_TYPE, Problem, RepairSpec
 from jobkit.schema.codes import open_enum
+from jobkit.version import VERSION
 from service.auth import public_paths
 from service.contract.codes import EXAMPLE_CODES, problem_codes
 from service.contract.examples import REFERENCE, example_of
@@ -26,8 +26,6 @@ from service.routes.common import MEANINGS
 
 _HEAD = re.compile(r"^((?:`[^`]*`|\.(?! |$)|[^.:`])*).*$")
 TITLE = "Quadpatch"
-# That of the package; the version of the contract is in its paths, `/v1`.
-VERSION = version("quadpatch")
 DESCRIPTION = (
     "Repairs holes in 3D scans. Upload a mesh, start a job, fetch the repaired mesh: measured vertices keep their "
     "bits, invented ones are marked, scored and explained. Other tasks of a job restore missing vertices, take noise "

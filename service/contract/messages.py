@@ -18,6 +18,7 @@ _MEANINGS: Mapping[MessageType, str] = {
     "job.succeeded": "A job succeeded, with warnings or without",
     "job.failed": "A job was given up",
     "job.canceled": "A job was canceled",
+    "batch.ended": "All jobs of a batch have ended",
     "webhook.test": "A test was asked for",
 }
 _ANSWERS: dict[int | str, dict[str, Any]] = {

@@ -9,6 +9,7 @@ TAGS: Mapping[str, str] = {
     "meshes": "Upload meshes, look at what the analysis found, fetch and delete them.",
     "uploads": "Uploads that can be resumed after a broken connection, by the protocol tus 1.0.",
     "jobs": "Start jobs, follow, cancel and repeat them.",
+    "batches": "Many jobs at once: start, follow, cancel, fetch and repeat them.",
     "results": "Repaired meshes, reports and pictures of jobs that have ended.",
     "retention": "Keep jobs and meshes that would expire.",
     "models": "Dictionaries and networks: versions, aliases, deprecation.",

@@ -15,9 +15,9 @@ from starlette.responses import Response
 
 from jobkit.access.keys import Holder
 from jobkit.database.idempotency import Idempotency
-from jobkit.ids import JOB_ID_PATTERN, SHA256_PATTERN, WEBHOOK_ID_PATTERN
+from jobkit.ids import BATCH_ID_PATTERN, JOB_ID_PATTERN, SHA256_PATTERN, WEBHOOK_ID_PATTERN
 from jobkit.schema import Job, Problem
-from jobkit.schema.base import EXAMPLE_JOB_ID, EXAMPLE_SHA256, NAME_PATTERN
+from jobkit.schema.base import EXAMPLE_BATCH_ID, EXAMPLE_JOB_ID, EXAMPLE_SHA256, NAME_PATTERN
 from jobkit.schema.webhooks import EXAMPLE_WEBHOOK_ID
 from service.content import etag_matches
 from service.idempotency import idempotency_of
@@ -25,6 +25,7 @@ from service.problems import RETRY_AFTER_S
 from service.services import PrincipalDep
 
 JobIdPath = Annotated[str, Path(pattern=JOB_ID_PATTERN, description="Id of a job.", examples=[EXAMPLE_JOB_ID])]
+BatchIdPath = Annotated[str, Path(pattern=BATCH_ID_PATTERN, description="Id of a batch.", examples=[EXAMPLE_BATCH_ID])]
 MeshIdPath = Annotated[
     str,
     Path(

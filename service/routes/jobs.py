@@ -1,14 +1,17 @@
 """Jobs: start, plan, list, look at, cancel, repeat."""
 
+from dataclasses import dataclass
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Query, Request
+from fastapi import APIRouter, Depends, Query, Request
 from pydantic import ValidationError
 from starlette.concurrency import run_in_threadpool
 from starlette.responses import Response
 
+from jobkit.access.keys import Holder
 from jobkit.ids import JOB_ID_PATTERN
 from jobkit.schema import Job, JobPage, JobSpec, Plan, RepairSpec
+from service.caching import CACHE_STATUS, CacheControl, asks_anew, note_cache
 from service.finding import JobSearchDep, Limit
 from service.idempotency import note_replayed
 from service.problems import invalid_request
@@ -41,11 +44,40 @@ ACCEPTED: dict[int | str, dict[str, Any]] = {
     202: {
         "model": Job,
         "description": "The job is accepted and will end, exactly once.",
-        "headers": {"Location": described_header("Path of the job.")},
+        "headers": {"Location": described_header("Path of the job."), **CACHE_STATUS},
         "links": JOB_LINKS,
     }
 }
-_ENDED: dict[int | str, dict[str, Any]] = {200: {"model": Job, "description": "The job has ended."}}
+_ENDED: dict[int | str, dict[str, Any]] = {
+    200: {"model": Job, "description": "The job has ended.", "headers": CACHE_STATUS}
+}
+
+
+@dataclass(frozen=True)
+class Asked:
+    """Who asks for a job, and what the headers of the request say."""
+
+    principal: Holder
+    key: str | None
+    prefer: str | None
+    cache_control: str | None
+
+    def submission(self, spec: JobSpec, rerun_of: str | None = None, *, runs_anyway: bool = False) -> Submission:
+        """Return what is submitted; with `runs_anyway` no result is taken over."""
+        reason = "request" if asks_anew(self.cache_control) else "bypass" if runs_anyway else None
+        return Submission(spec, self.principal.key_id, self.key, rerun_of, reason)
+
+
+async def _get_asked(
+    principal: PrincipalDep,
+    key: IdempotencyKey = None,
+    prefer: PreferHeader = None,
+    cache_control: CacheControl = None,
+) -> Asked:
+    return Asked(principal, key, prefer, cache_control)
+
+
+AskedDep = Annotated[Asked, Depends(_get_asked)]
 DryRun = Annotated[bool, Query(description="Only say what the job would do.")]
 Cursor = Annotated[str | None, Query(pattern=JOB_ID_PATTERN, description="`next_cursor` of the page before this one.")]
 
@@ -56,22 +88,23 @@ Cursor = Annotated[str | None, Query(pattern=JOB_ID_PATTERN, description="`next_
     response_model=None,
     responses={
         **ACCEPTED,
-        200: {"model": Plan | Job, "description": "The plan of a dry run, or the job if it has ended already."},
+        200: {
+            "model": Plan | Job,
+            "description": "The plan of a dry run, or the job if it has ended already.",
+            "headers": CACHE_STATUS,
+        },
         **problems(400, 404, 409, 413, 415, 507),
     },
 )
-async def create_job(
-    services: ServicesDep,
-    principal: PrincipalDep,
-    spec: JobSpec,
-    dry_run: DryRun = False,
-    key: IdempotencyKey = None,
-    prefer: PreferHeader = None,
-) -> Response:
-    """Start a job. `{"mesh_id": …}` alone is enough: it fills the holes of the mesh."""
+async def create_job(services: ServicesDep, asked: AskedDep, spec: JobSpec, dry_run: DryRun = False) -> Response:
+    """Start a job. `{"mesh_id": …}` alone is enough: it fills the holes of the mesh.
+
+    Where an equal job has left a result (the same mesh, options and model, by the same version of the software), the
+    new one has it at once.
+    """
     if dry_run:
         return json_response(await run_in_threadpool(plan, services, spec))
-    return await answer_submission(services, Submission(spec, principal.key_id, key), prefer)
+    return await answer_submission(services, asked.submission(spec), asked.prefer)
 
 
 @router.get("/v1/jobs", response_model=JobPage, responses=problems())
@@ -128,20 +161,17 @@ def cancel_job(services: ServicesDep, job_id: JobIdPath) -> Response:
     responses={**ACCEPTED, **_ENDED, **problems(400, 404, 409, 413, 415, 507)},
 )
 async def rerun_job(
-    services: ServicesDep,
-    principal: PrincipalDep,
-    job_id: JobIdPath,
-    changes: RepairSpec | None = None,
-    key: IdempotencyKey = None,
-    prefer: PreferHeader = None,
+    services: ServicesDep, asked: AskedDep, job_id: JobIdPath, changes: RepairSpec | None = None
 ) -> Response:
     """Run the spec of a job again, as a new job pinned to what its model reference means now.
 
-    What the body names replaces what the spec says, each field as a whole; `{}` or no body changes nothing.
+    What the body names replaces what the spec says, each field as a whole; `{}` or no body changes nothing. With
+    nothing changed the job runs in any case.
     """
     job = await run_in_threadpool(services.jobs.get, job_id)
     spec = _changed_spec(job.spec, changes or RepairSpec())
-    return await answer_submission(services, Submission(spec, principal.key_id, key, rerun_of=job_id), prefer)
+    submission = asked.submission(spec, rerun_of=job_id, runs_anyway=spec == job.spec)
+    return await answer_submission(services, submission, asked.prefer)
 
 
 def _changed_spec(spec: JobSpec, changes: RepairSpec) -> JobSpec:
@@ -161,6 +191,8 @@ async def answer_submission(services: Services, submission: Submission, prefer: 
     response = job_response(await services.job_cache.job(job.id))
     if has_waited:
         note_applied(response, prefer)
+    if is_new:
+        note_cache(response, job, reason=submission.runs_because or "miss")
     return note_replayed(response, is_new=is_new)
 
 

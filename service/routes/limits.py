@@ -19,7 +19,7 @@ from jobkit.schema import (
     Version,
 )
 from jobkit.settings import Settings
-from service.contract.document import VERSION
+from jobkit.version import VERSION
 from service.rate_limits import WINDOW_S
 from service.routes.common import problems
 from service.services import AllServicesDep, PrincipalDep

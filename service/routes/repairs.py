@@ -10,14 +10,12 @@ from starlette.responses import Response
 from jobkit.schema import JobSpec, RepairSpec
 from service.formats import clean_filename
 from service.problems import invalid_request
-from service.routes.common import FILE, IdempotencyKey, problems
-from service.routes.jobs import ACCEPTED, answer_submission
+from service.routes.common import FILE, problems
+from service.routes.jobs import ACCEPTED, AskedDep, answer_submission
 from service.routes.meshes import MESH_PREFIX, register_mesh
-from service.services import PrincipalDep, ServicesDep
+from service.services import ServicesDep
 from service.strict_validation import StrictRoute
-from service.submission import Submission
 from service.uploads import UploadRules, receive_upload
-from service.waiting import PreferHeader
 from shared_rules.strict_json import StrictJsonError, read_json
 
 router = APIRouter(tags=["jobs"], route_class=StrictRoute)
@@ -57,9 +55,7 @@ _BODY: dict[str, Any] = {
 async def repair(
     request: Request,
     services: ServicesDep,
-    principal: PrincipalDep,
-    key: IdempotencyKey = None,
-    prefer: PreferHeader = None,
+    asked: AskedDep,
 ) -> Response:
     """Upload a mesh in the part `mesh`, say what to do with it in the part `spec` (JSON), get a job."""
     most = services.settings.max_upload_mb << 20
@@ -71,7 +67,7 @@ async def repair(
     whole = JobSpec(
         mesh_id=mesh.id, mesh_name=name, **{field: getattr(spec, field) for field in RepairSpec.model_fields}
     )
-    return await answer_submission(services, Submission(whole, principal.key_id, key), prefer)
+    return await answer_submission(services, asked.submission(whole), asked.prefer)
 
 
 def _read_spec(text: bytes) -> RepairSpec:

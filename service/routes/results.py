@@ -8,7 +8,7 @@ from starlette.responses import Response
 from jobkit.errors import JobHasNoResultError, JobNotFinishedError, ObjectNotFoundError, ResultMissingError
 from jobkit.schema import FileRole, Job
 from jobkit.schema.reports import Report
-from jobkit.storage.base import result_key
+from service.batch_files import suffix_of
 from service.content import OCTETS, Content, content_response, result_name
 from service.routes.common import BINARY, CONDITIONAL, JobIdPath, not_modified, problems
 from service.services import Services, ServicesDep
@@ -93,18 +93,16 @@ def _file_response(
     role: FileRole,
     media_type: str,
 ) -> Response:
-    job = services.jobs.get(job_id)
+    job, keys = services.jobs.with_files(job_id)
     _require_result(job)
     file = job.result.file(role) if job.result else None
     if file is None:
         raise ObjectNotFoundError(f"job {job_id} left no {role}")
     mesh = services.meshes.get(job.mesh_id)
-    suffixes = {"report": ".json", "preview": ".png", "closeups": "-closeups.zip"}
-    suffix = suffixes.get(role) or (f".{job.result.format}" if job.result else "")
-    name = result_name(job.mesh_name or mesh.filename, mesh.id, suffix, job.spec.task)
-    key = result_key(job_id, job.attempt, file.name)
+    name = result_name(job.mesh_name or mesh.filename, mesh.id, suffix_of(job, role), job.spec.task)
     try:
-        return content_response(request, services, Content(key, file.sha256, file.size_bytes, name, media_type))
+        content = Content(keys[file.name], file.sha256, file.size_bytes, name, media_type)
+        return content_response(request, services, content)
     except ObjectNotFoundError as error:
         services.jobs.get(job_id)  # raises JobNotFoundError where the job was deleted meanwhile
         raise ResultMissingError(f"the {role} of job {job_id} is gone from the store; run the job again") from error

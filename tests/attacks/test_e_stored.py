@@ -15,7 +15,8 @@ from starlette.testclient import TestClient
 from dispatcher.scrub import Scrub, ScrubLimits
 from jobkit.database.session import Database
 from jobkit.errors import ObjectDamagedError
-from jobkit.jobs.jobs import Jobs, NewJob
+from jobkit.jobs.jobs import Jobs
+from jobkit.jobs.new_jobs import NewJob
 from jobkit.meshes import MESH_DAMAGED, Meshes
 from jobkit.schema import JobSpec, JobState, MeshState, ResolvedModel
 from jobkit.settings import Settings

@@ -12,7 +12,8 @@ from sqlalchemy.engine import Engine
 
 from dispatcher.webhooks import deliver_webhooks
 from jobkit.database.session import Database
-from jobkit.jobs.jobs import Jobs, NewJob
+from jobkit.jobs.jobs import Jobs
+from jobkit.jobs.new_jobs import NewJob
 from jobkit.jobs.timeouts import TimeLimits
 from jobkit.meshes import Meshes
 from jobkit.queue import TaskQueue

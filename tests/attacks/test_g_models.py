@@ -13,7 +13,8 @@ from starlette.testclient import TestClient
 
 from jobkit.database.session import Database
 from jobkit.errors import ModelKindError, UnusableModelError
-from jobkit.jobs.jobs import Jobs, NewJob
+from jobkit.jobs.jobs import Jobs
+from jobkit.jobs.new_jobs import NewJob
 from jobkit.jobs.timeouts import TimeLimits
 from jobkit.meshes import Meshes
 from jobkit.models.header import MAX_CARD_BYTES

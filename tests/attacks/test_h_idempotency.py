@@ -11,6 +11,7 @@ from sqlalchemy import func, select
 from starlette.testclient import TestClient
 
 from jobkit.access.keys import Keys
+from jobkit.database.batch_tables import BatchRow
 from jobkit.database.clock import utc_now
 from jobkit.database.idempotency import KEEP_FOR, Idempotency, forget_keys, note_request
 from jobkit.database.tables import DeliveryRow, IdempotencyRow, JobRow, WebhookRow
@@ -20,7 +21,7 @@ from service.services import Services
 
 DOCUMENT = yaml.safe_load((Path(__file__).resolve().parents[2] / "openapi.yaml").read_text("utf-8"))
 # A second cancel changes nothing by itself.
-MAKES_NOTHING = {"cancel_job"}
+MAKES_NOTHING = {"cancel_job", "cancel_batch"}
 HOOK = {"url": "https://8.8.8.8/hook"}
 KEY = {"Idempotency-Key": "order-17"}
 MESH = b"ply\nformat ascii 1.0\nend_header\n"
@@ -67,7 +68,13 @@ def requests(  # noqa: PLR0917 - fixtures
         tus = {"Tus-Resumable": "1.0.0", "Upload-Length": str(size)}
         return lambda headers: client.post("/v1/uploads", headers={**tus, **headers})
 
+    many = {"mesh_ids": [mesh_id], "spec": {"method": {"method": "smooth"}}}
+    batch = client.post("/v1/batches", json=many).json()["links"]
+    client.post(f"{client.get(batch['jobs']).json()['items'][0]['links']['self']}/cancel")
     return {
+        "create_batch": (post("/v1/batches", json=many), post("/v1/batches", json={**many, "label": "b"})),
+        "rerun_batch": (post(f"{batch['rerun']}?canceled=true"), post(batch["rerun"])),
+        "renew_callback_secret": (post("/v1/callback-secret"), None),
         "create_upload": (start(10), start(11)),
         "upload_mesh": (post("/v1/meshes?filename=a.ply", content=MESH), post("/v1/meshes", content=MESH + b"\n")),
         "create_job": (post("/v1/jobs", json=job), post("/v1/jobs", json={**job, "seed": 1})),
@@ -99,7 +106,7 @@ def count(services: Services) -> dict[str, int]:
     with services.database.read() as session:
         return {
             table.__tablename__: session.scalars(select(func.count()).select_from(table)).one()
-            for table in (JobRow, WebhookRow, DeliveryRow, UploadRow)
+            for table in (JobRow, BatchRow, WebhookRow, DeliveryRow, UploadRow)
         }
 
 

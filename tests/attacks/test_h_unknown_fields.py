@@ -15,7 +15,7 @@ from shared_rules.text import printable
 
 DOCUMENT = yaml.safe_load((Path(__file__).resolve().parents[2] / "openapi.yaml").read_text("utf-8"))
 # Objects whose names are the sender's own: labels of a job, and the card of a model, which is kept as it is.
-OPEN = {"/metadata", "/spec/metadata", "/card"}
+OPEN = {"/metadata", "/spec/metadata", "/jobs/0/metadata", "/card"}
 FORM, JSON = "multipart/form-data", "application/json"
 MESH = b"ply\nformat ascii 1.0\nend_header\n"
 Schema = dict[str, Any]

@@ -28,6 +28,7 @@ from tests.service.conftest import FILES
 OPERATOR_KEY = "the-key-of-the-operator"
 OWN, FOREIGN = "plant-north", "plant-south"
 HOOK = "https://93.184.216.34/hook"
+SMOOTH = {"method": {"method": "smooth"}}
 
 
 @dataclass
@@ -77,6 +78,9 @@ def _fill(plants: Plants) -> None:
     alias = plants.call(OWN, "PUT", "/v1/aliases/candidate", json={"model": "scales@1"})
     assert alias.status_code == 200, alias.text
     plants.ids |= {"name": "scales", "version": "1", "alias": "candidate"}
+    batch = plants.call(OWN, "POST", "/v1/batches", json={"mesh_ids": [mesh.json()["id"]], "spec": SMOOTH})
+    assert batch.status_code == 202, batch.text
+    plants.ids["batch_id"] = batch.json()["id"]
     webhook = plants.call(OWN, "POST", "/v1/webhooks", json={"url": HOOK, "events": ["job.succeeded"]})
     assert webhook.status_code == 201, webhook.text
     plants.ids["webhook_id"] = webhook.json()["id"]
@@ -103,6 +107,7 @@ def _finish(services: Services, job_id: str) -> None:
 BODIES: dict[str, Any] = {
     "create_job": {"mesh_id": "{mesh_id}"},
     "rerun_job": {},
+    "create_batch": {"mesh_ids": ["{mesh_id}"]},
     "set_alias": {"model": "scales@1"},
     "deprecate_model_version": {"reason": "x"},
     "change_webhook": {"enabled": False},
@@ -116,13 +121,14 @@ HEADERS = {
 LISTS = {
     "list_jobs": "items",
     "list_meshes": "items",
+    "list_batches": "items",
     "list_models": "models",
     "list_webhooks": "items",
     "list_keys": "items",
     "list_audit": "items",
 }
 MAKES = {"describe_uploads", "create_upload", "upload_mesh", "repair", "publish_model", "metrics"}
-MAKES |= {"create_key", "create_webhook", "get_limits", "get_version"}
+MAKES |= {"create_key", "create_webhook", "get_limits", "get_version", "renew_callback_secret"}
 # The operator's own: 403 for the keys of all others, whatever tenant is named.
 OPERATORS = {"list_tenants", "get_tenant", "change_tenant"}
 
@@ -144,7 +150,11 @@ def _routes() -> list[Route]:
 
 def _body(operation: str, ids: dict[str, str]) -> dict[str, Any] | None:
     fields = BODIES.get(operation)
-    filled = {name: ids["mesh_id"] if value == "{mesh_id}" else value for name, value in (fields or {}).items()}
+    known = {"{mesh_id}": ids["mesh_id"]}
+    filled = {
+        name: [known["{mesh_id}"]] if value == [*known] else known.get(str(value), value)
+        for name, value in (fields or {}).items()
+    }
     return None if fields is None else filled
 
 
@@ -173,13 +183,14 @@ def test_a_foreign_key_finds_nothing_on_any_route(plants: Plants) -> None:
     for path in ("/v1/jobs/{job_id}", "/v1/meshes/{mesh_id}", "/v1/models/scales", "/v1/uploads/{upload_id}"):
         assert plants.call(OWN, "GET", path).status_code == 200
     assert plants.call(OWN, "GET", "/v1/webhooks/{webhook_id}").json()["enabled"] is True
+    assert plants.call(OWN, "GET", "/v1/batches/{batch_id}").json()["state"] == "running"
 
 
 def test_a_foreign_key_lists_and_counts_nothing(plants: Plants) -> None:
     paths = {route.name: route.path for route in _routes()}
     for name, field in LISTS.items():
         own, foreign = (plants.call(tenant, "GET", paths[name]).json()[field] for tenant in (OWN, FOREIGN))
-        if name in ("list_jobs", "list_meshes", "list_webhooks"):
+        if name in ("list_jobs", "list_meshes", "list_batches", "list_webhooks"):
             assert foreign == []
         assert own
         names = [item.get("id") or item.get("name") for item in own if not item.get("versions", [{}])[0].get("shared")]
@@ -197,6 +208,20 @@ def test_the_same_bytes_are_new_to_another_tenant_and_stay_when_one_deletes_them
     assert plants.call(FOREIGN, "DELETE", "/v1/meshes/{mesh_id}").status_code == 204
     assert plants.call(OWN, "GET", "/v1/meshes/{mesh_id}").json()["filename"] == "secret.ply"
     assert plants.call(OWN, "GET", "/v1/meshes/{mesh_id}/content").content.startswith(b"ply")
+
+
+def test_no_result_of_another_tenant_is_taken_over(plants: Plants) -> None:
+    content = b"ply\nformat ascii 1.0\nend_header\n"
+    assert plants.call(FOREIGN, "POST", "/v1/meshes", content=content).status_code == 201
+    spec = {"mesh_id": plants.ids["mesh_id"], **SMOOTH}
+    own, foreign = (plants.call(tenant, "POST", "/v1/jobs", json=spec) for tenant in (OWN, FOREIGN))
+    assert own.json()["mesh_id"] == foreign.json()["mesh_id"]
+    assert foreign.headers["Cache-Status"] == "quadpatch; fwd=miss"
+
+
+def test_a_batch_of_a_tenant_takes_its_own_meshes_alone(plants: Plants) -> None:
+    made = plants.call(FOREIGN, "POST", "/v1/batches", json={"filter": {}, "spec": SMOOTH})
+    assert (made.status_code, made.json()["code"]) == (409, "batch_size")
 
 
 def test_two_tenants_may_have_models_and_aliases_of_one_name(plants: Plants) -> None:

@@ -8,7 +8,8 @@ import pytest
 from jobkit.database.session import Database
 from jobkit.egress import check_url, parse_networks
 from jobkit.jobs.attempts import Attempts
-from jobkit.jobs.jobs import Jobs, NewJob
+from jobkit.jobs.jobs import Jobs
+from jobkit.jobs.new_jobs import NewJob
 from jobkit.meshes import Meshes
 from jobkit.schema import JobError, JobSpec, NewWebhook, ResolvedModel, WebhookWithSecret
 from jobkit.settings import Settings

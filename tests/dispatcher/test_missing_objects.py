@@ -5,7 +5,8 @@ import pytest
 from dispatcher.missing_objects import MissingCounts, MissingObjects
 from jobkit.database.session import Database
 from jobkit.errors import StoreUnavailableError
-from jobkit.jobs.jobs import Jobs, NewJob
+from jobkit.jobs.jobs import Jobs
+from jobkit.jobs.new_jobs import NewJob
 from jobkit.meshes import MESH_MISSING, Meshes
 from jobkit.models.registry import MODEL_PREFIX, Registry
 from jobkit.retention import delete_job

@@ -4,7 +4,7 @@ from datetime import timedelta
 from sqlalchemy import update
 
 from dispatcher.backoff import DELAYS_S, JITTER
-from dispatcher.outbox import DISABLE_AFTER, MAX_PER_WEBHOOK, Claim, claim_due, is_anything_due, note_answer
+from dispatcher.outbox import DISABLE_AFTER, MAX_PER_RECEIVER, Claim, claim_due, is_anything_due, note_answer
 from dispatcher.sending import Answer
 from jobkit.database.clock import utc_now
 from jobkit.database.session import Database
@@ -61,7 +61,7 @@ def test_a_delivery_whose_dispatcher_died_is_due_again_under_the_same_id(
 ) -> None:
     delivery = deliveries.send_test(subscribe(URL).id)
     (lost,) = claims_of(database)
-    pushed_to = deliveries.get(lost.webhook_id, delivery.id).next_try_at
+    pushed_to = deliveries.get(lost.receiver, delivery.id).next_try_at
     assert pushed_to is not None
     assert pushed_to - lost.at == timedelta(seconds=CLAIM_S)
     make_due(database, delivery.id)
@@ -70,9 +70,9 @@ def test_a_delivery_whose_dispatcher_died_is_due_again_under_the_same_id(
     assert again.outgoing == lost.outgoing
     # The late answer of the first one is noted, and stops nothing.
     note_answer(database, lost, FAILED, 0.5)
-    assert deliveries.get(lost.webhook_id, delivery.id).state is DeliveryState.PENDING
+    assert deliveries.get(lost.receiver, delivery.id).state is DeliveryState.PENDING
     note_answer(database, again, TAKEN, 0.5)
-    found = deliveries.get(lost.webhook_id, delivery.id)
+    found = deliveries.get(lost.receiver, delivery.id)
     assert (found.state, [entry.number for entry in found.log]) == (DeliveryState.DELIVERED, [1, 2])
 
 
@@ -83,7 +83,7 @@ def test_a_late_success_counts(database: Database, deliveries: Deliveries, subsc
     (again,) = claims_of(database)
     note_answer(database, late, TAKEN, 0.5)
     note_answer(database, again, FAILED, 0.5)
-    found = deliveries.get(late.webhook_id, delivery.id)
+    found = deliveries.get(late.receiver, delivery.id)
     assert (found.state, found.next_try_at) == (DeliveryState.DELIVERED, None)
 
 
@@ -95,9 +95,9 @@ def test_a_receiver_with_much_to_get_leaves_room_for_the_others(
         deliveries.send_test(many_due)
     deliveries.send_test(one_due)
     claims = claims_of(database)
-    assert Counter(claim.webhook_id for claim in claims) == {many_due: MAX_PER_WEBHOOK, one_due: 1}
-    assert claims_of(database, at_work={many_due: MAX_PER_WEBHOOK}) == []
-    assert len(claims_of(database, at_work={many_due: MAX_PER_WEBHOOK - 1})) == 1
+    assert Counter(claim.receiver for claim in claims) == {many_due: MAX_PER_RECEIVER, one_due: 1}
+    assert claims_of(database, at_work={many_due: MAX_PER_RECEIVER}) == []
+    assert len(claims_of(database, at_work={many_due: MAX_PER_RECEIVER - 1})) == 1
     assert len(claims_of(database, most=2)) == 2
     assert claims_of(database, most=0) == []
 
@@ -109,7 +109,7 @@ def test_a_failed_try_is_repeated_after_its_pause(
     (claim,) = claims_of(database)
     before = utc_now()
     note_answer(database, claim, Answer(None, "no connection", None, 7), 0.5)
-    found = deliveries.get(claim.webhook_id, delivery.id)
+    found = deliveries.get(claim.receiver, delivery.id)
     assert found.next_try_at is not None
     pause = timedelta(seconds=DELAYS_S[0] * (1 + JITTER / 2))
     assert before + pause <= found.next_try_at <= utc_now() + pause
@@ -124,7 +124,7 @@ def test_a_receiver_is_left_alone_for_as_long_as_it_asks(
     (claim,) = claims_of(database)
     before = utc_now()
     note_answer(database, claim, Answer(429, "answered 429", 900.0, 7), 0.0)
-    next_try_at = deliveries.get(claim.webhook_id, delivery.id).next_try_at
+    next_try_at = deliveries.get(claim.receiver, delivery.id).next_try_at
     assert next_try_at is not None
     assert next_try_at >= before + timedelta(seconds=900)
 

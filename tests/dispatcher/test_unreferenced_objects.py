@@ -9,7 +9,8 @@ from jobkit.database.clock import utc_now
 from jobkit.database.session import Database
 from jobkit.errors import StoreUnavailableError
 from jobkit.jobs.attempts import Attempts
-from jobkit.jobs.jobs import Jobs, NewJob
+from jobkit.jobs.jobs import Jobs
+from jobkit.jobs.new_jobs import NewJob
 from jobkit.meshes import Meshes
 from jobkit.models.registry import MODEL_PREFIX, Registry
 from jobkit.retention import delete_mesh

@@ -14,7 +14,7 @@ import pytest
 from sqlalchemy import update
 from standardwebhooks import Webhook, WebhookVerificationError
 
-from dispatcher.outbox import MAX_PER_WEBHOOK, claim_due
+from dispatcher.outbox import MAX_PER_RECEIVER, claim_due
 from dispatcher.webhooks import deliver_webhooks, forget_old_deliveries
 from jobkit.database.clock import utc_now
 from jobkit.database.session import Database
@@ -81,9 +81,9 @@ def test_a_dispatcher_that_dies_between_commit_and_send_loses_nothing(
         jobs = {fail_job() for _ in range(6)}
         # The first one claims what it may and is killed; its claims run out.
         lost = claim_due(database, 100, {}, 60.0)
-        assert len(lost) == MAX_PER_WEBHOOK
+        assert len(lost) == MAX_PER_RECEIVER
         deliver_webhooks(database, settings, never)
-        assert len(receiver.received) == 6 - MAX_PER_WEBHOOK
+        assert len(receiver.received) == 6 - MAX_PER_RECEIVER
         make_all_due(database)
         deliver_webhooks(database, settings, never)
     told = [request.body for request in receiver.received]
@@ -111,23 +111,23 @@ def test_a_receiver_that_does_not_answer_holds_up_no_other(
     slow_settings = settings.model_copy(update={"webhook_timeout_s": 60.0})
     with receiving(held=True) as slow, receiving() as quick:
         stuck = subscribe(slow.url())
-        for _ in range(3 * MAX_PER_WEBHOOK):
+        for _ in range(3 * MAX_PER_RECEIVER):
             deliveries.send_test(stuck.id)
         delivery_thread = threading.Thread(target=deliver_webhooks, args=(database, slow_settings, never))
         delivery_thread.start()
-        for _ in range(MAX_PER_WEBHOOK):
+        for _ in range(MAX_PER_RECEIVER):
             assert slow.arrived.acquire(timeout=GUARD_S)
         # While the slow one has all that it may have, messages to another one come and go.
         other = subscribe(quick.url())
-        for _ in range(2 * MAX_PER_WEBHOOK):
+        for _ in range(2 * MAX_PER_RECEIVER):
             deliveries.send_test(other.id)
-        for _ in range(2 * MAX_PER_WEBHOOK):
+        for _ in range(2 * MAX_PER_RECEIVER):
             assert quick.arrived.acquire(timeout=GUARD_S)
-        assert len(slow.received) == MAX_PER_WEBHOOK
+        assert len(slow.received) == MAX_PER_RECEIVER
         slow.hold.set()
         delivery_thread.join()
-    assert len(set(slow.ids())) == 3 * MAX_PER_WEBHOOK
-    assert len(set(quick.ids())) == 2 * MAX_PER_WEBHOOK
+    assert len(set(slow.ids())) == 3 * MAX_PER_RECEIVER
+    assert len(set(quick.ids())) == 2 * MAX_PER_RECEIVER
 
 
 def test_many_receivers_that_do_not_answer_are_waited_for_at_the_same_time(

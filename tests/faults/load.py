@@ -109,7 +109,9 @@ class Station:
     def submit(self, mesh_id: str, method: dict[str, Any], key: str) -> str:
         """Ask for a repair and return the job's id."""
         spec = {"mesh_id": mesh_id, "method": method, "output": {"preview": False}}
-        answer, _ = self.request("POST", "/v1/jobs", json=spec, headers={"Idempotency-Key": key})
+        answer, _ = self.request(
+            "POST", "/v1/jobs", json=spec, headers={"Idempotency-Key": key, "Cache-Control": "no-cache"}
+        )
         # 200: an earlier try had arrived without an answer, and the job has ended since.
         assert answer.status_code in (httpx.codes.ACCEPTED, httpx.codes.OK), answer.text
         job_id = str(answer.json()["id"])

@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 
 from jobkit.database.session import Database
-from jobkit.jobs.jobs import Jobs, NewJob
+from jobkit.jobs.jobs import Jobs
+from jobkit.jobs.new_jobs import NewJob
 from jobkit.meshes import Meshes
 from jobkit.schema import DictionaryMethod, Job, JobSpec, Mesh, ResolvedModel
 from jobkit.storage.base import ObjectStore

@@ -22,7 +22,8 @@ from jobkit.database.tables import (
     RemovalRow,
 )
 from jobkit.jobs.attempts import Attempts
-from jobkit.jobs.jobs import Jobs, NewJob
+from jobkit.jobs.jobs import Jobs
+from jobkit.jobs.new_jobs import NewJob
 from jobkit.meshes import Meshes
 from jobkit.schema import Job, JobError, JobResult, JobSpec, Mesh, ResolvedModel, ResultFile
 from jobkit.storage.base import ListedObject, ObjectStore, ObjectWriter, StoredObject, result_key

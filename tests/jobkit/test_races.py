@@ -18,7 +18,8 @@ from jobkit.database.tables import AttemptRow, JobRow, LeaderRow
 from jobkit.errors import JobFinishedError, StaleAttemptError
 from jobkit.jobs.attempts import Attempts
 from jobkit.jobs.endings import Attempt, end_attempt, retry_ending
-from jobkit.jobs.jobs import Jobs, NewJob
+from jobkit.jobs.jobs import Jobs
+from jobkit.jobs.new_jobs import NewJob
 from jobkit.jobs.timeouts import TimeLimits, end_overdue
 from jobkit.meshes import Meshes
 from jobkit.models.registry import Registry

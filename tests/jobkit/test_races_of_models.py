@@ -9,7 +9,8 @@ import pytest
 
 from jobkit.database.session import Database
 from jobkit.errors import JobkitError, ModelNotFoundError, StaleAttemptError
-from jobkit.jobs.jobs import Jobs, NewJob
+from jobkit.jobs.jobs import Jobs
+from jobkit.jobs.new_jobs import NewJob
 from jobkit.models.errors import ModelDeprecatedError, ModelInUseError
 from jobkit.models.lifetime import delete_version, deprecate_version
 from jobkit.models.proofs import Proofs

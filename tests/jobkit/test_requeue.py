@@ -13,7 +13,8 @@ from jobkit.database.session import Database
 from jobkit.database.tables import JobRow
 from jobkit.errors import QueueUnavailableError
 from jobkit.jobs.attempts import Attempts
-from jobkit.jobs.jobs import Jobs, NewJob
+from jobkit.jobs.jobs import Jobs
+from jobkit.jobs.new_jobs import NewJob
 from jobkit.jobs.timeouts import TimeLimits
 from jobkit.meshes import MAX_ANALYSES, Meshes
 from jobkit.queue import INSPECT_MESH, RUN_JOB, TaskQueue, job_entry, mesh_entry

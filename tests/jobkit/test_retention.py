@@ -17,7 +17,8 @@ from jobkit.errors import (
     StoreUnavailableError,
 )
 from jobkit.jobs.attempts import Attempts
-from jobkit.jobs.jobs import Jobs, NewJob
+from jobkit.jobs.jobs import Jobs
+from jobkit.jobs.new_jobs import NewJob
 from jobkit.meshes import Meshes
 from jobkit.retention import BATCH, delete_job, delete_mesh, expire_jobs, expire_meshes, pin_job, pin_mesh
 from jobkit.schema import Denoising, Job, JobSpec, Mesh

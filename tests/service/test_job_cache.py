@@ -9,7 +9,8 @@ from jobkit.database.session import Database
 from jobkit.errors import JobNotFoundError
 from jobkit.jobs.attempts import Attempts
 from jobkit.jobs.estimates import Estimates
-from jobkit.jobs.jobs import Jobs, JobStatus, NewJob
+from jobkit.jobs.jobs import Jobs, JobStatus
+from jobkit.jobs.new_jobs import NewJob
 from jobkit.meshes import Meshes
 from jobkit.schema import Job, JobSpec, JobState, ResolvedModel
 from jobkit.storage.base import ObjectStore

@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 from jobkit.database.session import Database
 from jobkit.jobs.attempts import Attempts
 from jobkit.jobs.endings import Attempt
-from jobkit.jobs.jobs import Jobs, NewJob
+from jobkit.jobs.jobs import Jobs
+from jobkit.jobs.new_jobs import NewJob
 from jobkit.meshes import Meshes
 from jobkit.schema import JobResult, JobSpec, ResolvedModel
 from jobkit.storage.base import ObjectStore

@@ -20,7 +20,8 @@ from jobkit.access.tenants import Tenants
 from jobkit.database.clock import utc_now
 from jobkit.database.session import Database
 from jobkit.database.tables import JobRow, ReservationRow, StageRow
-from jobkit.jobs.jobs import Jobs, NewJob
+from jobkit.jobs.jobs import Jobs
+from jobkit.jobs.new_jobs import NewJob
 from jobkit.logs import _add_subject
 from jobkit.meshes import Meshes
 from jobkit.queue import TaskQueue, job_entry

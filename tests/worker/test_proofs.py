@@ -14,7 +14,7 @@ from onnx import TensorProto, helper, numpy_helper
 
 from jobkit.database.session import Database
 from jobkit.errors import ModelNotFoundError, StaleAttemptError
-from jobkit.jobs.jobs import NewJob
+from jobkit.jobs.new_jobs import NewJob
 from jobkit.models.lifetime import delete_version, deprecate_version
 from jobkit.models.proofs import MAX_PROOFS
 from jobkit.models.registry import MODEL_PREFIX, Registry

@@ -18,7 +18,8 @@ from jobkit.database.session import Database
 from jobkit.database.tables import JobRow, MeshRow
 from jobkit.errors import DatabaseUnavailableError, StaleAttemptError
 from jobkit.jobs.attempts import Attempts
-from jobkit.jobs.jobs import Jobs, NewJob
+from jobkit.jobs.jobs import Jobs
+from jobkit.jobs.new_jobs import NewJob
 from jobkit.meshes import MAX_ANALYSES, Meshes
 from jobkit.queue import TaskQueue
 from jobkit.schema import Job, JobSpec, JobState, MeshState, ResolvedModel

@@ -1,6 +1,7 @@
 """Also tests `jobkit/migrations/versions/0001_first_tables.py`,
 `jobkit/migrations/versions/0002_leases_and_webhooks.py`, `jobkit/migrations/versions/0007_tasks_of_jobs.py`,
-`jobkit/migrations/versions/0010_tenants_and_keys.py` and `jobkit/migrations/versions/0013_tenants.py`."""
+`jobkit/migrations/versions/0010_tenants_and_keys.py`, `jobkit/migrations/versions/0013_tenants.py`,
+`jobkit/migrations/versions/0014_batches.py` and `jobkit/migrations/versions/0015_callbacks.py`."""
 
 import json
 import multiprocessing
@@ -125,6 +126,36 @@ def test_tenants_that_keys_name_and_sizes_of_results_come_through_an_upgrade(emp
     database.close()
 
 
+def test_deliveries_know_their_receiver_after_an_upgrade_and_callbacks_go_on_the_way_back(empty_url: str) -> None:
+    database = Database(empty_url)
+    database.migrate("0012")
+    values = {"now": NOW if database.engine.dialect.name == "postgresql" else "2026-11-22 10:00:00.000000"}
+    with database.engine.begin() as connection:
+        for statement in ROWS_OF_0012:
+            connection.execute(text(statement), values)
+    database.migrate()
+    callback = (
+        ROWS_OF_0012[1].replace("(id, webhook_id", "(id, receiver").replace("'msg_a', 'wh_a'", "'msg_b', 'a host'")
+    )
+    with database.engine.begin() as connection:
+        connection.execute(text(callback), values)
+    assert deliveries_of(database, "receiver") == [("msg_a", "wh_a"), ("msg_b", "a host")]
+    database.migrate("0012")
+    assert deliveries_of(database, "webhook_id") == [("msg_a", "wh_a")]
+    database.close()
+
+
+def deliveries_of(database: Database, column: str) -> list[tuple[str, str]]:
+    with database.engine.connect() as connection:
+        return [tuple(row) for row in connection.execute(text(f"SELECT id, {column} FROM deliveries ORDER BY id"))]
+
+
+ROWS_OF_0012 = (
+    "INSERT INTO webhooks (id, url, secret, events, enabled, created_at, updated_at)"
+    " VALUES ('wh_a', 'https://a', 's', '[]', '1', :now, :now)",
+    "INSERT INTO deliveries (id, webhook_id, type, payload, state, tries, created_at)"
+    " VALUES ('msg_a', 'wh_a', 'job.failed', '{}', 'pending', 0, :now)",
+)
 FULL = ("meshes", "jobs", "attempts", "events", "idempotency_keys")
 ROWS_OF_0001 = (
     "INSERT INTO meshes (id, key, size_bytes, filename, state, attempt, created_at, updated_at)"

@@ -15,8 +15,9 @@ from jobkit.database.tables import JobRow, MachineRow, MeshRow, ReservationRow
 from jobkit.errors import MemoryFullError, StaleAttemptError
 from jobkit.jobs.admission import Admission, AdmissionRules, Grant, decide
 from jobkit.jobs.attempts import Attempts, StartedAttempt
-from jobkit.jobs.jobs import Jobs, NewJob
+from jobkit.jobs.jobs import Jobs
 from jobkit.jobs.memory_needs import MemoryNeeds
+from jobkit.jobs.new_jobs import NewJob
 from jobkit.jobs.reservations import Machine, MachineMemory, Reservation, Room
 from jobkit.schema import JobState, Limits
 

@@ -18,12 +18,15 @@ from jobkit.database.tables import JobRow
 from jobkit.errors import JobFinishedError, JobNotFoundError, StaleAttemptError
 from jobkit.jobs.attempts import Attempts
 from jobkit.jobs.endings import Attempt
-from jobkit.jobs.jobs import Jobs, NewJob
+from jobkit.jobs.jobs import Jobs
+from jobkit.jobs.new_jobs import NewJob
 from jobkit.jobs.timeouts import TimeLimits, end_overdue
 from jobkit.schema import TRANSITIONS, Job, JobError, JobResult, JobState
+from jobkit.version import VERSION
 
 LOST = JobError(code="engine_crashed", message="the engine died", stage="fill", retryable=True)
 RESULT = JobResult(format="ply")
+MADE = RESULT.model_copy(update={"version": VERSION})
 LIMITS = TimeLimits(queue_s=1e6, total_s=1e6, memory_mb=1000)
 
 
@@ -65,7 +68,7 @@ def test_publishing_ends_the_job_with_its_result(database: Database, job: Job) -
     assert Jobs(database).get(job.id).stage == "inpaint"
     assert attempts.publish(attempt, RESULT) == JobState.SUCCEEDED
     ended = Jobs(database).get(job.id)
-    assert (ended.state, ended.percent, ended.stage, ended.result) == (JobState.SUCCEEDED, 100.0, None, RESULT)
+    assert (ended.state, ended.percent, ended.stage, ended.result) == (JobState.SUCCEEDED, 100.0, None, MADE)
     assert ended.finished_at is not None
 
 

@@ -12,7 +12,8 @@ from jobkit.database.session import Database
 from jobkit.database.tables import JobRow, MeshRow
 from jobkit.jobs.attempts import Attempts
 from jobkit.jobs.estimates import Estimates, remaining_queued_s, remaining_running_s
-from jobkit.jobs.jobs import Jobs, NewJob
+from jobkit.jobs.jobs import Jobs
+from jobkit.jobs.new_jobs import NewJob
 from jobkit.jobs.past_jobs import MIN_PAST, Rates, Sample
 from jobkit.jobs.search import JobSearch
 from jobkit.schema import AutoMethod, Job, JobError, JobResult, JobState, ResolvedModel

@@ -7,7 +7,8 @@ from jobkit.database.idempotency import Idempotency
 from jobkit.database.session import Database
 from jobkit.errors import IdempotencyError, JobFinishedError, JobNotFoundError, MeshNotFoundError
 from jobkit.jobs.attempts import Attempts
-from jobkit.jobs.jobs import Jobs, NewJob
+from jobkit.jobs.jobs import Jobs
+from jobkit.jobs.new_jobs import NewJob
 from jobkit.jobs.search import JobSearch
 from jobkit.meshes import Meshes
 from jobkit.schema import Job, JobResult, JobSpec, JobState, ResolvedModel

@@ -9,8 +9,9 @@ from jobkit.database.clock import utc_now
 from jobkit.database.session import Database
 from jobkit.database.tables import JobRow, MeshRow
 from jobkit.jobs.attempts import Attempts
-from jobkit.jobs.jobs import Jobs, NewJob
+from jobkit.jobs.jobs import Jobs
 from jobkit.jobs.memory_needs import BASE_MB, BY_GEOMETRY, MemoryNeeds, expected_from_bytes
+from jobkit.jobs.new_jobs import NewJob
 from jobkit.jobs.past_jobs import MIN_PAST, kind_of
 from jobkit.schema import JobResult
 

@@ -6,7 +6,8 @@ from jobkit.database.clock import utc_now
 from jobkit.database.session import Database
 from jobkit.errors import StaleAttemptError
 from jobkit.jobs.attempts import Attempts
-from jobkit.jobs.jobs import Jobs, NewJob
+from jobkit.jobs.jobs import Jobs
+from jobkit.jobs.new_jobs import NewJob
 from jobkit.jobs.timeouts import CANCEL_TIMEOUT_S, TimeLimits, end_overdue
 from jobkit.schema import Job, JobResult, JobState, Limits
 

@@ -14,8 +14,9 @@ from jobkit.database.tables import JobRow
 from jobkit.errors import StaleAttemptError
 from jobkit.jobs.admission import Admission, AdmissionRules
 from jobkit.jobs.attempts import Attempts, StartedAttempt
-from jobkit.jobs.jobs import Jobs, NewJob
+from jobkit.jobs.jobs import Jobs
 from jobkit.jobs.memory_needs import MemoryNeeds
+from jobkit.jobs.new_jobs import NewJob
 from jobkit.jobs.reservations import Machine, MachineMemory
 from jobkit.jobs.turns import last_turns, next_in_turn, order_of_turns
 from jobkit.schema import JobSpec, Priority, ResolvedModel

@@ -11,7 +11,8 @@ from jobkit.database.session import Database
 from jobkit.database.tables import DeliveryRow
 from jobkit.jobs.attempts import Attempts
 from jobkit.jobs.endings import end_attempt, failure
-from jobkit.jobs.jobs import Jobs, NewJob
+from jobkit.jobs.jobs import Jobs
+from jobkit.jobs.new_jobs import NewJob
 from jobkit.schema import Job, JobError, JobResult, JobState, NewWebhook
 from jobkit.schema.webhooks import WebhookEvent
 from jobkit.webhooks.outbox import OMITTED_FIELDS

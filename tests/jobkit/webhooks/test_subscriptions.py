@@ -1,3 +1,5 @@
+"""Also tests `jobkit/schema/webhook_url.py`."""
+
 import base64
 from collections.abc import Callable
 from datetime import UTC, datetime

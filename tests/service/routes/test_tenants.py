@@ -14,9 +14,9 @@ from pydantic import SecretStr
 from starlette.testclient import TestClient
 
 from jobkit.settings import Settings
+from jobkit.version import VERSION
 from service import shares
 from service.app import create_app
-from service.contract.document import VERSION
 
 OPERATOR_KEY = "the-key-of-the-operator"
 TENANT = "plant-north"

@@ -1,0 +1,1 @@
+"""Batches: jobs that are started together, and what happens to them as a whole."""

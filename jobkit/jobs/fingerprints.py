@@ -1,0 +1,23 @@
+"""What decides about the bytes of a result, as one number: two jobs that agree in it make the same.
+
+The version of the software stands in the result itself (`JobResult.version`): the worker decides about it.
+
+Tested in `tests/jobkit/jobs/test_reuse.py`.
+"""
+
+import hashlib
+import json
+
+from jobkit.schema import JobSpec, ResolvedModel
+
+# What a sender says for other reasons than the result.
+_UNRELATED = frozenset({"label", "metadata", "priority", "mesh_name", "callback_url"})
+
+
+def fingerprint_of(spec: JobSpec, model: ResolvedModel) -> str:
+    """Return the sha256, in hex, over a job's options, the bytes of its meshes and those of its model."""
+    facts = {
+        "spec": spec.model_dump(mode="json", exclude=set(_UNRELATED)),
+        "model": [model.kind, model.name, model.version, model.sha256],
+    }
+    return hashlib.sha256(json.dumps(facts, sort_keys=True).encode()).hexdigest()
