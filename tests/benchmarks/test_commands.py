@@ -7,6 +7,7 @@ import pytest
 
 # benchmarks.service runs benchmarks.polling and benchmarks.streaming, and benchmarks.flood runs benchmarks.flooding.
 COMMANDS = (
+    "benchmarks.batches",
     "benchmarks.flood",
     "benchmarks.flooding",
     "benchmarks.foreign_ids",
