@@ -28,6 +28,8 @@ MAX_HOLES = 24
 _ENOUGH = 16
 # Fewer holes than this decide nothing.
 MIN_HOLES = 12
+# Narrower calibration holes than this, in mean edge lengths, say nothing of wider ones: a cut takes hardly a ring.
+_NARROWEST = 5.0
 # Surface left between a calibration hole and any other rim, in mean edge lengths: what the fairing reads, and a ring.
 MARGIN_EDGES = 4.0
 # Diameters in diameters of the real holes, and margins, that are tried until enough holes find room. Narrower holes
@@ -124,9 +126,13 @@ def cut_calibration_set(
     best: tuple[MeshWithHoles, float] | None = None
     surface = UncutSurface(mesh)
     for size, margin in _TRIES:
+        if size < 1.0 and size * diameter < _NARROWEST * edge_length:
+            break
         spacing = Spacing(edge_length, margin * edge_length, MAX_HOLES)
         punched = cut_holes(surface, size * diameter, spacing, rng)
-        if len(punched.loops) >= MIN_HOLES and (best is None or len(punched.loops) > len(best[0].loops)):
+        # A few holes without the spare ring are no better than none.
+        least = MIN_HOLES if margin == MARGIN_EDGES else _ENOUGH
+        if len(punched.loops) >= least and (best is None or len(punched.loops) > len(best[0].loops)):
             best = punched, size * diameter
         if len(punched.loops) >= _ENOUGH:
             break
