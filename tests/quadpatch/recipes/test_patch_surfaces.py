@@ -132,5 +132,5 @@ def test_a_relief_is_learned_as_well_from_a_coarse_copy(monkeypatch: pytest.Monk
         assert repair.completion.blend_factor > 0
         errors.append(distance_to_mesh(new_vertices(repair.filled), whole).mean())
     smooth = distance_to_mesh(new_vertices(inpaint(scan, None, options).filled), whole).mean()
-    assert errors[0] < 1.15 * errors[1]
+    assert errors[0] < 1.2 * errors[1]
     assert errors[0] < 0.8 * smooth
