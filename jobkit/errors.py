@@ -22,6 +22,7 @@
     │   ├── MeshEncodedError        mesh_encoded          a .qpz file has to be decoded before anything else
     │   ├── MeshNotEncodedError     mesh_not_encoded      a mesh that is no .qpz file is to be decoded
     │   ├── UnknownHoleError        unknown_hole          an explicit id names no hole of the mesh
+    │   ├── NoTrainingMeshError     no_training_mesh      the filter of a training finds no mesh to learn from
     │   ├── MeshInUseError          mesh_in_use           a mesh is to be deleted while jobs name it
     │   ├── JobNotFinishedError     job_not_finished      a result is asked for, or a deletion, before the job has ended
     │   ├── JobHasNoResultError     job_has_no_result     the job ended without one
@@ -212,6 +213,12 @@ class UnknownHoleError(ConflictError):
     """An explicit id names no hole of the mesh."""
 
     code = "unknown_hole"
+
+
+class NoTrainingMeshError(ConflictError):
+    """The filter of a training finds no mesh to learn from."""
+
+    code = "no_training_mesh"
 
 
 class MeshInUseError(ConflictError):

@@ -18,6 +18,7 @@ from jobkit.database.job_rows import names_mesh
 from jobkit.database.session import Database
 from jobkit.database.tables import AttemptRow, EventRow, IdempotencyRow, JobRow, MeshRow
 from jobkit.database.tenancy import mesh_id_of
+from jobkit.database.training_tables import TrainingMeshRow
 from jobkit.errors import (
     JobNotFinishedError,
     JobNotFoundError,
@@ -177,12 +178,15 @@ def delete_rows(session: Session, rows: Sequence[JobRow]) -> set[str]:
     """
     ids = [row.id for row in rows]
     # In one order everywhere, so that two transactions can't deadlock.
-    uses = [(mesh_id, row.finished_at or utc_now()) for row in rows for mesh_id in (row.mesh_id, row.reference_id)]
+    ended = {row.id: row.finished_at or utc_now() for row in rows}
+    uses = [(mesh_id, ended[row.id]) for row in rows for mesh_id in (row.mesh_id, row.reference_id)]
+    of_trainings = session.scalars(select(TrainingMeshRow).where(TrainingMeshRow.job_id.in_(ids)))
+    uses += [(row.mesh_id, ended[row.job_id]) for row in of_trainings]
     for mesh_id, ended_at in sorted((mesh_id, ended_at) for mesh_id, ended_at in uses if mesh_id is not None):
         session.execute(
             update(MeshRow).where(MeshRow.id == mesh_id, MeshRow.used_at < ended_at).values(used_at=ended_at)
         )
-    for table in (IdempotencyRow, EventRow, AttemptRow):
+    for table in (IdempotencyRow, EventRow, AttemptRow, TrainingMeshRow):
         session.execute(delete(table).where(table.job_id.in_(ids)))
     session.execute(delete(JobRow).where(JobRow.id.in_(ids)))
     return unnamed(session, {row.cached_from or row.id for row in rows})

@@ -44,6 +44,7 @@ from service.routes import (
     results,
     retention,
     tenants,
+    trainings,
     uploads,
     webhooks,
 )
@@ -87,9 +88,10 @@ def create_app(settings: Settings, telemetry: Telemetry | None = None) -> FastAP
     app.state.telemetry = telemetry or Telemetry()
     about_access = (keys, tenants, limits, audit)
     about_jobs = (meshes, uploads, jobs, events, results, repairs, retention, batches, batch_results)
+    about_models = (models, model_lifetime, trainings)
     about_messages = (webhooks, callbacks, deliveries)
     about_service = (health, documentation, metrics)
-    modules = (*about_jobs, models, model_lifetime, *about_messages, *about_access, *about_service)
+    modules = (*about_jobs, *about_models, *about_messages, *about_access, *about_service)
     routers = [module.router for module in modules]
     for router in routers:
         app.include_router(router, dependencies=[Depends(check_scope)])

@@ -37,16 +37,16 @@ def check_mesh(mesh: MeshOutline, spec: JobSpec) -> None:
         raise MeshNotEncodedError(f"mesh {mesh.id} is a {mesh.format} file; only .qpz files can be decoded")
 
 
-def check_reference(reference: Mesh) -> None:
-    """Raise where nothing can be learned from the mesh.
+def check_reference(reference: Mesh, name: str = "the reference") -> None:
+    """Raise where nothing can be learned from the mesh; `name` is for people.
 
     Raises
     ------
     MeshRejectedError, MeshEncodedError
     """
-    _refuse_rejected(MeshOutline.of(reference), "the reference")
+    _refuse_rejected(MeshOutline.of(reference), name)
     if reference.facts is not None and reference.facts.format == _ENCODED:
-        raise MeshEncodedError(f"the reference {reference.id} is a .qpz file: decode it first")
+        raise MeshEncodedError(f"{name} {reference.id} is a .qpz file: decode it first")
 
 
 def _restores_nan(spec: JobSpec) -> bool:

@@ -29,6 +29,9 @@ OPERATIONS: Mapping[Scope, tuple[str, ...]] = {
         "list_batch_events",
         "get_batch_figures",
         "get_batch_results",
+        "list_trainings",
+        "get_training",
+        "list_training_events",
         "list_models",
         "get_model",
         "get_model_version",
@@ -70,6 +73,8 @@ OPERATIONS: Mapping[Scope, tuple[str, ...]] = {
         "replay_delivery",
     ),
     Scope.MODELS: (
+        "create_training",
+        "cancel_training",
         "publish_model",
         "set_alias",
         "delete_alias",

@@ -102,7 +102,12 @@ def submit(services: Services, submission: Submission) -> tuple[Job, bool]:
         current_traceparent(),
     )
     may_reuse = submission.runs_because is None and _is_in_store(services, new)
-    job, is_new = services.jobs.create(replace(new, may_reuse=may_reuse), idempotency)
+    return accept(services, replace(new, may_reuse=may_reuse), idempotency)
+
+
+def accept(services: Services, new: NewJob, idempotency: Idempotency | None) -> tuple[Job, bool]:
+    """Write a job that was checked, and put it into the queue; returns as `submit`, and raises as `Jobs.create`."""
+    job, is_new = services.jobs.create(new, idempotency)
     if is_new and not job.state.is_terminal:
         try:
             is_urgent = job.spec.priority == "interactive"
@@ -175,10 +180,11 @@ def _check_conflicts(spec: JobSpec, settings: Settings) -> None:
     conflict = conflict_of(spec)
     if conflict is not None:
         raise OptionsConflictError(conflict)
-    _check_limits(spec.limits, settings)
+    check_limits(spec.limits, settings)
 
 
-def _check_limits(limits: Limits, settings: Settings) -> None:
+def check_limits(limits: Limits, settings: Settings) -> None:
+    """Raise OverLimitError where ceilings lie above those of the service."""
     limits_of_service: list[tuple[str, float | None, float]] = [
         ("time_s", limits.time_s, settings.job_time_limit_s),
         ("memory_mb", limits.memory_mb, settings.job_memory_limit_mb),

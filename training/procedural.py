@@ -60,7 +60,7 @@ def relief_mesh(pattern: str, rng: np.random.Generator, n_side: int) -> Triangle
     heights = depth * PATTERNS[pattern](_turned(flat, rng) / period, rng)
     heights = heights + rng.uniform(*NOISE) * rng.normal(size=len(flat))
     points, normals = _bend(flat, float(n_side), rng)
-    return TriangleMesh(points + heights[:, None] * normals, _sheet_triangles(n_side))
+    return TriangleMesh(points + heights[:, None] * normals, sheet_triangles(n_side))
 
 
 def _jittered_grid(n_side: int, rng: np.random.Generator) -> FloatArray:
@@ -99,7 +99,7 @@ def _bend(flat: FloatArray, size: float, rng: np.random.Generator) -> tuple[Floa
     return radius * 1.3 * normals, normals
 
 
-def _sheet_triangles(n_side: int) -> Triangles:
+def sheet_triangles(n_side: int) -> Triangles:
     """Cut every square in two, the diagonal turning from square to square."""
     row, column = np.divmod(np.arange((n_side - 1) ** 2), n_side - 1)
     a = row * n_side + column

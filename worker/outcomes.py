@@ -67,14 +67,14 @@ def folder_with_mesh(context: Context, source: MeshSource, reference: MeshSource
         If a mesh is gone from the store, or its bytes are not those that were uploaded.
     """
     with request_folder(context.work_folder) as folder, ExitStack() as files:
-        files.enter_context(_linked(context, source, folder, MESH_FOLDER, "the mesh"))
+        files.enter_context(linked(context, source, folder, MESH_FOLDER, "the mesh"))
         if reference is not None:
-            files.enter_context(_linked(context, reference, folder, REFERENCE_FOLDER, "the reference mesh"))
+            files.enter_context(linked(context, reference, folder, REFERENCE_FOLDER, "the reference mesh"))
         yield folder
 
 
 @contextmanager
-def _linked(context: Context, source: MeshSource, folder: Path, subfolder: str, name: str) -> Iterator[None]:
+def linked(context: Context, source: MeshSource, folder: Path, subfolder: str, name: str) -> Iterator[None]:
     """Link the verified file of a mesh into a folder of its own; `name` is for people."""
     try:
         with verified_file(context.store, source.key, source.sha256) as path:

@@ -89,6 +89,7 @@ _SHARES: Mapping[Task, Mapping[str, int]] = {
         "preview": 5,
     },
     "decode": {"read": 30, "reconstruct": 50, "write": 15, "preview": 5},
+    "train": {"read": 8, "learn": 55, "judge": 35, "write": 2},
 }
 _MOST = 99.0
 

@@ -8,9 +8,11 @@ import logging
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 from tenacity import Retrying, retry_if_exception_type, stop_after_delay, wait_fixed
 
+from jobkit.database.tables import ModelRow
 from jobkit.errors import (
     DatabaseUnavailableError,
     JobNotFoundError,
@@ -26,10 +28,11 @@ from jobkit.requeue import submit_job
 from jobkit.schema import JobError, JobResult, JobState
 from jobkit.telemetry import StageSpans
 from quadpatch.stages import failure_of
+from shared_rules.tasks import TRAIN
 from worker.calibrations import hand_on, take_back
 from worker.context import Context
 from worker.engine.limits import EngineLimits
-from worker.engine.request import LOG_NAME
+from worker.engine.request import LOG_NAME, EngineRequest
 from worker.engine.supervision import Observer, log_engine_tail, run_engine
 from worker.failures import OUTAGE_DELAY_S, Failure, StopReason
 from worker.heartbeat import OUTAGE_TIMEOUT_S, Heartbeat, HeartbeatCalls
@@ -46,6 +49,7 @@ from worker.results import (
     store_result,
 )
 from worker.spec import filled_by, job_request
+from worker.trainings import folder_with_meshes, meshes_of, prepared_version, publish_training, training_request
 
 # A repair that is nearly done may finish when its worker is asked to stop; the others are handed back.
 _DRAIN_GRACE_S = 2.0
@@ -68,10 +72,11 @@ _settle_when_available = Retrying(
 
 @dataclass(frozen=True)
 class _Repaired:
-    """A result whose files are stored, and how long its stages took."""
+    """A result whose files are stored, how long its stages took, and the version that a training made."""
 
     result: JobResult
     stages: StageSeconds
+    version: ModelRow | None = None
 
 
 def repair(context: Context, started_attempt: StartedAttempt) -> JobState | None:
@@ -116,7 +121,7 @@ def _run(context: Context, started_attempt: StartedAttempt) -> _Repaired:
     spec = started_attempt.job.spec
     progress = Progress(spec.task, filled_by(spec.method))
     with Heartbeat(_heartbeat_calls(context, started_attempt), progress) as heartbeat:
-        return _work(context, started_attempt, heartbeat)
+        return (_train if spec.task == TRAIN else _work)(context, started_attempt, heartbeat)
 
 
 def _work(context: Context, started_attempt: StartedAttempt, heartbeat: Heartbeat) -> _Repaired:
@@ -127,24 +132,13 @@ def _work(context: Context, started_attempt: StartedAttempt, heartbeat: Heartbea
     reference = None if job.spec.reference_id is None else meshes.source(job.spec.reference_id)
     model = model_argument(job.model, registry, context.store, context.cache_folder)
     deprecated = deprecation(job.model, registry)
-    settings = context.settings
-    memory_mb = min(settings.job_memory_limit_mb, started_attempt.memory_mb or settings.job_memory_limit_mb)
-    limits = EngineLimits(
-        settings.job_time_limit_s, memory_mb, n_threads=context.n_threads, n_processes=context.n_processes
-    )
+    limits = _limits(context, started_attempt)
     request = replace(
         job_request(job.spec, source, model, limits, reference), model_card=network_card(job.model, registry)
     )
     with folder_with_mesh(context, source, reference) as folder:
         before = hand_on(meshes, job.mesh_id, folder) if request.scan else b""
-        with context.telemetry.stages() as spans:
-            observer = Observer(
-                _report_to_both(heartbeat, spans),
-                _StopRule(context, heartbeat),
-                heartbeat.note_memory,
-                heartbeat.note_peak,
-            )
-            failure = run_engine(context.fork_server, request, folder, observer)
+        failure = _run_engine(context, request, folder, heartbeat)
         if failure is not None:
             note_lost_pictures(folder, request, failure)
         elif missing_pictures(folder, request):
@@ -156,6 +150,36 @@ def _work(context: Context, started_attempt: StartedAttempt, heartbeat: Heartbea
         cost = Cost(time.monotonic() - started_at, heartbeat.peak_mb)
         result = store_result(folder, request, started_attempt.attempt, context.store, cost)
         return _Repaired(result, stage_seconds(folder, job.spec))
+
+
+def _train(context: Context, started_attempt: StartedAttempt, heartbeat: Heartbeat) -> _Repaired:
+    started_at, meshes = time.monotonic(), meshes_of(context, started_attempt)
+    request = training_request(started_attempt, meshes, _limits(context, started_attempt))
+    with folder_with_meshes(context, meshes) as folder:
+        _run_engine(context, request, folder, heartbeat)
+        version = prepared_version(context, started_attempt, folder)
+        cost = Cost(time.monotonic() - started_at, heartbeat.peak_mb)
+        result = store_result(folder, request, started_attempt.attempt, context.store, cost)
+        return _Repaired(result, stage_seconds(folder, started_attempt.job.spec), version)
+
+
+def _limits(context: Context, started_attempt: StartedAttempt) -> EngineLimits:
+    settings = context.settings
+    memory_mb = min(settings.job_memory_limit_mb, started_attempt.memory_mb or settings.job_memory_limit_mb)
+    return EngineLimits(
+        settings.job_time_limit_s, memory_mb, n_threads=context.n_threads, n_processes=context.n_processes
+    )
+
+
+def _run_engine(context: Context, request: EngineRequest, folder: Path, heartbeat: Heartbeat) -> Failure | None:
+    with context.telemetry.stages() as spans:
+        observer = Observer(
+            _report_to_both(heartbeat, spans),
+            _StopRule(context, heartbeat),
+            heartbeat.note_memory,
+            heartbeat.note_peak,
+        )
+        return run_engine(context.fork_server, request, folder, observer)
 
 
 def _report_to_both(heartbeat: Heartbeat, spans: StageSpans) -> Callable[[str, float], None]:
@@ -204,6 +228,8 @@ def _heartbeat_calls(context: Context, started_attempt: StartedAttempt) -> Heart
 
 def _settle(context: Context, started_attempt: StartedAttempt, outcome: _Repaired | Failure | StopReason) -> JobState:
     attempts, attempt = context.attempts, started_attempt.attempt
+    if isinstance(outcome, _Repaired) and outcome.version is not None:
+        return publish_training(context, started_attempt, outcome.result, outcome.stages, outcome.version)
     if isinstance(outcome, _Repaired):
         return attempts.publish(attempt, outcome.result, outcome.stages)
     if isinstance(outcome, Failure):

@@ -9,11 +9,13 @@ from jobkit.jobs.endings import Attempt
 from jobkit.jobs.stage_seconds import StageSeconds
 from jobkit.schema import FileRole, JobResult, JobSpec, ResultFile
 from jobkit.storage.base import ObjectStore, result_key
+from jobkit.storage.digests import sha256_of
 from quadpatch.formats.output_files import write_whole
 from quadpatch.stages import failure_of
+from shared_rules.tasks import TRAIN
 from worker.engine.request import CLOSE_UPS_NAME, PREVIEW_NAME, REPORT_NAME, EngineRequest
 from worker.failures import Failure
-from worker.result_facts import facts_of_fill, facts_of_task
+from worker.result_facts import facts_of_fill, facts_of_task, facts_of_training
 
 _MEDIA_TYPES = {
     "stl": "model/stl",
@@ -61,19 +63,26 @@ def store_result(folder: Path, request: EngineRequest, attempt: Attempt, store: 
     cost : Cost
         Of the work.
     """
-    mesh = _store_file(folder / request.output, "result", attempt, store)
+    # A learned model is published by the registry.
+    files = [] if request.task == TRAIN else [_store_file(folder / request.output, "result", attempt, store)]
     pictures = [file for picture in (_PREVIEW, _CLOSE_UPS) for file in _store_picture(picture, folder, attempt, store)]
     report = _read_report(folder)
-    files = [mesh, _store_file(folder / REPORT_NAME, "report", attempt, store), *pictures]
+    files += [_store_file(folder / REPORT_NAME, "report", attempt, store), *pictures]
     return JobResult.model_validate(
         {
             "format": Path(request.output).suffix.removeprefix("."),
             "seconds": round(cost.seconds, 3),
             "peak_memory_mb": cost.peak_memory_mb,
             "files": files,
-            **(facts_of_fill(report) if request.task == "repair" else facts_of_task(report)),
+            **_facts(folder, request, report),
         }
     )
+
+
+def _facts(folder: Path, request: EngineRequest, report: dict[str, Any]) -> dict[str, Any]:
+    if request.task == TRAIN:
+        return facts_of_training(report, request.options["name"], sha256_of(folder / request.output))
+    return facts_of_fill(report) if request.task == "repair" else facts_of_task(report)
 
 
 def stage_seconds(folder: Path, spec: JobSpec) -> StageSeconds:

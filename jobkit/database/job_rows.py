@@ -4,7 +4,8 @@ from sqlalchemy import ColumnElement, or_, select
 from sqlalchemy.orm import InstrumentedAttribute, Session
 
 from jobkit.database.expiry import expiry
-from jobkit.database.tables import JobRow
+from jobkit.database.tables import JobRow, MeshRow
+from jobkit.database.training_tables import TrainingMeshRow
 from jobkit.errors import JobNotFoundError
 from jobkit.schema import Job, JobLinks, JobState
 
@@ -20,7 +21,8 @@ def existing_job(session: Session, job_id: str, *, locked: bool = False) -> JobR
 
 def names_mesh(mesh_id: str | InstrumentedAttribute[str]) -> ColumnElement[bool]:
     """Return the condition on a job that it is about the mesh, or learns from it."""
-    return or_(JobRow.mesh_id == mesh_id, JobRow.reference_id == mesh_id)
+    trainings = select(TrainingMeshRow.job_id).where(TrainingMeshRow.mesh_id == mesh_id).correlate(MeshRow)
+    return or_(JobRow.mesh_id == mesh_id, JobRow.reference_id == mesh_id, JobRow.id.in_(trainings))
 
 
 def to_job(row: JobRow, retention_days: float = 0) -> Job:

@@ -5,6 +5,7 @@ refused with StaleAttemptError.
 """
 
 import contextlib
+from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 from typing import Any
@@ -26,6 +27,7 @@ from jobkit.jobs.endings import (
     end_attempt,
     failure,
     is_last_attempt,
+    may_publish,
     retry_ending,
     stale_error,
     success,
@@ -39,8 +41,6 @@ from jobkit.jobs.turns import next_in_turn, note_turn
 from jobkit.schema import Job, JobError, JobResult, JobState
 
 AT_WORK = (JobState.RUNNING.value, JobState.CANCELING.value)
-
-
 # Jobs that a worker tries at one turn: each of them may have to wait for memory.
 _MOST_TRIED = 8
 
@@ -186,7 +186,13 @@ class Attempts:
                 raise stale_error(attempt)
             append_event(session, attempt.job_id, "progress", now, {"stage": stage, "percent": percent})
 
-    def publish(self, attempt: Attempt, result: JobResult, stages: StageSeconds | None = None) -> JobState:
+    def publish(
+        self,
+        attempt: Attempt,
+        result: JobResult,
+        stages: StageSeconds | None = None,
+        complete: Callable[[Session, JobResult], JobResult] | None = None,
+    ) -> JobState:
         """Make the result the job's: the one update that lets clients see its files.
 
         Parameters
@@ -195,12 +201,14 @@ class Attempts:
         result : JobResult
         stages : StageSeconds, optional
             How long the repair took; added to the sums together with the result, or not at all.
+        complete : callable, optional
+            Writes what else is published, in the same transaction, and returns the result with what came of it.
 
         Returns
         -------
         JobState
-            `succeeded`, `succeeded_with_warnings` where the result has warnings, or `canceled` where a client asked
-            for that in time; then no row names the files.
+            `succeeded`, `succeeded_with_warnings`, or `canceled` where that was asked for in time; then no row names
+            the files.
 
         Raises
         ------
@@ -208,6 +216,8 @@ class Attempts:
             If the attempt is not the latest any more.
         """
         with self._database.write() as session:
+            if complete is not None and may_publish(session, attempt):
+                result = complete(session, result)
             state = end_attempt(session, attempt, success(result), utc_now())
             if stages is not None and state.has_result:
                 add_stages(session, stages)

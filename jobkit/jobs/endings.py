@@ -11,6 +11,7 @@ from sqlalchemy import update
 from sqlalchemy.orm import Session
 
 from jobkit.database.counters import count_attempt
+from jobkit.database.job_rows import existing_job
 from jobkit.database.tables import AttemptRow, JobRow
 from jobkit.errors import StaleAttemptError
 from jobkit.jobs.transitions import Transition, make_transition
@@ -68,6 +69,12 @@ def uncounted_ending(error: JobError, now: datetime, delay_s: float) -> Ending:
 def is_last_attempt(row: JobRow) -> bool:
     """Tell whether the present attempt is the last one of the job."""
     return row.attempt - row.forgiven >= row.max_attempts
+
+
+def may_publish(session: Session, attempt: Attempt) -> bool:
+    """Tell whether the attempt is the one at work, and keep that so until the session ends."""
+    row = existing_job(session, attempt.job_id, locked=True)
+    return row.attempt == attempt.number and row.state == JobState.RUNNING
 
 
 def end_attempt(session: Session, attempt: Attempt, ending: Ending, now: datetime) -> JobState:

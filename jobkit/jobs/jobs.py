@@ -15,6 +15,7 @@ from jobkit.database.readable_rows import readable
 from jobkit.database.session import Database
 from jobkit.database.tables import JobRow, MeshRow
 from jobkit.database.tenancy import DEFAULT_TENANT, mesh_id_of, tenant_of
+from jobkit.database.training_tables import TrainingMeshRow
 from jobkit.errors import JobFinishedError, JobNotFoundError, MeshNotFoundError, RowConflictError
 from jobkit.ids import new_job_id
 from jobkit.jobs.events import append_event, read_events
@@ -191,6 +192,9 @@ class Jobs:
             row = JobRow(id=new_job_id(), **values_of(new, meshes))
             session.add(row)
             session.flush()
+            if new.spec.train is not None:
+                ids = [_existing_mesh(session, mesh_id).id for mesh_id in new.spec.train.meshes]
+                session.add_all(TrainingMeshRow(job_id=row.id, mesh_id=mesh_id) for mesh_id in ids)
             append_event(session, row.id, "queued", row.created_at, {"state": row.state, "task": row.task})
             remember(session, idempotency, job_id=row.id)
             if row.may_reuse and reuse_result(session, row, shared_now(session), self._retention_days):

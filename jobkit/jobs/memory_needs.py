@@ -12,7 +12,7 @@ from collections.abc import Callable, Sequence
 
 from jobkit.database.session import Database
 from jobkit.jobs.past_jobs import PastJob, Rates, Sample, kind_of, read_past
-from shared_rules.tasks import FILL
+from shared_rules.tasks import FILL, TRAIN
 
 # A fill by geometry alone, and kinds that are as frugal, or that fit a network.
 BY_GEOMETRY = kind_of(FILL, "none")
@@ -28,6 +28,8 @@ _GEOMETRY_MB, _GEOMETRY_PER_MB = 140, 16
 _PATCHES_MB, _PATCHES_PER_MB, _PATCHES_OF_FILL_MOST_MB = 60, 80, 800
 # Of a second process, which shares fills from this size on (`quadpatch.processes.LEAST_BYTES`).
 _SHARED_BYTES, _HELPER_MB = 1_000_000, 80
+# Of the patches of all meshes of a training (`training.requested.MOST_VALUES`), and of what K-SVD makes of them.
+_TRAINING, _TRAINING_MB = kind_of(TRAIN, "none"), 450
 # Of torch besides, to fit a network to the mesh.
 _FITTING_MB = 500
 
@@ -86,6 +88,8 @@ def expected_from_bytes(kind: str, size_bytes: int) -> int:
         needed_mb += _HELPER_MB
     if kind in _FITTING:
         needed_mb += _FITTING_MB
+    if kind == _TRAINING:
+        needed_mb += _TRAINING_MB
     return math.ceil(needed_mb)
 
 

@@ -11,21 +11,19 @@ from pathlib import Path
 from typing import Literal, cast
 
 from sqlalchemy import func, select
-from sqlalchemy.orm import Session
 
 from jobkit.database.clock import utc_now
 from jobkit.database.quotas import admit_bytes
 from jobkit.database.readable_rows import readable
 from jobkit.database.session import Database
-from jobkit.database.tables import AliasRow, DeletedModelRow, ModelRow
-from jobkit.database.tenancy import names_of, own_name, shown_name, tenant_of
-from jobkit.errors import ModelKindError, NameTakenError, RowConflictError
-from jobkit.models.default_aliases import DEFAULT_KINDS
-from jobkit.models.errors import ModelDeprecatedError
+from jobkit.database.tables import AliasRow, ModelRow
+from jobkit.database.tenancy import names_of, own_name
+from jobkit.errors import RowConflictError
+from jobkit.models.aliases import point_alias
 from jobkit.models.header import artifact_format, dictionary_card, to_wire_card
 from jobkit.models.network_header import check_network, read_network_card
+from jobkit.models.publication import insert_version
 from jobkit.models.rows import (
-    alias_row,
     check_proven,
     resolved_row,
     row_of_bytes,
@@ -34,18 +32,17 @@ from jobkit.models.rows import (
     to_version,
     version_row,
 )
-from jobkit.schema import SELF, Alias, Model, ModelKind, ModelList, ModelState, ModelVersion
+from jobkit.schema import Alias, Model, ModelKind, ModelList, ModelState, ModelVersion
 from jobkit.storage.base import CHUNK_BYTES, ObjectStore, StoredObject
 from jobkit.storage.removals import assure
 from shared_rules.dictionary_file import Card
 
 MODEL_PREFIX = "models"
 # Of one name, published at the same moment.
-_MOST_CONFLICTS = 20
+MOST_CONFLICTS = 20
 # Of one model: when it is asked for, and in the list of all; a card has up to 64 KiB.
 MOST_VERSIONS = 100
 MOST_LISTED_VERSIONS = 20
-RESERVED_NAMES = frozenset({SELF, "auto", "smooth", "none", "latest"})
 
 
 @dataclass(frozen=True)
@@ -107,10 +104,27 @@ class Registry:
         StorageQuotaError
             If the version is new, and the tenant would store more than it may.
         """
+        row = self.prepared(name, stored, card, is_proven=is_proven, shared=shared)
+        for _ in range(MOST_CONFLICTS):
+            try:
+                return self._insert(row, version)
+            except RowConflictError:
+                continue  # another version was published at the same moment: now the next number is another one
+        return self._insert(row, version)
+
+    def prepared(
+        self,
+        name: str,
+        stored: StoredObject,
+        card: Card | None = None,
+        *,
+        is_proven: bool = False,
+        shared: bool = False,
+    ) -> ModelRow:
+        """Return the row of a version that `insert_version` is yet to number; parameters and errors as of `publish`."""
         assure(self._database, self._store, stored.key)
         kind, artifact, full_card = self._inspect(stored, card)
-        wire_card = to_wire_card(full_card).model_dump(mode="json")
-        row = ModelRow(
+        return ModelRow(
             name=own_name(self._database.tenant, name),
             shared=shared,
             kind=kind,
@@ -118,18 +132,12 @@ class Registry:
             sha256=stored.sha256,
             size_bytes=stored.size_bytes,
             key=stored.key,
-            card=wire_card,
+            card=to_wire_card(full_card).model_dump(mode="json"),
             state=(ModelState.READY if is_proven else ModelState.PROVING).value,
             attempt=0,
             forgiven=0,
             created_at=utc_now(),
         )
-        for _ in range(_MOST_CONFLICTS):
-            try:
-                return self._insert(row, version)
-            except RowConflictError:
-                continue  # another version was published at the same moment: now the next number is another one
-        return self._insert(row, version)
 
     def publish_file(
         self, name: str, path: Path, card: Card | None = None, version: int | None = None
@@ -225,31 +233,7 @@ class Registry:
             If the version is not to be used.
         """
         with self._database.write() as session:
-            resolved = resolved_row(session, reference)
-            # Locked: it may be deprecated or deleted at the same moment.
-            target = version_row(session, resolved.name, resolved.version, lock=True)
-            check_proven(target)
-            if target.deprecated_at is not None:
-                shown = f"{shown_name(target.name)}@{target.version}"
-                raise ModelDeprecatedError(f"{shown} is deprecated; no alias may point to it")
-            tenant = tenant_of(session)
-            names = names_of(tenant, alias)
-            if alias in RESERVED_NAMES or session.scalars(select(ModelRow).where(ModelRow.name.in_(names))).first():
-                raise NameTakenError(f"{alias!r} is the name of a model, or reserved")
-            own = own_name(tenant, alias)
-            row = session.get(AliasRow, own, with_for_update=True) or AliasRow(alias=own, shared=False)
-            if tenant is None:
-                row.shared = True
-            kind = _kind_of_alias(session, row)
-            if kind not in (None, target.kind):
-                raise ModelKindError(
-                    f"{alias!r} means models of the kind {kind}; {reference} is of the kind {target.kind}"
-                )
-            row.name, row.version, row.updated_at = target.name, target.version, utc_now()
-            # Jobs of all tenants mean a shared alias: they have to see what it points to.
-            target.shared |= row.shared
-            session.add(row)
-            return to_alias(row)
+            return point_alias(session, alias, reference)
 
     def _inspect(self, stored: StoredObject, card: Card | None) -> tuple[ModelKind, Artifact, Card]:
         with self._store.local_file(stored.key) as path:
@@ -262,55 +246,8 @@ class Registry:
 
     def _insert(self, row: ModelRow, version: int | None) -> tuple[ModelVersion, bool]:
         with self._database.write() as session:
-            name = shown_name(row.name)
-            if name in RESERVED_NAMES or alias_row(session, name) is not None:
-                raise NameTakenError(f"{name!r} is an alias, or reserved")
-            if row.name != name and session.scalars(select(ModelRow).where(ModelRow.name == name).limit(1)).first():
-                raise NameTakenError(f"{name!r} is the name of a shared model; publish yours under another one")
-            is_same = (ModelRow.name == row.name) & (ModelRow.sha256 == row.sha256)
-            existing_row = session.scalars(select(ModelRow).where(is_same).with_for_update()).one_or_none()
-            if existing_row is not None:
-                _publish_again(existing_row, row)
-                return to_version(session, existing_row), False
-            new_version = _free_number(session, row.name, version)
-            new_row = ModelRow(
-                **{c.key: getattr(row, c.key) for c in ModelRow.__table__.columns} | {"version": new_version}
-            )
-            session.add(new_row)
-            session.flush()
-            admit_bytes(session, row.size_bytes)
-            return to_version(session, new_row), True
-
-
-def _kind_of_alias(session: Session, row: AliasRow) -> str | None:
-    """Return the kind of model that an alias keeps to: that of its first target; None where it is free."""
-    if row.name is None:
-        return DEFAULT_KINDS.get(shown_name(row.alias))
-    return version_row(session, row.name, row.version).kind
-
-
-def _free_number(session: Session, name: str, requested_number: int | None) -> int:
-    """Return the number for a new version; those of deleted versions never come back, since jobs name them."""
-    if requested_number is not None and session.get(ModelRow, (name, requested_number)) is not None:
-        raise NameTakenError(f"{shown_name(name)}@{requested_number} is taken by other bytes; versions never change")
-    latest = session.scalar(select(func.max(ModelRow.version)).where(ModelRow.name == name)) or 0
-    # Read last: a version that is deleted at this moment is seen among the rows above, or here.
-    last_deleted = session.scalar(select(DeletedModelRow.version).where(DeletedModelRow.name == name)) or 0
-    if requested_number is None:
-        return max(latest, last_deleted) + 1
-    if requested_number <= last_deleted:
-        raise NameTakenError(f"{shown_name(name)}@{last_deleted} was deleted; no version up to it comes back")
-    return requested_number
-
-
-def _publish_again(row: ModelRow, new_row: ModelRow) -> None:
-    """Let a version that was not usable be used, or be proven anew by the card that came now."""
-    row.shared |= new_row.shared
-    if row.state == ModelState.READY.value:
-        return
-    if new_row.state == ModelState.READY.value or row.state == ModelState.REFUSED.value:
-        row.state, row.card, row.problem = new_row.state, new_row.card, None
-        row.lease_until = row.enqueued_at = None
-        # As many tries as a new one; one that is under way may write no more.
-        row.attempt += 1
-        row.forgiven = row.attempt
+            new_row, is_new = insert_version(session, row, version)
+            if is_new:
+                session.flush()
+                admit_bytes(session, row.size_bytes)
+            return to_version(session, new_row), is_new

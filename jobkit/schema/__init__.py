@@ -35,6 +35,7 @@ from jobkit.schema.jobs import (
     ResultFormat,
 )
 from jobkit.schema.keys import AuditEntry, AuditPage, Key, KeyList, KeyWithSecret, NewKey, Scope
+from jobkit.schema.learning import JudgedMesh, TrainingOptions, TrainingResult, TrainingSpec
 from jobkit.schema.meshes import (
     BoundingBox,
     EncodedFacts,
@@ -113,6 +114,7 @@ from jobkit.schema.tenants import (
     Usage,
     Version,
 )
+from jobkit.schema.trainings import NewTraining, Training, TrainingFilter, TrainingLinks, TrainingPage
 from jobkit.schema.uploads import Upload, UploadKind, UploadLinks, UploadProblem, UploadState
 from jobkit.schema.webhooks import (
     ENDINGS,
@@ -201,6 +203,7 @@ __all__ = [
     "JobResult",
     "JobSpec",
     "JobState",
+    "JudgedMesh",
     "Key",
     "KeyList",
     "KeyWithSecret",
@@ -230,6 +233,7 @@ __all__ = [
     "ModelVersion",
     "NewBatch",
     "NewKey",
+    "NewTraining",
     "NewWebhook",
     "Output",
     "OutputFormat",
@@ -262,6 +266,13 @@ __all__ = [
     "TenantChanges",
     "TenantList",
     "TenantWithUse",
+    "Training",
+    "TrainingFilter",
+    "TrainingLinks",
+    "TrainingOptions",
+    "TrainingPage",
+    "TrainingResult",
+    "TrainingSpec",
     "Upload",
     "UploadKind",
     "UploadLinks",

@@ -20,7 +20,7 @@ from jobkit.schema.methods import (
 )
 from jobkit.schema.spec import HoleSelection, RepairSpec
 from shared_rules.hole_selection import MODEL_FILLS_ONLY, names_fills
-from shared_rules.tasks import Task
+from shared_rules.tasks import TRAIN, Task
 
 # The field of a spec that holds the options of a task; `fill` has fields of its own, `decode` has no options.
 OPTIONS_OF_TASKS = {"restore": "restore", "denoise": "denoise", "encode": "encode"}
@@ -37,6 +37,8 @@ _REQUIRED = {"restore": "restore.missing", "encode": "encode.max_error"}
 
 def conflict_of(spec: RepairSpec) -> str | None:
     """Say in a sentence which options of a job exclude each other, or which one is missing; None where none does."""
+    if spec.task == TRAIN or getattr(spec, TRAIN, None) is not None:
+        return "the task train needs several meshes: start it by POST /v1/trainings"
     return _conflict_of_fill(spec) if spec.task == "fill" else _conflict_of_task(spec)
 
 

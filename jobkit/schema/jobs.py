@@ -10,6 +10,7 @@ from typing_extensions import TypedDict
 
 from jobkit.schema.base import BatchId, JobId, MeshId, Moment, Response, Sha256
 from jobkit.schema.codes import FailureCode
+from jobkit.schema.learning import TrainingResult
 from jobkit.schema.meshes import Hole
 from jobkit.schema.models import ResolvedModel
 from jobkit.schema.spec import JobSpec, Limits
@@ -18,8 +19,8 @@ from shared_rules.hole_selection import HoleAction
 from shared_rules.option_words import OutputFormat
 from shared_rules.tasks import FILL, Task
 
-# What a job hands back: a mesh in a format of its own choice, or an encoded surface.
-ResultFormat = OutputFormat | Literal["qpz"]
+# What a job hands back: a mesh in a format of its own choice, an encoded surface, or a model.
+ResultFormat = OutputFormat | Literal["qpz", "safetensors"]
 FileRole = Literal["result", "report", "preview", "closeups"]
 
 
@@ -55,7 +56,9 @@ class ResultFile(Response):
 class JobResult(Response):
     """Facts of a finished job. Lengths are in mesh units; what a task does not count is null."""
 
-    format: ResultFormat = Field(description="Format of what came back; `qpz` from `encode`.", examples=["ply"])
+    format: ResultFormat = Field(
+        description="Format of what came back; `qpz` from `encode`, `safetensors` from `train`.", examples=["ply"]
+    )
     holes: HoleCounts = Field(default_factory=HoleCounts, description="Verdicts over all holes.")
     new_vertices: int = Field(default=0, ge=0, description="Vertices that were added.", examples=[2110])
     new_triangles: int = Field(default=0, ge=0, description="Triangles that were added.", examples=[4800])
@@ -78,6 +81,7 @@ class JobResult(Response):
         "as promised in the file that `decode` read.",
         examples=[0.0098],
     )
+    training: TrainingResult | None = Field(default=None, description="Of `train`: what was learned.")
     seconds: float = Field(default=0.0, ge=0, description="Wall-clock seconds of the job.", examples=[14.2])
     peak_memory_mb: int | None = Field(
         default=None,

@@ -5,6 +5,7 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import Field, model_validator
 
 from jobkit.schema.base import TEXT_PATTERN, WHOLE, MeshId, Request
+from jobkit.schema.learning import TrainingSpec
 from jobkit.schema.methods import SELF, AutoMethod, DictionaryMethod, DictionarySize, Method
 from jobkit.schema.tasks import Denoising, Encoding, Restoring
 from jobkit.schema.webhook_url import WebhookUrl
@@ -165,7 +166,8 @@ class RepairSpec(Request):
     task: Task = Field(
         default=FILL,
         description="`fill` closes holes; `restore` gives missing vertices a position; `denoise` takes noise from "
-        "positions; `encode` compresses the surface into a `.qpz` file, and `decode` brings it back.",
+        "positions; `encode` compresses the surface into a `.qpz` file, and `decode` brings it back. `train` stands in "
+        "jobs that `POST /v1/trainings` has made, and is refused elsewhere.",
         examples=["fill"],
     )
     method: Method = Field(
@@ -211,7 +213,6 @@ class RepairSpec(Request):
     metadata: Metadata = Field(
         default_factory=dict, description="Up to 16 facts of the sender's own, handed back unread."
     )
-
     callback_url: WebhookUrl | None = Field(
         default=None,
         description="Where to send the message of the job's end, besides to subscriptions; by the same rules, and "
@@ -238,6 +239,9 @@ class JobSpec(RepairSpec):
         "same bytes may come as several files.",
         examples=["face000.ply"],
     )
+    train: TrainingSpec | None = Field(
+        default=None, description="Options of the task `train`, in jobs that `POST /v1/trainings` has made."
+    )
 
     @property
     def reference_id(self) -> str | None:
@@ -248,12 +252,14 @@ class JobSpec(RepairSpec):
 
 
 # Fields that came after the first release of the contract, in groups that came together.
+_FIELDS_OF_TASKS = {"task", "restore", "denoise", "encode"}
 _LATER_FIELDS = (
-    {"task", "restore", "denoise", "encode"},
+    _FIELDS_OF_TASKS,
     {"colours"},
     {"priority"},
     {"length_unit"},
     {"callback_url"},
+    {"train"},
 )
 
 

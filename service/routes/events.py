@@ -10,14 +10,14 @@ from starlette.responses import Response
 
 from jobkit.schema import EventPage
 from service.routes.common import JobIdPath, json_response, problems
-from service.services import ServicesDep, get_principal
+from service.services import Services, ServicesDep, get_principal
 from service.strict_validation import StrictRoute
 
 router = APIRouter(tags=["jobs"], route_class=StrictRoute)
 
 _LARGEST = 2**31 - 1
 _STREAM = EventSourceResponse.media_type
-_RESPONSES: dict[int | str, dict[str, Any]] = {
+RESPONSES: dict[int | str, dict[str, Any]] = {
     200: {
         "model": EventPage,
         "description": "A page; or, with `Accept: text/event-stream`, every event as it comes: `id` is its sequence, "
@@ -40,7 +40,7 @@ LastEventId = Annotated[
 ]
 
 
-@router.get("/v1/jobs/{job_id}/events", response_model=None, responses=_RESPONSES)
+@router.get("/v1/jobs/{job_id}/events", response_model=None, responses=RESPONSES)
 async def list_events(
     request: Request,
     services: ServicesDep,
@@ -50,6 +50,12 @@ async def list_events(
     last_event_id: LastEventId = "",
 ) -> Response:
     """List everything that happened to a job, oldest first, or stream it with `Accept: text/event-stream`."""
+    return await events_response(request, services, job_id, (after, limit, last_event_id))
+
+
+async def events_response(request: Request, services: Services, job_id: str, part: tuple[int, int, str]) -> Response:
+    """Answer with a page of a job's events, or stream them; `part` is `after`, `limit` and `Last-Event-ID`."""
+    after, limit, last_event_id = part
     if not accepts_stream(request.headers.get("accept", "")):
         page = await run_in_threadpool(services.jobs.events, job_id, after, limit)
         return json_response(page, Vary="Accept")

@@ -124,7 +124,7 @@ async def get_job(
     if_none_match: IfNoneMatch = None,
 ) -> Response:
     """Show where a job stands. Its entity tag covers all but `eta_s`, which ages by itself."""
-    has_waited = await _wait_for_end(services, job_id, prefer)
+    has_waited = await wait_for_end(services, job_id, prefer)
     if if_none_match is not None:
         view = await services.job_cache.status(job_id)
         tag = etag_of(view.status.revision, view.queue_position, view.status.is_pinned)
@@ -187,7 +187,7 @@ def _changed_spec(spec: JobSpec, changes: RepairSpec) -> JobSpec:
 async def answer_submission(services: Services, submission: Submission, prefer: str | None) -> Response:
     """Submit a job, wait as long as the client prefers to, and say how it stands."""
     job, is_new = await run_in_threadpool(submit, services, submission)
-    has_waited = await _wait_for_end(services, job.id, prefer)
+    has_waited = await wait_for_end(services, job.id, prefer)
     response = job_response(await services.job_cache.job(job.id))
     if has_waited:
         note_applied(response, prefer)
@@ -196,7 +196,7 @@ async def answer_submission(services: Services, submission: Submission, prefer: 
     return note_replayed(response, is_new=is_new)
 
 
-async def _wait_for_end(services: Services, job_id: str, prefer: str | None) -> bool:
+async def wait_for_end(services: Services, job_id: str, prefer: str | None) -> bool:
     """Wait as the client prefers; return whether that was possible, so that it can be told."""
     wait_s = min(preferred_wait_s(prefer), services.settings.max_wait_s)
     if wait_s <= 0 or (await services.job_cache.status(job_id)).status.state.is_terminal:

@@ -81,6 +81,9 @@ def _fill(plants: Plants) -> None:
     batch = plants.call(OWN, "POST", "/v1/batches", json={"mesh_ids": [mesh.json()["id"]], "spec": SMOOTH})
     assert batch.status_code == 202, batch.text
     plants.ids["batch_id"] = batch.json()["id"]
+    training = plants.call(OWN, "POST", "/v1/trainings", json={"model": "reliefs", "meshes": [plants.ids["mesh_id"]]})
+    assert training.status_code == 202, training.text
+    plants.ids["training_id"] = training.json()["id"]
     webhook = plants.call(OWN, "POST", "/v1/webhooks", json={"url": HOOK, "events": ["job.succeeded"]})
     assert webhook.status_code == 201, webhook.text
     plants.ids["webhook_id"] = webhook.json()["id"]
@@ -108,6 +111,7 @@ BODIES: dict[str, Any] = {
     "create_job": {"mesh_id": "{mesh_id}"},
     "rerun_job": {},
     "create_batch": {"mesh_ids": ["{mesh_id}"]},
+    "create_training": {"model": "stolen", "meshes": ["{mesh_id}"]},
     "set_alias": {"model": "scales@1"},
     "deprecate_model_version": {"reason": "x"},
     "change_webhook": {"enabled": False},
@@ -123,6 +127,7 @@ LISTS = {
     "list_meshes": "items",
     "list_batches": "items",
     "list_models": "models",
+    "list_trainings": "items",
     "list_webhooks": "items",
     "list_keys": "items",
     "list_audit": "items",
@@ -152,7 +157,7 @@ def _body(operation: str, ids: dict[str, str]) -> dict[str, Any] | None:
     fields = BODIES.get(operation)
     known = {"{mesh_id}": ids["mesh_id"]}
     filled = {
-        name: [known["{mesh_id}"]] if value == [*known] else known.get(str(value), value)
+        name: [known[entry] for entry in value] if isinstance(value, list) else known.get(str(value), value)
         for name, value in (fields or {}).items()
     }
     return None if fields is None else filled

@@ -97,4 +97,6 @@ def test_a_result_is_named_after_its_upload(filename: str | None, expected: str)
 
 def test_the_name_of_a_result_says_what_was_done() -> None:
     names = [result_name("scan.ply", "f" * 64, ".qpz", task) for task in TASKS]
-    assert names == [f"scan-{word}.qpz" for word in ("repaired", "restored", "denoised", "encoded", "decoded")]
+    assert names == [
+        f"scan-{word}.qpz" for word in ("repaired", "restored", "denoised", "encoded", "decoded", "learned")
+    ]

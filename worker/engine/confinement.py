@@ -72,7 +72,8 @@ def _library_folders() -> list[Path]:
         *os.environ.get("PYTHONPATH", "").split(":"),
     ]
     packages = [path for path in sys.path if Path(path).name in ("site-packages", "dist-packages")]
-    own = [Path(quadpatch.__file__).parent, Path(__file__).parents[1]]
+    beside = Path(__file__).parents[2]
+    own = [Path(quadpatch.__file__).parent, *(beside / name for name in ("worker", "training", "shared_rules"))]
     return [
         *own,
         *(Path(place) for place in (*places, *packages) if Path(place).is_absolute() and Path(place) != Path("/")),
@@ -82,5 +83,5 @@ def _library_folders() -> list[Path]:
 def _inputs(folder: Path, request: EngineRequest) -> list[Path]:
     """Return the files outside the folder that the request names: meshes, which may be linked, and the model."""
     model = [Path(request.model)] if os.path.isabs(request.model) else []
-    meshes = [name for name in (request.source, request.reference) if name]
+    meshes = [name for name in (request.source, request.reference, *request.meshes.values()) if name]
     return [*((folder / name).resolve() for name in meshes), *model]

@@ -33,7 +33,7 @@ from worker.engine.request import (
     EngineRequest,
     EngineTask,
 )
-from worker.engine.tasks import MESH_TASKS
+from worker.engine.tasks import MESH_TASKS, train
 
 
 def run_request(folder: Path, descriptor: int) -> None:
@@ -92,9 +92,14 @@ def _do_task(folder: Path, request: EngineRequest, reporter: Reporter, _pool: Pr
         _write_json(folder / REPORT_NAME, done.report)
 
 
+def _train(folder: Path, request: EngineRequest, reporter: Reporter, _pool: ProcessPool) -> None:
+    _write_json(folder / REPORT_NAME, train(folder, request, reporter.progress))
+
+
 _TASKS: dict[EngineTask, Callable[[Path, EngineRequest, Reporter, ProcessPool], None]] = {
     "repair": _repair,
     **dict.fromkeys(MESH_TASKS, _do_task),
+    "train": _train,
     "inspect": _inspect,
     "prove": _prove,
 }

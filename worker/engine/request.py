@@ -4,9 +4,11 @@
 
     request.json     this request
     mesh/source.ply  the mesh, under a name that states its format, and nothing beside it
+    mesh-0/source.ply  meshes that a training learns from, numbered, each likewise
     reference/source.ply  the clean scan that denoising learns from, likewise
     missing.json     numbers of the vertices to restore, where a list names them
     repaired.ply     the repaired mesh; restored.ply, denoised.ply, encoded.qpz, decoded.ply of other tasks
+    learned.safetensors   the dictionary of a training
     report.json      what was done to every hole, or what else was done
     preview.png      the before/after picture
     closeups.zip     a picture of each chosen hole
@@ -35,7 +37,7 @@ CLOSE_UPS_NAME = "closeups.zip"
 CALIBRATION_NAME = "calibration.json"
 LOG_NAME = "engine.log"
 
-EngineTask = Literal["repair", "restore", "denoise", "encode", "decode", "inspect", "prove"]
+EngineTask = Literal["repair", "restore", "denoise", "encode", "decode", "train", "inspect", "prove"]
 
 
 @dataclass(frozen=True)
@@ -67,6 +69,8 @@ class EngineRequest:
         Which vertices to restore, as `jobkit.schema.Missing` says it.
     scan : str
         Names the bytes of the mesh and how they are read, for what is kept of a calibration; empty where nothing is.
+    meshes : dict
+        Of a training: paths of its mesh files in the request's folder by the ids of the meshes.
     """
 
     task: EngineTask
@@ -81,6 +85,7 @@ class EngineRequest:
     reference: str = ""
     missing: dict[str, Any] | None = None
     scan: str = ""
+    meshes: dict[str, str] = field(default_factory=dict)
 
     def save(self, folder: Path) -> None:
         """Write the request into its folder."""

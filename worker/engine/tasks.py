@@ -63,6 +63,15 @@ def _decode(folder: Path, request: EngineRequest, progress: Progress) -> TaskRes
     return decode_file(folder / request.source, folder / request.output, model, progress)
 
 
+def train(folder: Path, request: EngineRequest, progress: Progress) -> dict[str, Any]:
+    """Learn a dictionary from the meshes of a request; return the report."""
+    from training.requested import TrainingOptions, train_dictionary  # noqa: PLC0415  few engines need it
+    from training.sources import Source  # noqa: PLC0415
+
+    meshes = [Source(mesh_id, folder / name, mesh_id) for mesh_id, name in request.meshes.items()]
+    return train_dictionary(meshes, folder / request.output, TrainingOptions(**request.options), progress)
+
+
 MESH_TASKS: Mapping[EngineTask, Callable[[Path, EngineRequest, Progress], TaskResult]] = {
     "restore": _restore,
     "denoise": _denoise,

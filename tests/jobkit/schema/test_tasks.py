@@ -18,18 +18,26 @@ def spec(task: str, **fields: Any) -> JobSpec:
     return JobSpec.model_validate({**MESH, "task": task, **WHOLE[task], **fields})
 
 
-@pytest.mark.parametrize("task", TASKS)
+@pytest.mark.parametrize("task", WHOLE)
 def test_every_task_is_a_whole_job_that_is_read_as_it_was_written(task: str) -> None:
     whole = spec(task)
     assert conflict_of(whole) is None
     assert JobSpec.model_validate_json(whole.model_dump_json()) == whole
 
 
+def test_the_task_train_is_for_trainings_alone() -> None:
+    assert {*WHOLE, "train"} == set(TASKS)
+    options = {"model": "walls", "meshes": ["a" * 64]}
+    for fields in ({"task": "train"}, {"task": "train", "train": options}, {"train": options}):
+        message = conflict_of(JobSpec.model_validate(MESH | fields))
+        assert message == "the task train needs several meshes: start it by POST /v1/trainings"
+
+
 def test_a_spec_of_before_there_were_tasks_fills() -> None:
     assert JobSpec.model_validate(MESH).task == "fill"
 
 
-@pytest.mark.parametrize("task", TASKS)
+@pytest.mark.parametrize("task", WHOLE)
 def test_a_task_without_a_method_has_its_own_default(task: str) -> None:
     of_others = DictionaryMethod(method="dictionary", model=SELF)
     assert spec(task).method == (AutoMethod(method="auto") if task == "fill" else of_others)
@@ -194,7 +202,7 @@ def test_the_identity_of_a_task_is_what_it_was_before_there_were_colours() -> No
 
 
 def test_other_tasks_have_an_identity_of_their_own() -> None:
-    specs = [*map(spec, TASKS), spec("denoise", denoise={}), spec("encode", encode={"max_error": 0.02})]
+    specs = [*map(spec, WHOLE), spec("denoise", denoise={}), spec("encode", encode={"max_error": 0.02})]
     assert len({identity_of(one) for one in specs}) == len(specs)
 
 
