@@ -14,6 +14,7 @@
     │   ├── DeliveryNotFoundError   delivery_not_found    the subscription has no such delivery, or no longer
     │   ├── KeyNotFoundError        key_not_found
     │   ├── TenantNotFoundError     tenant_not_found      no key names that tenant, and nothing was set for it
+    │   ├── RuleNotFoundError       rule_not_found        no rule has that name or version
     │   ├── ResultMissingError      result_missing        the job has a result, but the store has lost its file
     │   └── ObjectNotFoundError     object_not_found      the store holds nothing under that key
     ├── ConflictError
@@ -141,6 +142,12 @@ class TenantNotFoundError(NotFoundError):
     """No key names that tenant, and nothing was set for it."""
 
     code = "tenant_not_found"
+
+
+class RuleNotFoundError(NotFoundError):
+    """No rule has that name or version."""
+
+    code = "rule_not_found"
 
 
 class ResultMissingError(NotFoundError):

@@ -43,6 +43,7 @@ from service.routes import (
     repairs,
     results,
     retention,
+    rules,
     tenants,
     trainings,
     uploads,
@@ -91,7 +92,7 @@ def create_app(settings: Settings, telemetry: Telemetry | None = None) -> FastAP
     about_models = (models, model_lifetime, trainings)
     about_messages = (webhooks, callbacks, deliveries)
     about_service = (health, documentation, metrics)
-    modules = (*about_jobs, *about_models, *about_messages, *about_access, *about_service)
+    modules = (*about_jobs, *about_models, rules, *about_messages, *about_access, *about_service)
     routers = [module.router for module in modules]
     for router in routers:
         app.include_router(router, dependencies=[Depends(check_scope)])

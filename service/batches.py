@@ -18,10 +18,11 @@ from jobkit.jobs.new_jobs import NewJob
 from jobkit.logs import current_request_id
 from jobkit.meshes import MeshSearch
 from jobkit.requeue import MOST_ENQUEUED, submit_jobs
-from jobkit.schema import MOST_JOBS, Batch, JobSpec, JobState, MeshFilter, NewBatch, RepairSpec, ResolvedModel
+from jobkit.schema import MOST_JOBS, Batch, JobSpec, JobState, MeshFilter, NewBatch, RepairSpec, ResolvedModel, Rule
 from jobkit.telemetry import current_traceparent
 from service.formats import clean_filename
 from service.mesh_checks import check_mesh
+from service.rules import with_rule
 from service.services import Services
 from service.submission import check_options, check_spec
 
@@ -87,9 +88,10 @@ def rerun_batch(
 
 def _specs_of(services: Services, new: NewBatch) -> list[JobSpec]:
     if new.jobs is not None:
-        return [_as_of_a_batch(spec) for spec in new.jobs]
+        known: dict[str, Rule] = {}
+        return [with_rule(services, _as_of_a_batch(spec), known) for spec in new.jobs]
     mesh_ids = new.mesh_ids if new.filter is None else _filtered(services, new.filter)
-    shared = _as_of_a_batch(new.spec)
+    shared = with_rule(services, _as_of_a_batch(new.spec))
     fields = {name: getattr(shared, name) for name in RepairSpec.model_fields}
     # They were checked once; nested options are shared by all of them.
     return [JobSpec.model_construct(mesh_id=mesh_id, mesh_name=None, **fields) for mesh_id in mesh_ids or ()]

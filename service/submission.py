@@ -36,6 +36,7 @@ from service.formats import clean_filename
 from service.idempotency import idempotency_of
 from service.mesh_checks import check_mesh, check_reference
 from service.plan import check_hole_ids, make_plan, plan_of_task
+from service.rules import with_rule
 from service.services import Services
 from shared_rules.tasks import FILL
 
@@ -76,8 +77,10 @@ def submit(services: Services, submission: Submission) -> tuple[Job, bool]:
         If the mesh, or the reference, can't be worked on as asked.
     ModelNotFoundError, ModelKindError, NoNetworkError, ModelNotProvenError, ModelRefusedError
         If the method's model can't be used.
+    RuleNotFoundError
+        If there is no rule of the spec's name.
     OptionsConflictError
-        If options of the spec exclude each other.
+        If options of the spec exclude each other, or the rule says something else.
     CallbackSecretMissingError, AddressRefusedError, TlsRequiredError, HostUnknownError
         If its callback URL can't be used.
     OverLimitError
@@ -91,10 +94,11 @@ def submit(services: Services, submission: Submission) -> tuple[Job, bool]:
     if idempotency is not None and (earlier := services.jobs.earlier(idempotency)) is not None:
         return earlier, False
     services.full_tenants.check(services.database)
-    model = check_spec(services, submission.spec)
-    services.callbacks.check(submission.spec.callback_url)
+    spec = with_rule(services, submission.spec)
+    model = check_spec(services, spec)
+    services.callbacks.check(spec.callback_url)
     new = NewJob(
-        submission.spec.model_copy(update={"mesh_name": clean_filename(submission.spec.mesh_name)}),
+        spec.model_copy(update={"mesh_name": clean_filename(spec.mesh_name)}),
         model,
         services.settings.max_attempts,
         submission.rerun_of,
@@ -120,6 +124,7 @@ def accept(services: Services, new: NewJob, idempotency: Idempotency | None) -> 
 
 def plan(services: Services, spec: JobSpec) -> Plan:
     """Return what a job would do, without making it; raises as `submit`, and MeshNotReadyError."""
+    spec = with_rule(services, spec)
     model = check_spec(services, spec)
     mesh = services.meshes.get(spec.mesh_id)
     if mesh.state is MeshState.ANALYSING:

@@ -21,6 +21,7 @@ Codes made here, besides those of `quadpatch.errors`, which pass through:
     model_missing               the model is gone from the registry or the store
     model_damaged               the bytes of the model are not those that were published
     result_too_large            a file of the result is over the limit
+    acceptance_not_met          holes do not meet the limits of the spec, which says that the job fails then
 
 Tested in `tests/worker/engine/test_supervision.py`.
 """

@@ -29,6 +29,7 @@ from jobkit.schema import JobError, JobResult, JobState
 from jobkit.telemetry import StageSpans
 from quadpatch.stages import failure_of
 from shared_rules.tasks import TRAIN
+from worker.acceptance import check_acceptance
 from worker.calibrations import hand_on, take_back
 from worker.context import Context
 from worker.engine.limits import EngineLimits
@@ -147,6 +148,7 @@ def _work(context: Context, started_attempt: StartedAttempt, heartbeat: Heartbea
             take_back(meshes, job.mesh_id, folder, before)
         if deprecated is not None:
             note_deprecation(folder, f"{job.model.name}@{job.model.version}", deprecated.reason)
+        check_acceptance(folder, job.spec)
         cost = Cost(time.monotonic() - started_at, heartbeat.peak_mb)
         result = store_result(folder, request, started_attempt.attempt, context.store, cost)
         return _Repaired(result, stage_seconds(folder, job.spec))

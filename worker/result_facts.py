@@ -17,6 +17,7 @@ def facts_of_fill(report: Mapping[str, Any]) -> dict[str, Any]:
         "new_vertices": sum(hole.get("new_vertices", 0) for hole in report["holes"]),
         "new_triangles": sum(hole.get("new_triangles", 0) for hole in report["holes"]),
         "warnings": _warnings(report, counts),
+        "acceptance": report.get("acceptance"),
     }
 
 

@@ -3,6 +3,7 @@
 Tested in `tests/jobkit/schema/test_spec.py`.
 """
 
+from jobkit.schema.acceptance import Acceptance, Accepted, HoleFault, UnmetHole
 from jobkit.schema.base import Request, Response, rfc3339
 from jobkit.schema.batches import (
     MOST_JOBS,
@@ -77,6 +78,7 @@ from jobkit.schema.models import (
     ResolvedModel,
 )
 from jobkit.schema.problems import PROBLEM_MEDIA_TYPE, FieldError, Problem, ProblemQuota
+from jobkit.schema.rules import Rule, RuleContent, RuleLinks, RulePage, RulePlan, RuleTrial
 from jobkit.schema.spec import (
     Format,
     HoleRule,
@@ -152,6 +154,8 @@ __all__ = [
     "STAGES",
     "TASKS",
     "TRANSITIONS",
+    "Acceptance",
+    "Accepted",
     "Alias",
     "AliasTarget",
     "AuditEntry",
@@ -192,6 +196,7 @@ __all__ = [
     "Hole",
     "HoleAction",
     "HoleCounts",
+    "HoleFault",
     "HoleKind",
     "HoleRule",
     "HoleSelection",
@@ -259,6 +264,12 @@ __all__ = [
     "Restoring",
     "ResultFile",
     "ResultFormat",
+    "Rule",
+    "RuleContent",
+    "RuleLinks",
+    "RulePage",
+    "RulePlan",
+    "RuleTrial",
     "Scope",
     "SmoothMethod",
     "Task",
@@ -273,6 +284,7 @@ __all__ = [
     "TrainingPage",
     "TrainingResult",
     "TrainingSpec",
+    "UnmetHole",
     "Upload",
     "UploadKind",
     "UploadLinks",

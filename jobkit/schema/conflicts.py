@@ -111,6 +111,8 @@ def _options_of_fill(spec: RepairSpec) -> str | None:
         "colours": spec.colours != "auto",
         "output.closeups": spec.output.closeups,
         "output.attributes": spec.output.attributes is not None,
+        "rule": spec.rule is not None,
+        "acceptance": spec.acceptance is not None,
     }
     name = next((name for name, is_given in given.items() if is_given), None)
     return None if name is None else f"{name} goes with the task fill; the task of this job is {spec.task}"

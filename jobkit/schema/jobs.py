@@ -8,6 +8,7 @@ from typing import Annotated, Literal
 from pydantic import ConfigDict, Field
 from typing_extensions import TypedDict
 
+from jobkit.schema.acceptance import Accepted
 from jobkit.schema.base import BatchId, JobId, MeshId, Moment, Response, Sha256
 from jobkit.schema.codes import FailureCode
 from jobkit.schema.learning import TrainingResult
@@ -81,6 +82,7 @@ class JobResult(Response):
         "as promised in the file that `decode` read.",
         examples=[0.0098],
     )
+    acceptance: Accepted | None = Field(default=None, description="What came of the spec's `acceptance`.")
     training: TrainingResult | None = Field(default=None, description="Of `train`: what was learned.")
     seconds: float = Field(default=0.0, ge=0, description="Wall-clock seconds of the job.", examples=[14.2])
     peak_memory_mb: int | None = Field(

@@ -4,7 +4,8 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, model_validator
 
-from jobkit.schema.base import TEXT_PATTERN, WHOLE, MeshId, Request
+from jobkit.schema.acceptance import Acceptance
+from jobkit.schema.base import REFERENCE_PATTERN, TEXT_PATTERN, WHOLE, MeshId, Request
 from jobkit.schema.learning import TrainingSpec
 from jobkit.schema.methods import SELF, AutoMethod, DictionaryMethod, DictionarySize, Method
 from jobkit.schema.tasks import Denoising, Encoding, Restoring
@@ -194,6 +195,14 @@ class RepairSpec(Request):
         "finds that better; `harmonic`: the colours of the rim are spread.",
         examples=["auto"],
     )
+    rule: str | None = Field(
+        default=None,
+        pattern=REFERENCE_PATTERN,
+        description="A saved rule, `name` or `name@version`: it says `holes`, `method`, `colours` and `acceptance`, "
+        "which are left out then.",
+        examples=["castings"],
+    )
+    acceptance: Acceptance | None = Field(default=None, description="What every chosen hole of the result has to meet.")
     length_unit: LengthUnit | None = Field(
         default=None,
         description="Unit of the mesh's coordinates, where its file states none. What comes back as GLB is in metres "
@@ -253,6 +262,7 @@ class JobSpec(RepairSpec):
 
 # Fields that came after the first release of the contract, in groups that came together.
 _FIELDS_OF_TASKS = {"task", "restore", "denoise", "encode"}
+_FIELDS_OF_RULES = ({"rule"}, {"acceptance"})
 _LATER_FIELDS = (
     _FIELDS_OF_TASKS,
     {"colours"},
@@ -260,6 +270,7 @@ _LATER_FIELDS = (
     {"length_unit"},
     {"callback_url"},
     {"train"},
+    *_FIELDS_OF_RULES,
 )
 
 

@@ -78,12 +78,21 @@ def _fill(plants: Plants) -> None:
     alias = plants.call(OWN, "PUT", "/v1/aliases/candidate", json={"model": "scales@1"})
     assert alias.status_code == 200, alias.text
     plants.ids |= {"name": "scales", "version": "1", "alias": "candidate"}
-    batch = plants.call(OWN, "POST", "/v1/batches", json={"mesh_ids": [mesh.json()["id"]], "spec": SMOOTH})
+    _fill_more(plants)
+
+
+def _fill_more(plants: Plants) -> None:
+    """Add what names the mesh, and what names nothing."""
+    mesh_ids = [plants.ids["mesh_id"]]
+    batch = plants.call(OWN, "POST", "/v1/batches", json={"mesh_ids": mesh_ids, "spec": SMOOTH})
     assert batch.status_code == 202, batch.text
     plants.ids["batch_id"] = batch.json()["id"]
-    training = plants.call(OWN, "POST", "/v1/trainings", json={"model": "reliefs", "meshes": [plants.ids["mesh_id"]]})
+    training = plants.call(OWN, "POST", "/v1/trainings", json={"model": "reliefs", "meshes": mesh_ids})
     assert training.status_code == 202, training.text
     plants.ids["training_id"] = training.json()["id"]
+    rule = plants.call(OWN, "PUT", "/v1/rules/scales", json={"acceptance": {"min_confidence": 0.5}})
+    assert rule.status_code == 201, rule.text
+    plants.ids["reference"] = "scales"
     webhook = plants.call(OWN, "POST", "/v1/webhooks", json={"url": HOOK, "events": ["job.succeeded"]})
     assert webhook.status_code == 201, webhook.text
     plants.ids["webhook_id"] = webhook.json()["id"]
@@ -113,6 +122,7 @@ BODIES: dict[str, Any] = {
     "create_batch": {"mesh_ids": ["{mesh_id}"]},
     "create_training": {"model": "stolen", "meshes": ["{mesh_id}"]},
     "set_alias": {"model": "scales@1"},
+    "dry_run_rule": {"mesh_id": "{mesh_id}"},
     "deprecate_model_version": {"reason": "x"},
     "change_webhook": {"enabled": False},
 }
@@ -128,12 +138,13 @@ LISTS = {
     "list_batches": "items",
     "list_models": "models",
     "list_trainings": "items",
+    "list_rules": "items",
     "list_webhooks": "items",
     "list_keys": "items",
     "list_audit": "items",
 }
 MAKES = {"describe_uploads", "create_upload", "upload_mesh", "repair", "publish_model", "metrics"}
-MAKES |= {"create_key", "create_webhook", "get_limits", "get_version", "renew_callback_secret"}
+MAKES |= {"create_key", "create_webhook", "get_limits", "get_version", "renew_callback_secret", "save_rule"}
 # The operator's own: 403 for the keys of all others, whatever tenant is named.
 OPERATORS = {"list_tenants", "get_tenant", "change_tenant"}
 
