@@ -5,10 +5,12 @@ Also tests `jobkit.models.publication`, `jobkit.models.aliases` and `jobkit.data
 
 import threading
 from collections.abc import Callable
+from datetime import timedelta
 from functools import partial
 
 import pytest
 
+from jobkit.database.clock import utc_now
 from jobkit.database.session import Database
 from jobkit.database.tables import ModelRow
 from jobkit.errors import (
@@ -26,7 +28,7 @@ from jobkit.jobs.search import JobSearch
 from jobkit.jobs.trainings import check_names, register_learned
 from jobkit.meshes import Meshes
 from jobkit.models.registry import MODEL_PREFIX, Registry
-from jobkit.retention import delete_job, delete_mesh
+from jobkit.retention import delete_job, delete_mesh, expire_meshes
 from jobkit.schema import Job, JobError, JobResult, JobState, NewTraining, ResolvedModel, TrainingResult
 from jobkit.storage.base import ObjectStore, StoredObject
 
@@ -201,8 +203,11 @@ def test_its_meshes_are_kept_and_found_as_long_as_it_is(bench: Bench) -> None:
         delete_mesh(bench.database, last)
     assert [found.id for found in bench.jobs.page(10, None, JobSearch(mesh_id=last)).items] == [job.id]
     bench.jobs.request_cancel(job.id)
+    later = utc_now() + timedelta(days=100)
+    assert expire_meshes(bench.database, 30, later) == 0
     delete_job(bench.database, bench.store, job.id)
     delete_mesh(bench.database, last)
+    assert expire_meshes(bench.database, 30, later) == len(bench.meshes) - 1
     with pytest.raises(MeshNotFoundError):
         bench.train()
 
