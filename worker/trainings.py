@@ -91,7 +91,7 @@ def publish_training(
         except RowConflictError:
             continue  # another version was published at the same moment: now the next number is another one
         except NameTakenError as error:
-            return attempts.fail(started_attempt.attempt, JobError(code=error.code, message=str(error)))
+            return attempts.fail(started_attempt.attempt, JobError(code="model_name_taken", message=str(error)))
     return attempts.publish(started_attempt.attempt, result, stages, complete)
 
 

@@ -28,6 +28,8 @@ FAILURE_CODES = (
     "out_of_memory",
     "time_limit_exceeded",
     "result_too_large",
+    "acceptance_not_met",
+    "model_name_taken",
     "mesh_damaged",
     "mesh_missing",
     "proof_failed",

@@ -10,10 +10,12 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
+from jobkit.schema.acceptance import Accepted
 from jobkit.schema.base import Response
 from jobkit.schema.jobs import HoleCounts
 from jobkit.schema.report_parts import AppliedPatches, Box, SourceMesh, TaskReport, Vector, Welded
 from jobkit.schema.task_reports import DecodeReport, DenoiseReport, EncodeReport, RestoreReport
+from jobkit.schema.training_reports import TrainReport
 from shared_rules.hole_selection import HoleKind
 
 HoleVerdict = Literal["filled", "filled_smooth", "skipped", "refused"]
@@ -151,11 +153,14 @@ class FillReport(TaskReport):
     colours: PaintReport | None = Field(
         default=None, description="Colours of vertices; null where the mesh has none, or nothing is new."
     )
+    acceptance: Accepted | None = Field(
+        default=None, description="What came of the limits of the spec; null where it has none."
+    )
     texture: TextureReport | None = Field(
         default=None, description="Texture images; null where the mesh has none, or nothing is new."
     )
 
 
 Report = Annotated[
-    FillReport | RestoreReport | DenoiseReport | EncodeReport | DecodeReport, Field(discriminator="task")
+    FillReport | RestoreReport | DenoiseReport | EncodeReport | DecodeReport | TrainReport, Field(discriminator="task")
 ]

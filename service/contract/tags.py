@@ -13,6 +13,8 @@ TAGS: Mapping[str, str] = {
     "results": "Repaired meshes, reports and pictures of jobs that have ended.",
     "retention": "Keep jobs and meshes that would expire.",
     "models": "Dictionaries and networks: versions, aliases, deprecation.",
+    "trainings": "Learn dictionaries from uploaded meshes, judge them, and publish them as models.",
+    "rules": "What is done with holes and what results have to meet, saved under names.",
     "webhooks": "Subscriptions to what happens to jobs, and the log of deliveries.",
     "access": "Keys of clients, and the log of who did what.",
     "service": "State, metrics and description of the service.",

@@ -1,4 +1,7 @@
-"""Real reports, held to the models that describe them."""
+"""Real reports, held to the models that describe them.
+
+Also tests `jobkit.schema.training_reports`.
+"""
 
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
@@ -18,8 +21,10 @@ from quadpatch.tasks.restore import restore_file
 from quadpatch.types import TriangleMesh
 from tests.quadpatch.formats.coloured_files import coloured_ply
 from tests.quadpatch.formats.textured_files import write_obj
-from tests.quadpatch.shapes import on_surface, punched, relief, sphere, write_ply
+from tests.quadpatch.shapes import bumpy_plate, on_surface, punched, relief, sphere, write_ply
 from tests.quadpatch.test_textured_fill import RAMPED
+from training.requested import TrainingOptions, train_dictionary
+from training.sources import Source
 
 REPORT: TypeAdapter[BaseModel] = TypeAdapter(Report)
 RELIEF = relief(40)
@@ -69,6 +74,14 @@ def decoded(folder: Path) -> dict[str, Any]:
     return decode_file(folder / "out.qpz", folder / "out.ply").report
 
 
+def trained(folder: Path) -> dict[str, Any]:
+    meshes = [
+        Source(letter * 64, write_ply(folder / f"{letter}.ply", bumpy_plate(50, 1.0, i)), letter * 64)
+        for i, letter in enumerate("ab")
+    ]
+    return train_dictionary(meshes, folder / "learned.safetensors", TrainingOptions("plates", 8, 8, 1, 0.5))
+
+
 MAKERS: Mapping[str, Callable[[Path], dict[str, Any]]] = {
     "smooth": filled("smooth"),
     "self": filled("self"),
@@ -80,6 +93,7 @@ MAKERS: Mapping[str, Callable[[Path], dict[str, Any]]] = {
     "encode": encoded(keep_connectivity=False),
     "encode with connectivity": encoded(keep_connectivity=True),
     "decode": decoded,
+    "train": trained,
 }
 
 
