@@ -23,8 +23,9 @@ from jobkit.database.tables import JobRow
 from jobkit.errors import JobQuotaError, QuotaError, StorageQuotaError, StreamQuotaError, TenantBusyError
 from jobkit.jobs.admission import Admission, AdmissionRules
 from jobkit.jobs.attempts import Attempts
-from jobkit.jobs.jobs import Jobs, NewJob
+from jobkit.jobs.jobs import Jobs
 from jobkit.jobs.memory_needs import MemoryNeeds
+from jobkit.jobs.new_jobs import NewJob
 from jobkit.jobs.reservations import Machine, MachineMemory
 from jobkit.jobs.turns import busy_tenants
 from jobkit.meshes import Meshes

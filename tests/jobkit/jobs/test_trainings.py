@@ -23,7 +23,8 @@ from jobkit.errors import (
 )
 from jobkit.jobs.attempts import Attempts
 from jobkit.jobs.endings import Attempt
-from jobkit.jobs.jobs import Jobs, NewJob
+from jobkit.jobs.jobs import Jobs
+from jobkit.jobs.new_jobs import NewJob
 from jobkit.jobs.search import JobSearch
 from jobkit.jobs.trainings import check_names, register_learned
 from jobkit.meshes import Meshes

@@ -17,6 +17,7 @@ from quadpatch.formats.ply.reader import read_ply
 from quadpatch.formats.reading import read_scan
 from quadpatch.formats.scan import Scan
 from quadpatch.formats.writing import write_scan
+from shared_rules.option_words import CarriedAttribute
 from tests.quadpatch.formats.fills import EMPTY, as_scan, cap_holes, n_open_edges
 from tests.quadpatch.shapes import punched, sphere
 
@@ -89,7 +90,8 @@ def test_colours_survive_where_there_is_room(suffix: str, tmp_path: Path) -> Non
 
 def test_a_conversion_carries_what_was_asked_for(tmp_path: Path) -> None:
     scan = textured_ball()
-    for names in [(), ("normals",), ("colours", "texture_coordinates")]:
+    choices: list[tuple[CarriedAttribute, ...]] = [(), ("normals",), ("colours", "texture_coordinates")]
+    for names in choices:
         write_scan(tmp_path / "out.glb", scan, cap_holes(scan), names)
         again = read_scan(tmp_path / "out.glb")
         assert again.source is not None

@@ -97,7 +97,7 @@ def test_the_first_holes_are_spread_over_all_lengths_of_rims() -> None:
 
 PLACES = [(x, y, 0.0) for x in (-0.5, 0.1, 0.55) for y in (-0.45, 0.05, 0.5)]
 SCAN = punched(relief(160, 2.0, 0.02, 14), *PLACES, radius=0.09)
-RIVALS = CompetingInpainters({"self": SelfDictionary(), "wrong": Shifted(0.5)})  # type: ignore[dict-item]
+RIVALS = CompetingInpainters({"self": SelfDictionary(), "wrong": Shifted(0.5)})
 
 
 @pytest.fixture(scope="module")
