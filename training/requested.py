@@ -91,7 +91,7 @@ def train_dictionary(
         `.safetensors`; holes are written beside it.
     options : TrainingOptions
     progress : callable
-        Stages `read`, `patchify`, `learn`, `judge` and `write`.
+        Stages `read`, `learn`, `judge` and `write`.
 
     Returns
     -------

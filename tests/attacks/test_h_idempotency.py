@@ -21,7 +21,7 @@ from service.services import Services
 
 DOCUMENT = yaml.safe_load((Path(__file__).resolve().parents[2] / "openapi.yaml").read_text("utf-8"))
 # A second cancel changes nothing by itself.
-MAKES_NOTHING = {"cancel_job", "cancel_batch"}
+MAKES_NOTHING = {"cancel_job", "cancel_batch", "cancel_training", "dry_run_rule"}
 HOOK = {"url": "https://8.8.8.8/hook"}
 KEY = {"Idempotency-Key": "order-17"}
 MESH = b"ply\nformat ascii 1.0\nend_header\n"
@@ -58,6 +58,7 @@ def requests(  # noqa: PLR0917 - fixtures
     client.headers["X-API-Key"] = key.key
     other_key = Keys(services.database).create(NewKey(name="other"))[0]
     job = {"mesh_id": mesh_id, "method": {"method": "smooth"}}
+    training = {"model": "walls", "meshes": [mesh_id]}
     form = {"mesh": ("a.ply", MESH)}
 
     def post(path: str, **content: Any) -> Ask:
@@ -78,6 +79,10 @@ def requests(  # noqa: PLR0917 - fixtures
         "create_upload": (start(10), start(11)),
         "upload_mesh": (post("/v1/meshes?filename=a.ply", content=MESH), post("/v1/meshes", content=MESH + b"\n")),
         "create_job": (post("/v1/jobs", json=job), post("/v1/jobs", json={**job, "seed": 1})),
+        "create_training": (
+            post("/v1/trainings", json=training),
+            post("/v1/trainings", json={**training, "seed": 1}),
+        ),
         "rerun_job": (post(f"/v1/jobs/{job_id}/rerun"), post(f"/v1/jobs/{job_id}/rerun", json={"seed": 1})),
         "repair": (
             post("/v1/repairs", files=form, data={"spec": '{"method": {"method": "smooth"}}'}),
