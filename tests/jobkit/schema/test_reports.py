@@ -1,6 +1,8 @@
 """Real reports, held to the models that describe them.
 
 Also tests `jobkit.schema.training_reports`.
+
+Also tests `jobkit/schema/report_parts.py` and `jobkit/schema/task_reports.py`.
 """
 
 from collections.abc import Callable, Iterator, Mapping

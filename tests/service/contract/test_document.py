@@ -1,3 +1,5 @@
+"""Also tests `service/contract/messages.py` and `service/contract/tags.py`."""
+
 from collections.abc import Iterator
 from importlib.metadata import version
 from pathlib import Path
