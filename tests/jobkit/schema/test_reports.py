@@ -1,8 +1,6 @@
 """Real reports, held to the models that describe them.
 
-Also tests `jobkit.schema.training_reports`.
-
-Also tests `jobkit/schema/report_parts.py` and `jobkit/schema/task_reports.py`.
+Also tests `jobkit/schema/report_parts.py`, `jobkit/schema/task_reports.py` and `jobkit/schema/training_reports.py`.
 """
 
 from collections.abc import Callable, Iterator, Mapping
