@@ -83,8 +83,8 @@ def add_close_ups(repaired: RepairedFile, folder: Path) -> None:
         Made where it is missing.
     """
 
-    def save(name: str, picture: bytes) -> None:
-        write_whole(folder / name, picture)
+    def save(id_: int, picture: bytes) -> None:
+        write_whole(folder / _name(id_), picture)
 
     with _stage(repaired.report, "closeups"):
         failure = failure_of(lambda: folder.resolve().mkdir(parents=True, exist_ok=True))
@@ -115,16 +115,48 @@ def add_close_up_archive(
         repaired.report["warnings"].append(f"there are no close-ups: {failure}")
 
 
+def draw_widest(
+    repaired: RepairedFile, most: int, most_bytes: int, progress: Progress = no_progress
+) -> dict[int, bytes]:
+    """Draw the widest chosen holes before and after, at most so many in so many bytes.
+
+    Parameters
+    ----------
+    repaired : RepairedFile
+        Its report gets a warning for each hole that could not be drawn.
+    most, most_bytes : int
+    progress : callable
+
+    Returns
+    -------
+    dict of int to bytes
+        PNG files by the ids of the holes, the widest first.
+    """
+    pictures: dict[int, bytes] = {}
+
+    def is_full() -> bool:
+        return sum(map(len, pictures.values())) > most_bytes
+
+    _draw_each(repaired, _widest_first(repaired)[:most], pictures.__setitem__, progress, is_full)
+    if is_full():
+        pictures.popitem()
+    return pictures
+
+
+def _widest_first(repaired: RepairedFile) -> list[Hole]:
+    return sorted(repaired.repair.chosen, key=lambda hole: (-hole.diameter, hole.id))
+
+
 def _write_archive(repaired: RepairedFile, archive: Path, progress: Progress, most: int) -> None:
-    chosen = sorted(repaired.repair.chosen, key=lambda hole: (-hole.diameter, hole.id))
+    chosen = _widest_first(repaired)
     packed, n_packed, is_full = io.BytesIO(), 0, False
     with zipfile.ZipFile(packed, "w", zipfile.ZIP_STORED) as pack:
 
-        def save(name: str, picture: bytes) -> None:
+        def save(id_: int, picture: bytes) -> None:
             nonlocal n_packed, is_full
             is_full = is_full or packed.tell() + len(picture) > MOST_CLOSE_UP_BYTES
             if not is_full:
-                pack.writestr(_entry(name), picture)
+                pack.writestr(_entry(_name(id_)), picture)
                 n_packed += 1
 
         _draw_each(repaired, chosen[:most], save, progress, lambda: is_full)
@@ -132,6 +164,10 @@ def _write_archive(repaired: RepairedFile, archive: Path, progress: Progress, mo
         repaired.report["warnings"].append(f"close-ups show {n_packed} of {len(chosen)} holes, the widest")
     if n_packed or not chosen:
         write_whole(archive, packed.getvalue())
+
+
+def _name(id_: int) -> str:
+    return f"hole_{id_}.png"
 
 
 def _entry(name: str) -> zipfile.ZipInfo:
@@ -143,7 +179,7 @@ def _entry(name: str) -> zipfile.ZipInfo:
 def _draw_each(
     repaired: RepairedFile,
     holes: list[Hole],
-    save: Callable[[str, bytes], None],
+    save: Callable[[int, bytes], None],
     progress: Progress,
     is_full: Callable[[], bool] = lambda: False,
 ) -> None:
@@ -172,9 +208,9 @@ def _pair_around(filled: FilledMesh, holes: list[Hole]) -> Pair:
     return filled_pair(mesh, invented)
 
 
-def _close_up(pair: Pair, repaired: RepairedFile, hole: Hole, save: Callable[[str, bytes], None]) -> list[str]:
+def _close_up(pair: Pair, repaired: RepairedFile, hole: Hole, save: Callable[[int, bytes], None]) -> list[str]:
     numbered = _numbered(pair, repaired.repair, hole)
-    failure = failure_of(lambda: save(f"hole_{hole.id}.png", draw_hole(pair, numbered)))
+    failure = failure_of(lambda: save(hole.id, draw_hole(pair, numbered)))
     return [] if failure is None else [f"there is no close-up of hole {hole.id}: {failure}"]
 
 

@@ -6,10 +6,11 @@ from pathlib import Path
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
+from quadpatch.formats.output_files import write_whole
 from quadpatch.preview.camera import Camera
 from quadpatch.preview.pair import TINT, Pair, filled_pair
 from quadpatch.preview.parts import filled_holes, part_of
-from quadpatch.preview.png import to_pixels, write_png
+from quadpatch.preview.png import png_bytes, to_pixels
 from quadpatch.preview.sampling import Colours
 from quadpatch.preview.shading import BACK, CLAY
 from quadpatch.preview.thinning import MOST_TRIANGLES, thinned
@@ -54,7 +55,12 @@ class Sheet:
 
 
 def render_before_after(mesh: TriangleMesh, invented: BoolArray, path: Path) -> None:
-    """Draw a mesh before and after its repair, and its largest holes in close-up, as a PNG file.
+    """Write the picture of `before_after_png` as a file that appears whole or not at all."""
+    write_whole(path, before_after_png(mesh, invented))
+
+
+def before_after_png(mesh: TriangleMesh, invented: BoolArray) -> bytes:
+    """Draw a mesh before and after its repair, and its largest holes in close-up.
 
     Parameters
     ----------
@@ -62,7 +68,11 @@ def render_before_after(mesh: TriangleMesh, invented: BoolArray, path: Path) -> 
         Repaired; triangles that touch share their vertices.
     invented : (n_triangles,) bool
         True for the triangles that were not measured: the mesh before is without them, afterwards they are tinted.
-    path : Path
+
+    Returns
+    -------
+    bytes
+        Of a PNG file.
 
     Raises
     ------
@@ -82,7 +92,7 @@ def render_before_after(mesh: TriangleMesh, invented: BoolArray, path: Path) -> 
     if cameras:
         draw_close_ups(sheet, pair, cameras)
     draw_legend(sheet, "invented surface", "measured surface", np.tile(TINT, (SWATCH[0], 1)))
-    write_png(path, sheet.image)
+    return png_bytes(sheet.image)
 
 
 def blank_sheet(*, has_close_ups: bool) -> Sheet:
