@@ -9,7 +9,7 @@ from typing import Any, Literal
 
 from pydantic import Field
 
-from jobkit.schema.base import Response
+from jobkit.schema.base import EXAMPLE_JOB_ID, Response, Sha256
 
 Vector = list[float]
 ReportSchema = Literal[1]
@@ -61,6 +61,69 @@ class AppliedPatches(Patches):
     """The patches that a model works on, and how much of what it says was applied."""
 
     believed_share: float = Field(description="Share of the model's displacement that was applied.", examples=[0.8])
+
+
+class FileFacts(Response):
+    """A file, by its bytes."""
+
+    name: str = Field(description="Its name.", examples=["face000.ply"])
+    size_bytes: int = Field(ge=0, description="Size, in bytes.", examples=[3_300_000])
+    sha256: Sha256
+
+
+class SurfaceFacts(Response):
+    """Figures of a surface: repeated vertices joined, repeated faces and fins left out."""
+
+    triangles: int = Field(ge=0, description="How many.", examples=[168_702])
+    boundary_loops: int = Field(ge=0, description="How many.", examples=[45])
+    boundary_length: float | None = Field(description="Of all loops together, in mesh units.", examples=[812.5])
+    area: float | None = Field(description="Area, in square units.", examples=[23_410.0])
+    volume: float | None = Field(
+        description="Enclosed, in cubic units, negative where the surface faces inwards; null where it is not "
+        "watertight."
+    )
+    components: int = Field(ge=0, description="Pieces that share no vertex.", examples=[1])
+    is_watertight: bool = Field(
+        description="Whether each edge has exactly two triangles, which pass it in opposite directions."
+    )
+
+
+class CountedValues(Response):
+    """A histogram."""
+
+    edges: list[float] = Field(description="Bounds of the bins, one more than there are bins.", examples=[[0.0, 0.1]])
+    counts: list[int] = Field(description="Values in each bin.", examples=[[12]])
+
+
+class Asked(Response):
+    """Who asked for a repair."""
+
+    job_id: str = Field(description="The job.", examples=[EXAMPLE_JOB_ID])
+    tenant: str = Field(description="The tenant that it belongs to.", examples=["default"])
+    request_id: str | None = Field(
+        description="The request that made the job: by it the audit log and the logs say which key it came with."
+    )
+    label: str | None = Field(description="Name of the job for people.", examples=["station 4, part 1187"])
+    metadata: dict[str, str] = Field(description="Facts of the sender's own.", examples=[{"order": "A-17"}])
+    rule: str | None = Field(description="The saved rule that the job went by.", examples=["castings@2"])
+
+
+class Provenance(Response):
+    """From which bytes a repair made which, when, by what, for whom; and the surface before and after."""
+
+    software: str = Field(description="What repaired it.", examples=["quadpatch"])
+    software_version: str = Field(description="Its version.", examples=["0.2.0"])
+    started_at: str = Field(description="RFC 3339, UTC.", examples=["2026-11-30T09:15:02.250Z"])
+    finished_at: str = Field(description="When the mesh was written, RFC 3339, UTC.")
+    source: FileFacts | None = Field(description="The file that came in; null of a stream.")
+    output: FileFacts | None = Field(description="The file that was written; null of a stream.")
+    request: Asked | None = Field(description="Who asked over HTTP; null on the command line.")
+    before: SurfaceFacts = Field(description="The surface that came in.")
+    after: SurfaceFacts = Field(description="The repaired surface.")
+    displacement: CountedValues | None = Field(
+        description="How far the model moved new vertices off the geometric fill, in mesh units; null where it took no "
+        "part."
+    )
 
 
 class StageTime(Response):

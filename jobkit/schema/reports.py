@@ -13,7 +13,7 @@ from pydantic import Field
 from jobkit.schema.acceptance import Accepted
 from jobkit.schema.base import Response
 from jobkit.schema.jobs import HoleCounts
-from jobkit.schema.report_parts import AppliedPatches, Box, SourceMesh, TaskReport, Vector, Welded
+from jobkit.schema.report_parts import AppliedPatches, Box, Provenance, SourceMesh, TaskReport, Vector, Welded
 from jobkit.schema.task_reports import DecodeReport, DenoiseReport, EncodeReport, RestoreReport
 from jobkit.schema.training_reports import TrainReport
 from shared_rules.hole_selection import HoleKind
@@ -158,6 +158,11 @@ class FillReport(TaskReport):
     )
     texture: TextureReport | None = Field(
         default=None, description="Texture images; null where the mesh has none, or nothing is new."
+    )
+    provenance: Provenance | None = Field(
+        default=None,
+        description="Files, times, who asked, and the surface before and after; there where the report was asked for "
+        "as a page as well.",
     )
 
 

@@ -36,6 +36,7 @@ from shared_rules.option_words import CarriedAttribute, Colours, Effort, Recipe
 from shared_rules.rule_text import RuleTextError, read_bridge, read_rule
 
 if TYPE_CHECKING:
+    from quadpatch.html_report.provenance import Start
     from quadpatch.repair import RepairedFile
 
 FITTING = NetworkOptions()
@@ -67,6 +68,10 @@ def fill(  # noqa: PLR0913, PLR0917  one argument per flag
     closeups: Annotated[
         Path | None,
         typer.Option(metavar="DIR", help="Draw every chosen hole before and after, as hole_<id>.png in this folder."),
+    ] = None,
+    html: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="Write the report as an HTML page that stands alone; -: standard output."),
     ] = None,
     overwrite: Overwrite = False,
     calibration: Annotated[
@@ -168,7 +173,7 @@ def fill(  # noqa: PLR0913, PLR0917  one argument per flag
         )
         if calibration and recipe == "paper":
             raise OptionError("--calibration goes with the recipe default: the paper calibrates nothing")
-        others = [path for path in (report, preview, calibration) if path]
+        others = [path for path in (report, preview, calibration, html) if path]
         check_outputs(source, output, others, may_overwrite=overwrite)
         if closeups:
             check_folder(closeups, [source, output, *others])
@@ -178,15 +183,17 @@ def fill(  # noqa: PLR0913, PLR0917  one argument per flag
         from quadpatch.processes import ProcessPool, n_processes_for, usable_threads  # noqa: PLC0415  see below
         from quadpatch.repair import repair_and_keep  # noqa: PLC0415  numerical libraries, once there is work to do
 
-        kept = read_calibrations(calibration)
+        kept, start = read_calibrations(calibration), _note_start(source) if html else None
         with ProcessPool(n_processes_for(source, usable_threads())) as pool:
             repaired = repair_and_keep(
                 source, output, model, options, progress, kept=kept, pool=pool, learn_from=learn_from
             )
         logging.getLogger("quadpatch").addHandler(logging.NullHandler())  # what people read is in the warnings
-        if report and (preview or closeups) and not is_stream(report):  # drawing may take the process down
+        if report and (preview or closeups or html) and not is_stream(report):  # drawing may take the process down
             write_report(repaired.report, report)
         _draw(repaired, preview, closeups)
+        if html and start:
+            _write_page(repaired, html, start, output, preview)
         write_report(repaired.report, report)
         write_calibrations(calibration, kept)
     if not quiet:
@@ -239,3 +246,17 @@ def _draw(repaired: "RepairedFile", preview: Path | None, closeups: Path | None)
         add_picture(repaired, preview)
     if closeups:
         add_close_ups(repaired, closeups)
+
+
+def _note_start(source: Path) -> "Start":
+    """Note which bytes are to be repaired, and when: the output may overwrite them."""
+    from quadpatch.html_report.provenance import note_start  # noqa: PLC0415  see fill
+
+    return note_start(source)
+
+
+def _write_page(repaired: "RepairedFile", page: Path, start: "Start", output: Path, preview: Path | None) -> None:
+    """Write the HTML report; what fails is a warning in the report."""
+    from quadpatch.html_report.writing import PageOrder, add_html_report  # noqa: PLC0415  see fill
+
+    add_html_report(repaired, PageOrder(start, output, overview=preview), page)

@@ -1,4 +1,4 @@
-"""Real reports, held to the models that describe them.
+"""Real reports, held to the models of `jobkit/schema/report_parts.py` and `jobkit/schema/task_reports.py`.
 
 Also tests `jobkit/schema/report_parts.py`, `jobkit/schema/task_reports.py` and `jobkit/schema/training_reports.py`.
 """
@@ -21,7 +21,9 @@ from quadpatch.tasks.restore import restore_file
 from quadpatch.types import TriangleMesh
 from tests.quadpatch.formats.coloured_files import coloured_ply
 from tests.quadpatch.formats.textured_files import write_obj
+from tests.quadpatch.html_report.pages import repaired_with_page
 from tests.quadpatch.shapes import bumpy_plate, on_surface, punched, relief, sphere, write_ply
+from tests.quadpatch.test_repair_by_effort import SCAN
 from tests.quadpatch.test_textured_fill import RAMPED
 from training.requested import TrainingOptions, train_dictionary
 from training.sources import Source
@@ -82,11 +84,19 @@ def trained(folder: Path) -> dict[str, Any]:
     return train_dictionary(meshes, folder / "learned.safetensors", TrainingOptions("plates", 8, 8, 1, 0.5))
 
 
+def with_page(folder: Path) -> dict[str, Any]:
+    """A repair that was asked for as a page too: its report has a provenance."""
+    job = {"job_id": "job_1", "tenant": "default", "request_id": None}
+    asked = {**job, "label": "a", "metadata": {"order": "A-17"}, "rule": "castings@2"}
+    return repaired_with_page(write_ply(folder / "in.ply", SCAN), folder / "report.html", asked, "auto").report
+
+
 MAKERS: Mapping[str, Callable[[Path], dict[str, Any]]] = {
     "smooth": filled("smooth"),
     "self": filled("self"),
     "auto": filled("auto"),
     "coloured": coloured,
+    "with a page": with_page,
     "textured": textured,
     "restore": restored,
     "denoise": denoised,

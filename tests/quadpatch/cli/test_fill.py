@@ -4,6 +4,7 @@ Also tests `quadpatch.cli.calibration_file`, `quadpatch.cli.holes`, `quadpatch.c
 `quadpatch.cli.reports`.
 """
 
+import hashlib
 import json
 import re
 import subprocess
@@ -50,6 +51,20 @@ def test_fill_writes_the_mesh_the_report_and_the_picture(scan_file: Path, tmp_pa
     assert "3 by geometry (3 × no learned model took part), 1 left open (1 × outer border" in " ".join(
         result.stderr.split()
     )
+
+
+def test_fill_writes_the_report_as_a_page_that_names_both_files(scan_file: Path, tmp_path: Path) -> None:
+    output, report, page = tmp_path / "out.ply", tmp_path / "out.json", tmp_path / "out.html"
+    result = run("fill", scan_file, "-o", output, "--report", report, "--html", page, "--model", "smooth")
+    assert result.exit_code == 0, result.output
+    facts = json.loads(report.read_text())["provenance"]
+    for file, path in ((facts["source"], scan_file), (facts["output"], output)):
+        assert (file["name"], file["sha256"]) == (path.name, hashlib.sha256(path.read_bytes()).hexdigest())
+    assert facts["source"]["sha256"] in page.read_text("utf-8")
+    assert run("fill", scan_file, "-o", output, "--report", page, "--html", page).exit_code == 1
+    without = run("fill", scan_file, "-o", output, "--report", report, "--model", "smooth")
+    assert without.exit_code == 0, without.output
+    assert "provenance" not in json.loads(report.read_text())
 
 
 def test_close_ups_are_named_by_the_holes_that_were_chosen(scan_file: Path, tmp_path: Path) -> None:

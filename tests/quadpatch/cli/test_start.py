@@ -22,7 +22,7 @@ app(prog_name="quadpatch")
 """
 # Libraries of the method, and what some commands or options need of the rest.
 NUMERICAL = {"numpy", "scipy", "igl", "embreex", "manifold3d", "onnxruntime", "safetensors", "pymeshlab", "trimesh"}
-PICTURES = {"PIL", "matplotlib"}
+PICTURES = {"PIL", "matplotlib", "jinja2"}
 # A repair by geometry alone of a PLY needs numpy, scipy and igl.
 NOT_FOR_GEOMETRY = {
     *PICTURES,

@@ -1,0 +1,82 @@
+"""The page of a finished repair, drawn and written; what goes wrong here is a warning in the report."""
+
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from quadpatch.formats.output_files import write_whole
+from quadpatch.html_report.page import Pictures, render_page
+from quadpatch.html_report.provenance import Start, provenance
+from quadpatch.preview.drawing import draw_widest
+from quadpatch.preview.sheet import before_after_png
+from quadpatch.progress import Progress, no_progress
+from quadpatch.repair import RepairedFile
+from quadpatch.stages import failure_of, peak_memory_mib
+
+# Close-ups in a page: with their base64 at most 5.4 MiB of it.
+MOST_PICTURES = 24
+MOST_PICTURE_BYTES = 4 << 20
+STAGE = "html_report"
+
+
+@dataclass(frozen=True)
+class PageOrder:
+    """What a page is made from besides the repair.
+
+    Attributes
+    ----------
+    start : Start
+    output : Path
+        The repaired file.
+    request : mapping or None
+        Who asked, see `quadpatch.html_report.provenance.provenance`.
+    overview : Path or None
+        A picture of the whole that is drawn already; another one is drawn where it is missing.
+    """
+
+    start: Start
+    output: Path
+    request: Mapping[str, Any] | None = None
+    overview: Path | None = None
+
+
+def add_html_report(repaired: RepairedFile, order: PageOrder, page: Path, progress: Progress = no_progress) -> None:
+    """Write the page of a repair.
+
+    Parameters
+    ----------
+    repaired : RepairedFile
+        Its report gets the `provenance`, the seconds of the stage `html_report`, and a warning where there is no page.
+    order : PageOrder
+    page : Path
+    progress : callable
+    """
+    begun = time.perf_counter()
+    progress(STAGE, 0.0)
+    failure = failure_of(lambda: _write(repaired, order, page, progress))
+    if failure is not None:
+        repaired.report["warnings"].append(f"there is no HTML report: {failure}")
+    seconds = round(time.perf_counter() - begun, 4)
+    repaired.report["stages"].append({"name": STAGE, "seconds": seconds, "peak_memory_mib": peak_memory_mib()})
+
+
+def _write(repaired: RepairedFile, order: PageOrder, page: Path, progress: Progress) -> None:
+    repaired.report["provenance"] = provenance(order.start, repaired, order.output, order.request)
+    close_ups = draw_widest(
+        repaired, MOST_PICTURES, MOST_PICTURE_BYTES, lambda _stage, fraction: progress(STAGE, fraction)
+    )
+    pictures = Pictures(_overview(repaired, order.overview), close_ups)
+    write_whole(page, render_page(repaired.report, pictures).encode("utf-8"))
+
+
+def _overview(repaired: RepairedFile, drawn: Path | None) -> bytes | None:
+    """Read the picture of the whole, or draw it; a page does without one."""
+    if drawn is not None and drawn.is_file():
+        return drawn.read_bytes()
+    filled, found = repaired.repair.filled, list[bytes]()
+    failure = failure_of(lambda: found.append(before_after_png(filled.mesh, filled.invented_triangles)))
+    if failure is not None:
+        repaired.report["warnings"].append(f"the HTML report has no picture of the whole: {failure}")
+    return found[0] if found else None
