@@ -12,6 +12,7 @@ from client.connection import connected, print_json
 from client.options import (
     DEFAULT_URL,
     OUTPUT,
+    HtmlOption,
     JsonOption,
     KeyOption,
     OutputOption,
@@ -61,6 +62,7 @@ def fetch(  # noqa: PLR0913 - one parameter per option of the command line
             metavar="DIR", help="Folder for the pictures of chosen holes, if the job drew them.", rich_help_panel=OUTPUT
         ),
     ] = None,
+    html: HtmlOption = None,
     timeout: TimeoutOption = None,
     url: UrlOption = DEFAULT_URL,
     api_key: KeyOption = None,
@@ -70,11 +72,11 @@ def fetch(  # noqa: PLR0913 - one parameter per option of the command line
     """Wait for a job that was started before, and fetch what it made."""
     screen = Screen(quiet)
     with connected(screen, url, api_key) as client:
-        Files("", output, report, preview, closeups).check()
-        check_stdout([output, report, preview], as_json)
+        Files("", output, report, preview, closeups, html).check()
+        check_stdout([output, report, preview, html], as_json)
         with screen.repair() as on_change:
             ended = client.wait(job, on_change, timeout)
-        files = Files(ended.mesh_name or "the mesh", output, report, preview, closeups)
+        files = Files(ended.mesh_name or "the mesh", output, report, preview, closeups, html)
         fetch_files(client, screen, files, ended)
     if as_json:
         print_json(ended)

@@ -86,6 +86,10 @@ OutputOption = Annotated[
 ReportOption = Annotated[
     Path | None, typer.Option(help="Where to put the JSON report; -: standard output.", rich_help_panel=OUTPUT)
 ]
+HtmlOption = Annotated[
+    Path | None,
+    typer.Option("--html", help="Where to put the report as an HTML page that stands alone.", rich_help_panel=OUTPUT),
+]
 PreviewOption = Annotated[
     Path | None,
     typer.Option(

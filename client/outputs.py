@@ -84,7 +84,7 @@ def check_place(path: Path) -> None:
 def check_stdout(outputs: Iterable[Path | None], as_json: bool) -> None:
     """Raise UsageError where more than one thing would go to standard output."""
     if sum(path is not None and is_stdout(path) for path in outputs) + as_json > 1:
-        raise UsageError("only one of mesh, report, picture and --json can go to standard output")
+        raise UsageError("only one of mesh, report, page, picture and --json can go to standard output")
 
 
 def shown(path: Path) -> str:

@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 # A mesh that can't be read fails here; its analysis may still be waiting for a worker.
 _FIRST_STAGE = "read"
 _ANALYSIS_S = 60.0
+_SPOKEN = {"html_report": "HTML report"}
 
 
 @dataclass(frozen=True)
@@ -47,6 +48,8 @@ class Task:
         Where to put the report and the picture.
     closeups : Path, optional
         Folder for a picture of each chosen hole.
+    html : Path, optional
+        Where to put the report as a page.
     timeout_s : float, optional
         How long to wait for the job.
     may_overwrite : bool
@@ -65,6 +68,7 @@ class Task:
     report: Path | None = None
     preview: Path | None = None
     closeups: Path | None = None
+    html: Path | None = None
     timeout_s: float | None = None
     may_overwrite: bool = False
     again: bool = False
@@ -80,13 +84,14 @@ class Files:
     report: Path | None = None
     preview: Path | None = None
     closeups: Path | None = None
+    html: Path | None = None
 
     def check(self, *others: Path) -> None:
         """Raise UsageError where one can't be written, or would overwrite another one or one of the others."""
         check_place(self.output)
-        check_apart([*others, self.output], [self.report, self.preview])
+        check_apart([*others, self.output], [self.report, self.preview, self.html])
         if self.closeups is not None:
-            files = [self.output, self.report, self.preview, *others]
+            files = [self.output, self.report, self.preview, self.html, *others]
             check_closeups_folder(self.closeups, [path for path in files if path is not None])
 
 
@@ -141,7 +146,7 @@ def check_outputs(task: Task) -> None:
 
 
 def _files(task: Task) -> Files:
-    return Files(task.source.name, task.output, task.report, task.preview, task.closeups)
+    return Files(task.source.name, task.output, task.report, task.preview, task.closeups, task.html)
 
 
 def check_apart(taken: list[Path], others: list[Path | None]) -> None:
@@ -230,6 +235,8 @@ def fetch(client: "Client", screen: Screen, files: Files, job: "Job") -> None:
         written.append(files.report)
     if files.preview is not None and _is_fetched(client, screen, job, "preview", files.preview):
         written.append(files.preview)
+    if files.html is not None and _is_fetched(client, screen, job, "html_report", files.html):
+        written.append(files.html)
     if files.closeups is not None:
         written += _fetch_closeups(client, screen, job, files.closeups)
     with tempfile.TemporaryDirectory() as folder:
@@ -242,12 +249,14 @@ def fetch(client: "Client", screen: Screen, files: Files, job: "Job") -> None:
         screen.say(f"wrote {shown(path)}", style="green")
 
 
-def _is_fetched(client: "Client", screen: Screen, job: "Job", role: Literal["report", "preview"], path: Path) -> bool:
+def _is_fetched(
+    client: "Client", screen: Screen, job: "Job", role: Literal["report", "preview", "html_report"], path: Path
+) -> bool:
     """Fetch a file that is optional: without it the repair has succeeded all the same."""
     try:
         client.download(job, role, path)
     except (ClientError, OSError) as error:
-        screen.complain(f"there is no {role}: {error}")
+        screen.complain(f"there is no {_SPOKEN.get(role, role)}: {error}")
         return False
     return True
 

@@ -24,6 +24,7 @@ OPERATIONS: Mapping[Scope, tuple[str, ...]] = {
         "get_report",
         "get_preview",
         "get_closeups",
+        "get_html_report",
         "list_batches",
         "get_batch",
         "list_batch_events",

@@ -18,8 +18,9 @@ _OTHER_FILLS: Mapping[str, Mapping[str, int]] = {
         "judge": 4,
         "colour": 6,
         "write": 4,
-        "preview": 3,
-        "closeups": 3,
+        "preview": 2,
+        "closeups": 2,
+        "html_report": 2,
     },
     "fitting": {
         "read": 1,
@@ -28,7 +29,7 @@ _OTHER_FILLS: Mapping[str, Mapping[str, int]] = {
         "smooth": 2,
         "quadrangulate": 1,
         "patchify": 7,
-        "learn": 61,
+        "learn": 59,
         "inpaint": 2,
         "reconstruct": 2,
         "judge": 2,
@@ -36,13 +37,14 @@ _OTHER_FILLS: Mapping[str, Mapping[str, int]] = {
         "write": 1,
         "preview": 1,
         "closeups": 2,
+        "html_report": 2,
     },
 }
 _SHARES: Mapping[Task, Mapping[str, int]] = {
     "fill": {
         "read": 3,
         "holes": 2,
-        "fill": 41,
+        "fill": 39,
         "smooth": 3,
         "quadrangulate": 7,
         "patchify": 8,
@@ -54,6 +56,7 @@ _SHARES: Mapping[Task, Mapping[str, int]] = {
         "write": 2,
         "preview": 2,
         "closeups": 3,
+        "html_report": 2,
     },
     # The first of two stages named `judge` says which placement is taken.
     "restore": {

@@ -49,7 +49,7 @@ from worker.results import (
     stage_seconds,
     store_result,
 )
-from worker.spec import filled_by, job_request
+from worker.spec import filled_by, job_request, who_asked
 from worker.trainings import folder_with_meshes, meshes_of, prepared_version, publish_training, training_request
 
 # A repair that is nearly done may finish when its worker is asked to stop; the others are handed back.
@@ -135,7 +135,9 @@ def _work(context: Context, started_attempt: StartedAttempt, heartbeat: Heartbea
     deprecated = deprecation(job.model, registry)
     limits = _limits(context, started_attempt)
     request = replace(
-        job_request(job.spec, source, model, limits, reference), model_card=network_card(job.model, registry)
+        job_request(job.spec, source, model, limits, reference),
+        model_card=network_card(job.model, registry),
+        html_report=who_asked(started_attempt),
     )
     with folder_with_mesh(context, source, reference) as folder:
         before = hand_on(meshes, job.mesh_id, folder) if request.scan else b""

@@ -13,7 +13,7 @@ from jobkit.storage.digests import sha256_of
 from quadpatch.formats.output_files import write_whole
 from quadpatch.stages import failure_of
 from shared_rules.tasks import TRAIN
-from worker.engine.request import CLOSE_UPS_NAME, PREVIEW_NAME, REPORT_NAME, EngineRequest
+from worker.engine.request import CLOSE_UPS_NAME, PAGE_NAME, PREVIEW_NAME, REPORT_NAME, EngineRequest
 from worker.failures import Failure
 from worker.result_facts import facts_of_fill, facts_of_task, facts_of_training
 
@@ -25,6 +25,7 @@ _MEDIA_TYPES = {
     "json": "application/json",
     "png": "image/png",
     "zip": "application/zip",
+    "html": "text/html",
 }
 
 
@@ -40,6 +41,8 @@ class Picture:
 
 _PREVIEW = Picture("preview", PREVIEW_NAME, "preview", "there is no picture")
 _CLOSE_UPS = Picture("closeups", CLOSE_UPS_NAME, "closeups", "there are no close-ups")
+_PAGE = Picture("html_report", PAGE_NAME, "html_report", "there is no HTML report")
+_OPTIONAL = (_PREVIEW, _CLOSE_UPS, _PAGE)
 
 
 @dataclass(frozen=True)
@@ -65,7 +68,7 @@ def store_result(folder: Path, request: EngineRequest, attempt: Attempt, store: 
     """
     # A learned model is published by the registry.
     files = [] if request.task == TRAIN else [_store_file(folder / request.output, "result", attempt, store)]
-    pictures = [file for picture in (_PREVIEW, _CLOSE_UPS) for file in _store_picture(picture, folder, attempt, store)]
+    pictures = [file for picture in _OPTIONAL for file in _store_picture(picture, folder, attempt, store)]
     report = _read_report(folder)
     files += [_store_file(folder / REPORT_NAME, "report", attempt, store), *pictures]
     return JobResult.model_validate(
@@ -94,8 +97,9 @@ def stage_seconds(folder: Path, spec: JobSpec) -> StageSeconds:
 
 def missing_pictures(folder: Path, request: EngineRequest) -> list[Picture]:
     """Return the pictures that were asked for and are not there; one that is there is whole."""
-    requested = [(request.with_preview, _PREVIEW), (request.with_close_ups, _CLOSE_UPS)]
-    return [picture for is_requested, picture in requested if is_requested and not (folder / picture.name).exists()]
+    requested = (request.with_preview, request.with_close_ups, request.html_report is not None)
+    pictures = [picture for picture, is_requested in zip(_OPTIONAL, requested, strict=True) if is_requested]
+    return [picture for picture in pictures if not (folder / picture.name).exists()]
 
 
 def note_deprecation(folder: Path, reference: str, reason: str) -> None:

@@ -3,6 +3,7 @@
 from pathlib import PurePath
 from typing import Any, TypeGuard, get_args
 
+from jobkit.jobs.attempts import StartedAttempt
 from jobkit.meshes import MeshSource
 from jobkit.schema import (
     SELF,
@@ -82,6 +83,22 @@ def job_request(
         missing=None if spec.restore is None else spec.restore.missing.model_dump(),
         scan=f"{source.sha256} {source_name(source)}" if spec.task == "fill" else "",
     )
+
+
+def who_asked(started: StartedAttempt) -> dict[str, Any] | None:
+    """Say for the HTML report who asked for a job, and what its mesh is called; None where it wants no such report."""
+    job = started.job
+    if not job.spec.output.html_report:
+        return None
+    return {
+        "job_id": job.id,
+        "tenant": started.tenant,
+        "request_id": started.request_id,
+        "label": job.spec.label,
+        "metadata": job.spec.metadata,
+        "rule": job.spec.rule,
+        "mesh_name": job.mesh_name,
+    }
 
 
 def inspect_request(source: MeshSource, limits: EngineLimits) -> EngineRequest:

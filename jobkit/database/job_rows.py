@@ -56,4 +56,5 @@ def _links(row: JobRow) -> JobLinks:
         report=f"{path}/report" if "report" in roles else None,
         preview=f"{path}/preview.png" if "preview" in roles else None,
         closeups=f"{path}/closeups.zip" if "closeups" in roles else None,
+        html_report=f"{path}/report.html" if "html_report" in roles else None,
     )

@@ -10,14 +10,16 @@ import json
 
 from jobkit.schema import JobSpec, ResolvedModel
 
-# What a sender says for other reasons than the result.
+# What a sender says for other reasons than the result; of these, what stands in the report as a page all the same.
 _UNRELATED = frozenset({"label", "metadata", "priority", "mesh_name", "callback_url"})
+_IN_PAGES = frozenset({"label", "metadata", "mesh_name"})
 
 
 def fingerprint_of(spec: JobSpec, model: ResolvedModel) -> str:
     """Return the sha256, in hex, over a job's options, the bytes of its meshes and those of its model."""
+    unrelated = _UNRELATED - _IN_PAGES if spec.output.html_report else _UNRELATED
     facts = {
-        "spec": spec.model_dump(mode="json", exclude=set(_UNRELATED)),
+        "spec": spec.model_dump(mode="json", exclude=set(unrelated)),
         "model": [model.kind, model.name, model.version, model.sha256],
     }
     return hashlib.sha256(json.dumps(facts, sort_keys=True).encode()).hexdigest()

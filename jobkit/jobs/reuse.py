@@ -65,7 +65,7 @@ def _is_whole(session: Session, source: JobRow) -> bool:
     """Tell whether a job has every file that it was asked for, none of them known to be damaged."""
     roles = {file["role"] for file in (source.result or {}).get("files", [])}
     output = source.spec.get("output") or {}
-    asked = {name for name in ("preview", "closeups") if output.get(name)}
+    asked = {name for name in ("preview", "closeups", "html_report") if output.get(name)}
     keys = file_keys(source)
     if not keys or not asked <= roles:
         return False

@@ -22,7 +22,7 @@ from shared_rules.tasks import FILL, Task
 
 # What a job hands back: a mesh in a format of its own choice, an encoded surface, or a model.
 ResultFormat = OutputFormat | Literal["qpz", "safetensors"]
-FileRole = Literal["result", "report", "preview", "closeups"]
+FileRole = Literal["result", "report", "preview", "closeups", "html_report"]
 
 
 class JobError(Response):
@@ -116,6 +116,7 @@ class JobLinks(Response):
     report: str | None = Field(default=None, description="The JSON report.")
     preview: str | None = Field(default=None, description="The before/after picture.")
     closeups: str | None = Field(default=None, description="Pictures of the chosen holes, a ZIP file.")
+    html_report: str | None = Field(default=None, description="The report as a page for people.")
 
 
 class Job(Response):

@@ -145,6 +145,11 @@ class Output(Request):
         description="Whether to draw each chosen hole before and after: a ZIP file of `hole_<id>.png`, at most 100 of "
         "them, the widest.",
     )
+    html_report: bool = Field(
+        default=False,
+        description="Whether to write the report as a page for people and auditors as well, an HTML file that stands "
+        "alone; the JSON report then has a `provenance`.",
+    )
 
 
 class Limits(Request):
@@ -288,8 +293,8 @@ def identity_of(spec: JobSpec) -> str:
     left_out: dict[str, Any] = {name: True for group in unused for name in group}
     if not spec.holes.bridges:
         left_out["holes"] = {"bridges"}
-    if spec.output.attributes is None:
-        left_out["output"] = {"attributes"}
+    outputs = {"attributes": spec.output.attributes is None, "html_report": not spec.output.html_report}
+    left_out["output"] = {name for name, is_unused in outputs.items() if is_unused}
     if isinstance(spec.method, DictionaryMethod):
         later = {"learn_from": spec.method.learn_from is None, "dictionary": spec.method.dictionary == DictionarySize()}
         left_out["method"] = {name for name, is_unused in later.items() if is_unused}

@@ -1,4 +1,4 @@
-"""Files of a finished job: the repaired mesh, the report, the pictures."""
+"""Files of a finished job: the repaired mesh, the report, also as a page, the pictures."""
 
 from typing import Any
 
@@ -15,6 +15,13 @@ from service.services import Services, ServicesDep
 from service.strict_validation import StrictRoute
 
 router = APIRouter(tags=["results"], route_class=StrictRoute)
+
+# The page names files and labels of clients. It comes as a file to be saved, and a browser that shows it all the same
+# gives it an origin of its own, no script and no network.
+_PAGE_POLICY = (
+    "sandbox; default-src 'none'; img-src data:; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'; "
+    "frame-ancestors 'none'"
+)
 
 
 def _documented(media_type: str, **whole: Any) -> dict[int | str, dict[str, Any]]:
@@ -84,6 +91,26 @@ def get_closeups(
 ) -> Response:
     """Fetch the pictures of the chosen holes: `hole_<id>.png` in a ZIP file, where `output.closeups` asked for them."""
     return _file_response(request, services, job_id, "closeups", "application/zip")
+
+
+@router.get(
+    "/v1/jobs/{job_id}/report.html",
+    response_class=Response,
+    dependencies=CONDITIONAL,
+    responses=_documented("text/html"),
+)
+def get_html_report(
+    request: Request,
+    services: ServicesDep,
+    job_id: JobIdPath,
+) -> Response:
+    """Fetch the report as a page that stands alone, for people and auditors, where the job asked for it.
+
+    `output.html_report` asks for it. It comes as a file to be saved; it runs no script and loads nothing.
+    """
+    answer = _file_response(request, services, job_id, "html_report", "text/html")
+    answer.headers["Content-Security-Policy"] = _PAGE_POLICY
+    return answer
 
 
 def _file_response(

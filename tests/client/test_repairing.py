@@ -39,6 +39,8 @@ def test_outputs_must_not_overwrite_each_other(tmp_path: Path) -> None:
     check_outputs(task(scan, mesh, report))
     with pytest.raises(UsageError, match="named twice"):
         check_outputs(task(scan, mesh, mesh, may_overwrite=True))
+    with pytest.raises(UsageError, match="named twice"):
+        check_outputs(replace(task(scan, mesh, report), html=report))
 
 
 def test_close_ups_must_not_overwrite_another_output(tmp_path: Path) -> None:
@@ -46,7 +48,11 @@ def test_close_ups_must_not_overwrite_another_output(tmp_path: Path) -> None:
     folder.mkdir()
     asked = replace(task(tmp_path / "scan.ply", tmp_path / "mesh.ply"), closeups=folder)
     check_outputs(replace(asked, preview=folder / "whole.png"))
-    for clash in (replace(asked, preview=folder / "hole_0.png"), replace(asked, report=folder / "hole_12.png")):
+    for clash in (
+        replace(asked, preview=folder / "hole_0.png"),
+        replace(asked, report=folder / "hole_12.png"),
+        replace(asked, html=folder / "hole_3.png"),
+    ):
         with pytest.raises(UsageError, match="name of a close-up"):
             check_outputs(clash)
 
@@ -86,19 +92,22 @@ class Service:
         return [folder / "hole_0.png"]
 
 
-@pytest.mark.parametrize("lost", [set(), {"preview"}, {"report"}, {"closeups"}, {"preview", "report", "closeups"}])
+@pytest.mark.parametrize(
+    "lost", [set(), {"preview"}, {"report"}, {"closeups"}, {"html_report"}, {"preview", "report", "closeups"}]
+)
 def test_the_mesh_is_there_whatever_else_the_service_has_lost(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], lost: set[str]
 ) -> None:
     (tmp_path / "scan.ply").write_text("ply")
-    output, preview = tmp_path / "out.ply", tmp_path / "out.png"
-    asked = replace(task(tmp_path / "scan.ply", output), preview=preview, closeups=tmp_path / "holes")
+    output, preview, page = tmp_path / "out.ply", tmp_path / "out.png", tmp_path / "page.html"
+    asked = replace(task(tmp_path / "scan.ply", output), preview=preview, closeups=tmp_path / "holes", html=page)
     job = repair(cast(Client, Service(lost)), Screen(), asked)
     assert job.state.has_result
     assert output.exists()
     assert preview.exists() == ("preview" not in lost)
     said = capsys.readouterr().err
-    assert {role for role in ("preview", "report") if f"there is no {role}" in said} == lost - {"closeups"}
+    assert {role for role in ("preview", "report") if f"there is no {role}" in said} == lost & {"preview", "report"}
+    assert page.exists() == ("html_report" not in lost) == ("there is no HTML report" not in said)
     assert ("there are no close-ups" in said) == ("closeups" in lost)
     assert ("hole_0.png" in said) == (tmp_path / "holes" / "hole_0.png").exists() == ("closeups" not in lost)
 

@@ -35,16 +35,18 @@ def run(local_stack: Any) -> Callable[..., Result]:
 def test_repair_writes_what_was_asked_for_and_tells_so(
     run: Callable[..., Result], relief_file: Callable[[str], Path], tmp_path: Path
 ) -> None:
-    output, report, preview, closeups = (tmp_path / name for name in ("out.ply", "r.json", "p.png", "holes"))
+    names = ("out.ply", "r.json", "p.png", "holes", "r.html")
+    output, report, preview, closeups, page = (tmp_path / name for name in names)
     arguments = ["-o", output, "--method", "smooth", "--report", report, "--preview", preview, "--closeups", closeups]
+    arguments += ["--html", page]
     done = run("repair", relief_file("float.ply"), *arguments)
     assert done.exit_code == ExitCode.OK, done.stderr
     assert done.stdout == ""
     assert "float.ply has 5 holes: 4 filled smoothly, 1 left open by rule" in done.stderr
     pictures = [closeups / f"hole_{i}.png" for i in (1, 2, 3, 4)]
     assert sorted(closeups.iterdir()) == pictures
-    assert all(f"wrote {path}" in done.stderr for path in (output, report, preview, *pictures))
-    assert all(path.stat().st_size > 0 for path in (output, report, preview, *pictures))
+    assert all(f"wrote {path}" in done.stderr for path in (output, report, preview, page, *pictures))
+    assert all(path.stat().st_size > 0 for path in (output, report, preview, page, *pictures))
 
 
 def test_the_suffix_of_the_output_says_its_format(

@@ -18,6 +18,7 @@ FILES = (
     ("report", "report.json", b'{"schema": 1}'),
     ("preview", "preview.png", b"\x89PNG\r\n\x1a\n"),
     ("closeups", "closeups.zip", b"PK\x05\x06" + bytes(18)),
+    ("html_report", "report.html", b"<!DOCTYPE html>"),
 )
 
 

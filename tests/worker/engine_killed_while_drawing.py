@@ -9,7 +9,7 @@ def _crash(*_: object) -> None:
     ctypes.string_at(0)
 
 
-for name in ("add_picture", "prove_model", "add_close_up_archive"):
+for name in ("add_picture", "prove_model", "add_close_up_archive", "add_html_report"):
     assert hasattr(main, name)
     setattr(main, name, _crash)
 run_request = main.run_request

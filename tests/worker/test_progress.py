@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 from jobkit.schema import STAGES, TASKS, Task
 from worker.progress import FilledBy, Progress
 
-stages = st.sampled_from([*STAGES, "preview", "closeups", "something new"])
+stages = st.sampled_from([*STAGES, "preview", "closeups", "html_report", "something new"])
 
 
 @given(st.sampled_from(TASKS), st.lists(st.tuples(stages, st.floats(allow_nan=False))))
@@ -21,7 +21,7 @@ def test_the_percentage_never_falls_and_never_reaches_100(task: Task, reports: l
 
 def test_every_stage_of_the_contract_moves_it_on() -> None:
     progress = Progress()
-    for stage in [*STAGES, "preview", "closeups"]:
+    for stage in [*STAGES, "preview", "closeups", "html_report"]:
         before = progress.percent
         progress.reach(stage, 1.0)
         assert progress.stage == stage
@@ -33,7 +33,7 @@ def test_every_stage_of_the_contract_moves_it_on() -> None:
 def test_no_stage_of_a_repair_takes_longer_than_that_of_what_fills_holes(by: FilledBy, longest: str) -> None:
     progress = Progress(filled_by=by)
     shares = {}
-    for stage in [*STAGES, "preview", "closeups"]:
+    for stage in [*STAGES, "preview", "closeups", "html_report"]:
         before = progress.percent
         progress.reach(stage, 1.0)
         shares[stage] = progress.percent - before
@@ -47,7 +47,7 @@ def test_a_repair_by_geometry_spends_most_of_its_time_filling() -> None:
     start = progress.percent
     progress.reach("fill", 0.5)
     assert progress.percent - start > 30.0
-    for stage in ("judge", "write", "preview", "closeups"):
+    for stage in ("judge", "write", "preview", "closeups", "html_report"):
         progress.reach(stage, 1.0)
     assert progress.percent == 99.0
 

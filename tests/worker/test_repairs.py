@@ -27,6 +27,7 @@ from jobkit.settings import Settings
 from jobkit.storage.base import ObjectStore, result_key
 from jobkit.storage.open import open_store
 from tests.integration.conftest import ply_bytes, punched_relief
+from tests.quadpatch.html_report.pages import Page
 from worker.context import Context, use_context
 from worker.engine.client import ForkServer
 from worker.jobs import inspect_mesh, run_job
@@ -80,12 +81,12 @@ def working(
             yield context
 
 
-def new_job(context: Context, *, preview: bool = False, closeups: bool = False) -> Job:
+def new_job(context: Context, *, preview: bool = False, closeups: bool = False, html_report: bool = False) -> Job:
     with context.store.writer("meshes") as writer:
         writer.write(ply_bytes(*punched_relief(20, 1)))
         stored = writer.commit()
     mesh = Meshes(context.database).add(stored, "scan.ply", "ply")[0]
-    output = {"preview": preview, "closeups": closeups}
+    output = {"preview": preview, "closeups": closeups, "html_report": html_report}
     spec = JobSpec.model_validate({"mesh_id": mesh.id, "method": {"method": "smooth"}, "output": output})
     return Jobs(context.database).create(NewJob(spec, ResolvedModel(requested="smooth", kind="none"), 3))[0]
 
@@ -125,6 +126,27 @@ def test_a_job_that_asks_for_close_ups_has_one_of_each_chosen_hole(settings: Set
     assert report["stages"][-1]["name"] == "closeups"
 
 
+def test_a_job_that_asks_for_a_page_has_one_that_names_job_and_files(settings: Settings, store: ObjectStore) -> None:
+    with working(settings, Database(settings.effective_database_url), store) as context:
+        job = new_job(context, html_report=True)
+        run_job(job.id)
+        ended = context.jobs.get(job.id)
+        mesh = context.meshes.get(job.mesh_id)
+    assert ended.state is JobState.SUCCEEDED
+    assert ended.result is not None
+    assert [file.role for file in ended.result.files] == ["result", "report", "html_report"]
+    assert ended.links.html_report == f"/v1/jobs/{job.id}/report.html"
+    page = Page(b"".join(store.read(result_key(job.id, 1, "report.html"))).decode())
+    report = json.loads(b"".join(store.read(result_key(job.id, 1, "report.json"))))
+    facts, repaired = report["provenance"], ended.result.file("result")
+    assert repaired is not None
+    assert (facts["source"]["sha256"], facts["output"]["sha256"]) == (mesh.id, repaired.sha256)
+    assert facts["request"]["job_id"] == job.id
+    assert json.loads(page.by_id("report-json").text) == {**report, "stages": report["stages"][:-1]}
+    assert len(page.all("img")) > 1
+    assert report["stages"][-1]["name"] == "html_report"
+
+
 def test_the_second_repair_of_a_mesh_takes_what_the_first_one_found_out_by_calibration(
     settings: Settings, store: ObjectStore, caplog: pytest.LogCaptureFixture
 ) -> None:
@@ -147,7 +169,12 @@ def test_the_second_repair_of_a_mesh_takes_what_the_first_one_found_out_by_calib
 
 
 @pytest.mark.parametrize(
-    ("asked", "words"), [({"preview": True}, "there is no picture"), ({"closeups": True}, "there are no close-ups")]
+    ("asked", "words"),
+    [
+        ({"preview": True}, "there is no picture"),
+        ({"closeups": True}, "there are no close-ups"),
+        ({"html_report": True}, "there is no HTML report"),
+    ],
 )
 def test_a_job_whose_engine_is_killed_while_it_draws_has_its_mesh_and_a_warning(
     settings: Settings, store: ObjectStore, monkeypatch: pytest.MonkeyPatch, asked: dict[str, bool], words: str

@@ -21,7 +21,11 @@ REQUEST = EngineRequest("repair", "mesh/source.stl", EngineLimits(60.0, 1024), o
 COST = Cost(1.5, 312)
 
 
-PICTURES = (("preview", "preview.png", "there is no picture"), ("closeups", "closeups.zip", "there are no close-ups"))
+PICTURES = (
+    ("preview", "preview.png", "there is no picture"),
+    ("closeups", "closeups.zip", "there are no close-ups"),
+    ("html_report", "report.html", "there is no HTML report"),
+)
 
 
 class RefusesPictures:
@@ -35,7 +39,7 @@ class RefusesPictures:
         return getattr(self._store, name)
 
     def put_file(self, key: str, path: Path) -> StoredObject:
-        if key.endswith((".png", ".zip")):
+        if key.endswith((".png", ".zip", ".html")):
             raise self._error
         return self._store.put_file(key, path)
 
@@ -56,12 +60,14 @@ def finished_folder(folder: Path, **report: Any) -> Path:
 def test_files_lie_where_only_this_attempt_writes(tmp_path: Path, store: ObjectStore) -> None:
     (tmp_path / "preview.png").write_bytes(b"png")
     (tmp_path / "closeups.zip").write_bytes(b"zip")
+    (tmp_path / "report.html").write_bytes(b"<!DOCTYPE html>")
     result = store_result(finished_folder(tmp_path), REQUEST, ATTEMPT, store, COST)
     assert [(file.role, file.name, file.media_type) for file in result.files] == [
         ("result", "repaired.stl", "model/stl"),
         ("report", "report.json", "application/json"),
         ("preview", "preview.png", "image/png"),
         ("closeups", "closeups.zip", "application/zip"),
+        ("html_report", "report.html", "text/html"),
     ]
     for file in result.files:
         assert store.size(result_key(ATTEMPT.job_id, 2, file.name)) == file.size_bytes
@@ -128,10 +134,10 @@ def test_a_picture_that_can_not_be_stored_is_a_warning(
 
 
 @pytest.mark.parametrize(("role", "name", "words"), PICTURES)
-def test_of_two_pictures_the_one_that_was_drawn_is_kept_and_the_other_is_named_in_the_report(
+def test_pictures_that_were_drawn_are_kept_and_the_missing_one_is_named_in_the_report(
     tmp_path: Path, store: ObjectStore, role: str, name: str, words: str
 ) -> None:
-    request = replace(REQUEST, with_preview=True, with_close_ups=True)
+    request = replace(REQUEST, with_preview=True, with_close_ups=True, html_report={})
     for _, other, _ in PICTURES:
         if other != name:
             (tmp_path / other).write_bytes(b"picture")
@@ -139,7 +145,7 @@ def test_of_two_pictures_the_one_that_was_drawn_is_kept_and_the_other_is_named_i
     assert [picture.role for picture in missing_pictures(folder, request)] == [role]
     note_lost_pictures(folder, request, Failure("out_of_memory", "the work needs more memory than 512 MiB"))
     result = store_result(folder, request, ATTEMPT, store, COST)
-    assert len(result.files) == 3
+    assert len(result.files) == 4
     assert result.file(role) is None
     assert result.warnings == ["the scan is coarse", f"{words}: the work needs more memory than 512 MiB"]
 

@@ -6,15 +6,18 @@ import pytest
 import jobkit.schema
 import quadpatch.options
 import quadpatch.restoration.restore
+from jobkit.jobs.attempts import StartedAttempt
+from jobkit.jobs.endings import Attempt
 from jobkit.meshes import MeshSource
 from jobkit.models.resolution import PAPER_NORMALISATION
-from jobkit.schema import Fitting, JobSpec
+from jobkit.schema import Fitting, Job, JobSpec
 from quadpatch.compression.encode import EncodeOptions
 from quadpatch.denoising.denoise import DenoiseOptions
 from quadpatch.inpainters.model_file import RECIPES
 from quadpatch.options import HoleOptions, HoleRule, NetworkOptions, PatchOptions, RepairOptions
 from quadpatch.restoration.restore import RestoreOptions
 from shared_rules.option_words import Effort, Recipe
+from tests.client.wire_jobs import body
 from worker.engine.limits import EngineLimits
 from worker.spec import (
     filled_by,
@@ -24,6 +27,7 @@ from worker.spec import (
     output_format,
     source_name,
     task_options,
+    who_asked,
 )
 
 MESH_ID = "0" * 64
@@ -258,6 +262,24 @@ def test_each_picture_is_drawn_where_it_is_asked_for() -> None:
             assert (request.with_preview, request.with_close_ups) == (preview, closeups)
     default = job_request(spec(), source(), "smooth", LIMITS)
     assert (default.with_preview, default.with_close_ups) == (True, False)
+
+
+def test_who_asked_is_told_where_a_page_is_asked_for() -> None:
+    output = {"html_report": True}
+    asked = spec(output=output, label="part 7", metadata={"order": "A-17"}, mesh_name="bust.ply")
+    job = Job.model_validate_json(body("queued", 1, spec=asked.model_dump(), mesh_name="bust.ply"))
+    attempt = Attempt(job.id, 1)
+    assert who_asked(StartedAttempt(attempt, job, "museum", "r-1")) == {
+        "job_id": job.id,
+        "tenant": "museum",
+        "request_id": "r-1",
+        "label": "part 7",
+        "metadata": {"order": "A-17"},
+        "rule": None,
+        "mesh_name": "bust.ply",
+    }
+    plain = Job.model_validate_json(body("queued", 1, spec=spec().model_dump()))
+    assert who_asked(StartedAttempt(attempt, plain, "museum")) is None
 
 
 def test_what_is_kept_of_a_calibration_goes_by_the_bytes_of_the_mesh_and_how_they_are_read() -> None:

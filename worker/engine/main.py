@@ -12,6 +12,8 @@ from typing import Any
 
 from quadpatch.calibration.kept import KeptCalibrations
 from quadpatch.formats.output_files import write_whole
+from quadpatch.html_report.provenance import note_start
+from quadpatch.html_report.writing import PageOrder, add_html_report
 from quadpatch.inpainters.proof import prove_model
 from quadpatch.options import RepairOptions
 from quadpatch.preview.drawing import add_close_up_archive, add_comparison, add_picture
@@ -28,6 +30,7 @@ from worker.engine.request import (
     CALIBRATION_NAME,
     CLOSE_UPS_NAME,
     FACTS_NAME,
+    PAGE_NAME,
     PREVIEW_NAME,
     REPORT_NAME,
     EngineRequest,
@@ -47,6 +50,7 @@ def _repair(folder: Path, request: EngineRequest, reporter: Reporter, pool: Proc
     options = RepairOptions.from_dict(request.options)
     kept = _kept_calibrations(folder, request.scan)
     reference = folder / request.reference if request.reference else None
+    start = None if request.html_report is None else note_start(source)
     repaired = repair_and_keep(
         source, output, request.model, options, reporter.progress, request.model_card, kept, pool, reference
     )
@@ -61,6 +65,10 @@ def _repair(folder: Path, request: EngineRequest, reporter: Reporter, pool: Proc
     if request.with_close_ups:
         reporter.progress("closeups", 0.0)
         add_close_up_archive(repaired, folder / CLOSE_UPS_NAME, reporter.progress)
+        _write_json(folder / REPORT_NAME, repaired.report)
+    if start is not None:
+        order = PageOrder(start, output, request.html_report, folder / PREVIEW_NAME)
+        add_html_report(repaired, order, folder / PAGE_NAME, reporter.progress)
         _write_json(folder / REPORT_NAME, repaired.report)
 
 

@@ -18,6 +18,7 @@ import quadpatch.formats.gltf.encoder
 import quadpatch.formats.gltf.reader
 import quadpatch.formats.threemf.encoder
 import quadpatch.formats.threemf.reader
+import quadpatch.html_report.writing
 import quadpatch.inpainters.dictionary
 import quadpatch.inpainters.onnx_network
 import quadpatch.inpainters.paper_dictionary

@@ -12,6 +12,7 @@
     report.json      what was done to every hole, or what else was done
     preview.png      the before/after picture
     closeups.zip     a picture of each chosen hole
+    report.html      the report as a page
     calibration.json what repairs of this mesh found out by calibration; the engine adds what it finds out
     facts.json       what an inspection found
     engine.log       all that the child prints
@@ -34,6 +35,7 @@ REPORT_NAME = "report.json"
 FACTS_NAME = "facts.json"
 PREVIEW_NAME = "preview.png"
 CLOSE_UPS_NAME = "closeups.zip"
+PAGE_NAME = "report.html"
 CALIBRATION_NAME = "calibration.json"
 LOG_NAME = "engine.log"
 
@@ -63,6 +65,8 @@ class EngineRequest:
         Whether to draw a before/after picture.
     with_close_ups : bool
         Whether to draw each chosen hole.
+    html_report : dict or None
+        Who asked, for the report as a page; None where none is wanted.
     reference : str
         Path of the clean scan in the request's folder; empty where nothing is learned from another mesh.
     missing : dict or None
@@ -81,6 +85,7 @@ class EngineRequest:
     options: dict[str, Any] = field(default_factory=dict)
     with_preview: bool = False
     with_close_ups: bool = False
+    html_report: dict[str, Any] | None = None
     model_card: dict[str, Any] | None = None
     reference: str = ""
     missing: dict[str, Any] | None = None

@@ -54,6 +54,14 @@ def test_a_fingerprint_covers_the_options_and_the_bytes_of_mesh_and_model() -> N
     assert len({known, *others}) == 4
 
 
+def test_what_stands_in_a_page_is_part_of_the_fingerprint_of_a_job_that_asks_for_one() -> None:
+    spec = JobSpec.model_validate({"mesh_id": "0" * 64, "output": {"html_report": True}})
+    known = fingerprint_of(spec, SELF)
+    assert fingerprint_of(spec.model_copy(update={"priority": "bulk"}), SELF) == known
+    changes = ({"label": "x"}, {"mesh_name": "a.ply"}, {"metadata": {"a": "b"}})
+    assert len({known, *(fingerprint_of(spec.model_copy(update=change), SELF) for change in changes)}) == 4
+
+
 def test_a_job_takes_over_the_result_of_an_equal_one(database: Database, store: ObjectStore) -> None:
     new = plain(reusing(database, store))
     first = Jobs(database).create(new)[0]

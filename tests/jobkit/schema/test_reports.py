@@ -1,4 +1,4 @@
-"""Real reports, held to the models of `jobkit/schema/report_parts.py` and `jobkit/schema/task_reports.py`.
+"""Real reports, held to the models that describe them.
 
 Also tests `jobkit/schema/report_parts.py`, `jobkit/schema/task_reports.py` and `jobkit/schema/training_reports.py`.
 """

@@ -165,13 +165,14 @@ def test_what_came_later_is_part_of_the_identity_where_it_is_used() -> None:
     method = {"method": "dictionary", "model": "self"}
     plain = identity_of(JobSpec.model_validate(MESH | {"method": method}))
     assert set(json.loads(plain)["method"]) == {"method", "model", "recipe", "patches"}
-    assert "attributes" not in json.loads(plain)["output"]
+    assert list(json.loads(plain)["output"]) == ["format", "preview", "closeups"]
     assert "length_unit" not in json.loads(plain)
     for changed in (
         {"method": method | {"learn_from": "b" * 64}},
         {"method": method | {"recipe": "paper", "dictionary": {"atoms": 8}}},
         {"method": method, "length_unit": "inch"},
         {"method": method, "output": {"attributes": []}},
+        {"method": method, "output": {"html_report": True}},
     ):
         assert identity_of(JobSpec.model_validate(MESH | changed)) != plain
 

@@ -12,6 +12,7 @@ PATHS = [
     ("report", "application/json", b'{"schema": 1}', "part 7-repaired.json"),
     ("preview.png", "image/png", b"\x89PNG\r\n\x1a\n", "part 7-repaired.png"),
     ("closeups.zip", "application/zip", b"PK\x05\x06" + bytes(18), "part 7-repaired-closeups.zip"),
+    ("report.html", "text/html; charset=utf-8", b"<!DOCTYPE html>", "part 7-repaired.html"),
 ]
 
 
@@ -32,6 +33,22 @@ def test_each_file_comes_with_its_type_and_a_sensible_name(
     assert (part.status_code, part.content) == (206, data[2:4])
     same = client.get(f"/v1/jobs/{job_id}/{path}", headers={"If-None-Match": answer.headers["etag"]})
     assert same.status_code == 304
+
+
+def test_a_page_of_a_client_s_words_is_kept_out_of_the_origin_of_the_service(
+    client: TestClient, job_id: str, finish: Callable[[str], Job]
+) -> None:
+    finish(job_id)
+    path = f"/v1/jobs/{job_id}/report.html"
+    whole = client.get(path)
+    part = client.get(path, headers={"Range": "bytes=2-3"})
+    same = client.get(path, headers={"If-None-Match": whole.headers["etag"]})
+    for answer in (whole, part, same, client.head(path)):
+        policy = answer.headers["content-security-policy"].split("; ")
+        assert policy[:3] == ["sandbox", "default-src 'none'", "img-src data:"]
+        assert not any("script" in part for part in policy)
+        assert answer.headers["content-disposition"].startswith("attachment; ")
+        assert answer.headers["x-content-type-options"] == "nosniff"
 
 
 def test_a_result_is_named_after_the_file_of_its_job_whatever_its_bytes_are_called_elsewhere(
@@ -62,7 +79,7 @@ def test_a_result_is_named_after_the_file_of_its_job_whatever_its_bytes_are_call
             assert header == f'attachment; filename="{name}-repaired.{suffix}"'
 
 
-@pytest.mark.parametrize("path", ["result", "report", "preview.png", "closeups.zip"])
+@pytest.mark.parametrize("path", ["result", "report", "preview.png", "closeups.zip", "report.html"])
 def test_a_job_that_has_not_ended_has_no_result_yet(client: TestClient, job_id: str, path: str) -> None:
     answer = client.get(f"/v1/jobs/{job_id}/{path}")
     assert (answer.status_code, answer.json()["code"]) == (409, "job_not_finished")
