@@ -49,12 +49,13 @@ def demo(folder: Path) -> None:
         output=folder / "face000_repaired.ply",
         holes=HoleChoice(),
         method=MethodChoice(),
-        rest={"output": {"preview": True}, "label": "demo"},
+        rest={"output": {"preview": True, "html_report": True}, "label": "demo"},
         report=folder / "report.json",
         preview=folder / "before_after.png",
+        html=folder / "report.html",
         timeout_s=_TIMEOUT_S,
     )
-    for path in (task.output, task.report, task.preview):
+    for path in (task.output, task.report, task.preview, task.html):
         if path is not None:
             path.unlink(missing_ok=True)  # what is there afterwards is of this run
     data = folder / "box"
