@@ -49,7 +49,7 @@ def learned_relief() -> Repair:
 def test_filling_tells_how_far_it_is() -> None:
     told: list[float] = []
     stages = Stages(lambda name, fraction: told.append(fraction) if name == "fill" else None)
-    inpaint(SMALL_RELIEF, None, RepairOptions(), stages)
+    inpaint(RELIEF, None, RepairOptions(), stages)
     assert told == sorted(told)
     assert len(told) > 8
     assert max(np.diff(told)) < 0.5
