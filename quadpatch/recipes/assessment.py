@@ -136,7 +136,11 @@ def _verdict(i: int, n_new_vertices: int, completion: Completion | None) -> tupl
         (undone, "model_faulty", "displaced by the model, the fill folds or runs through other surface: it was undone"),
         (not n_new_vertices, "no_new_vertex", "so small that its rim alone spans it: there is nothing to displace"),
         (completion.error_model is None, "no_practice", "too little undamaged surface to try the model on"),
-        (completion.blend_factor == 0, "no_gain", "on calibration holes the model gained nothing over the geometric fill"),
+        (
+            completion.blend_factor == 0,
+            "no_gain",
+            "on calibration holes the model gained nothing over the geometric fill",
+        ),
         (
             coverage < LEAST_COVERAGE,
             "no_height_map",

@@ -103,7 +103,7 @@ def test_the_report_is_plain_json_and_its_counts_add_up(repaired: tuple[str, Pat
     model, _, report = repaired
     assert json.loads(json.dumps(report, allow_nan=False)) == report
     assert set(report) == {
-        *("schema", "source", "length_unit", "model", "options"),
+        *("schema", "task", "source", "length_unit", "model", "options"),
         *("counts", "patches", "colours", "texture", "holes", "calibration", "stages", "warnings", "welded"),
     }
     assert report["schema"] == 1
@@ -239,5 +239,8 @@ def test_a_format_that_implies_a_unit_is_a_warning(tmp_path: Path) -> None:
     mesh = punched(sphere(3), (0.0, 0.0, 1.0), radius=0.4)
     write_ply(tmp_path / "in.ply", mesh)
     (warning,) = repair_file(tmp_path / "in.ply", tmp_path / "out.glb", "smooth")["warnings"]
-    assert warning == "the scan states no length unit, and .glb always means meter: the numbers are unchanged"
+    assert warning == (
+        "the scan states no length unit, and .glb always means meter: the numbers are unchanged; length_unit says what "
+        "they are in"
+    )
     assert repair_file(tmp_path / "in.ply", tmp_path / "out.ply", "smooth")["warnings"] == []

@@ -32,7 +32,7 @@ def plate_with_island() -> TriangleMesh:
 
 # With calibration holes that are filled by fewer vertices than real ones (creased, rough), and with others.
 SCANS: dict[str, Callable[[], TriangleMesh]] = {
-    "smooth": lambda: punched(bumpy_plate(80, 2.0), *PLACES, radius=0.1),
+    "smooth": lambda: punched(bumpy_plate(80, 2.0), *PLACES, radius=0.08),
     "creased": lambda: punched(folded_paper(111), (0.05, 0.0, 0.2), (-0.5, 0.5, 0.25), radius=0.12),
     "rough": lambda: punched(relief(110, 2.0, 0.03, 8), *PLACES, radius=0.13),
     "island": plate_with_island,

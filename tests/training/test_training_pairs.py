@@ -12,7 +12,7 @@ from training.training_pairs import HOLE_EDGES, cut_training_pairs
 
 @pytest.fixture(scope="module")
 def relief() -> TriangleMesh:
-    return relief_mesh("scales", np.random.default_rng(0), 56)
+    return relief_mesh("scales", np.random.default_rng(0), 70)
 
 
 @pytest.fixture(scope="module")
