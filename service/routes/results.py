@@ -1,5 +1,6 @@
 """Files of a finished job: the repaired mesh, the report, also as a page, the pictures."""
 
+from collections.abc import Mapping
 from typing import Any
 
 from fastapi import APIRouter, Request
@@ -24,10 +25,11 @@ _PAGE_POLICY = (
 )
 
 
-def _documented(media_type: str, **whole: Any) -> dict[int | str, dict[str, Any]]:
+def _documented(media_type: str, schema: Mapping[str, Any] = BINARY, **whole: Any) -> dict[int | str, dict[str, Any]]:
+    content = {media_type: {"schema": schema}}
     return {
-        200: {"description": "The whole file.", **(whole or {"content": {media_type: {"schema": BINARY}}})},
-        206: {"description": "The range.", "content": {media_type: {"schema": BINARY}}},
+        200: {"description": "The whole file.", **(whole or {"content": content})},
+        206: {"description": "The range.", "content": content},
         **not_modified(),
         **problems(404, 409, 410, 412, 416),
     }
@@ -97,7 +99,7 @@ def get_closeups(
     "/v1/jobs/{job_id}/report.html",
     response_class=Response,
     dependencies=CONDITIONAL,
-    responses=_documented("text/html"),
+    responses=_documented("text/html", {"type": "string"}),
 )
 def get_html_report(
     request: Request,

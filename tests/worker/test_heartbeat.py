@@ -40,7 +40,7 @@ def test_the_lease_is_renewed_and_progress_written_once() -> None:
         heartbeat.reach("fill", 1.0)
         assert attempt.has_beaten.wait(GUARD_S)
         assert heartbeat.stop_reason is None
-    assert attempt.reports == [("fill", 46.0)]
+    assert attempt.reports == [("fill", 44.0)]
 
 
 def test_the_present_and_the_most_memory_go_out_with_the_heartbeat() -> None:
