@@ -21,11 +21,10 @@ Count = Annotated[int, Field(ge=0)]
 class MeshFilter(Request):
     """Which meshes, as `GET /v1/meshes` looks for them."""
 
-    state: list[MeshState] = Field(
+    state: list[Annotated[MeshState, Field(strict=False)]] = Field(
         default_factory=lambda: [MeshState.READY, MeshState.ANALYSING],
         min_length=1,
         max_length=3,
-        strict=False,
         description="Any of these states; those that were not rejected unless given.",
         examples=[["ready"]],
     )

@@ -73,6 +73,8 @@ def test_a_filter_takes_what_fits_and_was_not_rejected(
     services.meshes.reject(analysis, MeshProblem(code="not_finite", message="x"))
     answer = client.post("/v1/batches", json={"filter": {"filename": "FACE*"}, "spec": SMOOTH})
     assert [job["mesh_id"] for job in jobs_of(client, answer.json())] == [mesh_ids[2], mesh_ids[0]]
+    of_state = client.post("/v1/batches", json={"filter": {"state": ["analysing"]}, "spec": SMOOTH})
+    assert [job["mesh_id"] for job in jobs_of(client, of_state.json())] == [mesh_ids[2], mesh_ids[0]]
     empty = client.post("/v1/batches", json={"filter": {"filename": "other*"}})
     assert (empty.status_code, empty.json()["code"]) == (409, "batch_size")
 
