@@ -30,7 +30,7 @@ serve: $(READY)           ## a local stack on http://127.0.0.1:8000 until Ctrl-C
 	@$(BIN)/python -m onebox serve
 
 # One thread for each of the two processes: where four share two cores, each waits for the others. At most 8 minutes on
-# two idle cores is the aim, 10 what it takes: what is slow is listed, so that it is made cheaper or gets a target of its
+# two idle cores is the aim, 15 what it takes: what is slow is listed, so that it is made cheaper or gets a target of its
 # own, such as `faults`.
 # The tests start some hundred interpreters: with PYTHONDONTWRITEBYTECODE each would compile all modules again.
 PYTEST := pytest -n 2 --dist loadfile
