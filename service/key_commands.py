@@ -8,7 +8,6 @@ import contextlib
 import sys
 from collections.abc import Sequence
 from datetime import datetime
-from typing import NoReturn
 
 from pydantic import ValidationError
 
@@ -17,6 +16,7 @@ from jobkit.database.session import Database
 from jobkit.errors import DatabaseUnavailableError, KeyNotFoundError, KeyRevokedError
 from jobkit.schema import Key, KeyWithSecret, NewKey, Scope
 from jobkit.settings import Settings
+from service.command_line import CommandParser, print_columns
 from shared_rules.text import printable
 
 
@@ -67,13 +67,6 @@ def _print_table(keys: Sequence[Key]) -> None:
     print_columns(rows)
 
 
-def print_columns(rows: Sequence[Sequence[str]]) -> None:
-    """Print a table; its first row is the head."""
-    widths = [max(len(row[column]) for row in rows) for column in range(len(rows[0]))]
-    for row in rows:
-        sys.stdout.write("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() + "\n")
-
-
 def _use(key: Key) -> str:
     return _day(key.used_at) or "never"
 
@@ -97,14 +90,8 @@ def _moment(text: str) -> datetime:
     return moment
 
 
-class _Parser(argparse.ArgumentParser):
-    def error(self, message: str) -> NoReturn:
-        sys.stderr.write(f"quadpatch: {message}\n")
-        sys.exit(2)
-
-
 def _parser() -> argparse.ArgumentParser:
-    parser = _Parser(
+    parser = CommandParser(
         prog="python -m service keys",
         description="Keys of clients. Requests without one are refused once the first is made.",
     )

@@ -7,7 +7,7 @@ import argparse
 import re
 import sys
 from collections.abc import Sequence
-from typing import Any, NoReturn
+from typing import Any
 
 from pydantic import ValidationError
 
@@ -18,7 +18,7 @@ from jobkit.errors import DatabaseUnavailableError, OperatorTenantError, TenantN
 from jobkit.ids import TENANT
 from jobkit.schema import Quotas, Tenant, TenantChanges, TenantWithUse
 from jobkit.settings import Settings
-from service.key_commands import print_columns
+from service.command_line import CommandParser, print_columns
 from shared_rules.text import printable
 
 _OPTIONS = {name: "--" + name.replace("_", "-") for name in Quotas.model_fields}
@@ -95,14 +95,8 @@ def _name(text: str) -> str:
     return text
 
 
-class _Parser(argparse.ArgumentParser):
-    def error(self, message: str) -> NoReturn:
-        sys.stderr.write(f"quadpatch: {message}\n")
-        sys.exit(2)
-
-
 def _parser() -> argparse.ArgumentParser:
-    parser = _Parser(
+    parser = CommandParser(
         prog="python -m service tenants",
         description="Tenants and what they may have. Running processes know a change within two seconds.",
     )

@@ -1,4 +1,5 @@
-"""The command line, and those of keys and tenants: `service/key_commands.py`, `service/tenant_commands.py`."""
+"""The command line, and those of keys and tenants: `service/key_commands.py`, `service/tenant_commands.py` and what
+they share, `service/command_line.py`."""
 
 import os
 import subprocess

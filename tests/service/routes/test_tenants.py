@@ -77,8 +77,8 @@ def test_the_operator_sets_what_a_tenant_may_have_and_sees_what_it_has(site: Sit
     assert site.set(jobs_waiting=None)["own_quotas"] == ["streams"]
     names = [tenant["name"] for tenant in site.operator("GET", "/v1/tenants").json()["items"]]
     assert names == ["default", TENANT]
-    assert site.operator("GET", "/v1/tenants/nobody-yet").json()["code"] == "tenant_not_found"
-    assert site.operator("PATCH", "/v1/tenants/nobody-yet", json={}).json()["name"] == "nobody-yet"
+    assert site.operator("GET", "/v1/tenants/unknown").json()["code"] == "tenant_not_found"
+    assert site.operator("PATCH", "/v1/tenants/unknown", json={}).json()["name"] == "unknown"
 
 
 @pytest.mark.parametrize(
