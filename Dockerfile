@@ -16,7 +16,7 @@ COPY deploy/locks deploy/locks
 RUN for extra in build ${EXTRAS}; do set -- "$@" --requirement "deploy/locks/$extra.txt"; done \
     && /opt/quadpatch/bin/python -m pip install --only-binary :all: --require-hashes --no-deps "$@"
 COPY . .
-RUN /opt/quadpatch/bin/python -m pip install --no-deps --no-build-isolation . \
+RUN /opt/quadpatch/bin/python -m pip install --no-deps --no-build-isolation ./client . \
     && /opt/quadpatch/bin/python -m pip check \
     && /opt/quadpatch/bin/python -m pip uninstall --yes pip setuptools
 

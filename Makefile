@@ -8,12 +8,12 @@ PIP    := $(BIN)/python -m pip --quiet --quiet --disable-pip-version-check
 
 .PHONY: demo test contract-changes coverage test-slow test-postgres test-lowest explore faults resumption fuzz mutants flood contract check serve openapi samples lock sbom bench bench-stages bench-quality bench-scans clean
 
-$(READY): pyproject.toml constraints.txt
+$(READY): pyproject.toml client/pyproject.toml constraints.txt
 	@echo "setting up $(VENV); this takes a few minutes the first time ..." >&2
 	@$(PYTHON) -c "import sys; sys.exit(sys.version_info < (3, 11) and 'Python 3.11 or newer is needed; set PYTHON=...')"
 	@$(PYTHON) -m venv $(VENV)
 	@$(PIP) install --upgrade pip
-	@$(PIP) install --constraint constraints.txt --editable '.[service,dev]'
+	@$(PIP) install --constraint constraints.txt --editable ./client --editable '.[service,dev]'
 	@touch $@
 
 # What tests/contract needs besides: linters of OpenAPI and a generator of clients. Node.js itself comes as a wheel.
@@ -58,7 +58,8 @@ LOWEST := .venv-lowest
 test-lowest:              ## the tests with the lowest versions that pyproject.toml allows
 	@$(PYTHON) -m venv $(LOWEST)
 	@$(PYTHON) -m deploy.lowest > $(LOWEST)/lowest.txt
-	@$(LOWEST)/bin/python -m pip --quiet install --constraint $(LOWEST)/lowest.txt --editable '.[service,dev]'
+	@$(LOWEST)/bin/python -m pip --quiet install --constraint $(LOWEST)/lowest.txt \
+		--editable ./client --editable '.[service,dev]'
 	@touch $(LOWEST)/.ready
 	@$(MAKE) --no-print-directory test VENV=$(LOWEST) ARGS="-W default --ignore tests/deploy \
 		--deselect tests/service/test_document.py::test_openapi_yaml_is_what_the_app_says $(ARGS)"
@@ -121,4 +122,4 @@ bench-scans: $(READY)     ## raw scans, judged hole by hole: make bench-scans SC
 	@$(BIN)/python -m benchmarks.scans $(SCANS) $(ARGS)
 
 clean:
-	rm -rf $(VENV) demo var build dist *.egg-info
+	rm -rf $(VENV) demo var build dist *.egg-info client/build client/*.egg-info

@@ -16,9 +16,9 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.performance.scans import dome, write_scan
-from client.sdk import Client
-from jobkit.schema import Job, JobSpec
 from onebox.demo import running_stack
+from quadpatch_client.schema import Job, JobSpec
+from quadpatch_client.sdk import Client
 
 _SMALL, _N_HOLES = 20_000, 3
 # Seconds that the stack gets to come to rest between two jobs.

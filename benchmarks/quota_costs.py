@@ -10,7 +10,7 @@ from jobkit.database.clock import utc_now
 from jobkit.database.quotas import admit_jobs, stored_bytes
 from jobkit.database.session import Database
 from jobkit.database.tables import JobRow, MeshRow
-from jobkit.schema import Quotas
+from quadpatch_client.schema import Quotas
 
 N, N_WAITING, TENANT, BATCH = 100_000, 10_000, "plant-north", 1000
 

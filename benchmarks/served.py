@@ -18,11 +18,11 @@ from jobkit.jobs.endings import Attempt
 from jobkit.jobs.jobs import Jobs
 from jobkit.jobs.new_jobs import NewJob
 from jobkit.meshes import Meshes
-from jobkit.schema import HoleCounts, JobResult, JobSpec, ResolvedModel
 from jobkit.settings import Settings
 from jobkit.storage.open import open_store
 from onebox.local_stack import ready_check, usable_port
 from onebox.valkey import running_valkey
+from quadpatch_client.schema import HoleCounts, JobResult, JobSpec, ResolvedModel
 
 HOST = "127.0.0.1"
 # Jobs that workers report progress of, as often as they do at most.

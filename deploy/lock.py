@@ -16,6 +16,9 @@ from typing import Any
 
 ROOT = Path(__file__).resolve().parent.parent
 LOCKS = ROOT / "deploy" / "locks"
+# Built from this tree, so no index has it: its requirements are locked instead.
+CLIENT = "quadpatch-client"
+PROJECTS = ("pyproject.toml", "client/pyproject.toml")
 # What `EXTRAS` of the Dockerfile may name, and what builds the project itself.
 EXTRAS = ("service", "telemetry", "networks")
 BUILD = "build"
@@ -30,11 +33,12 @@ class LockError(Exception):
 
 def requirements(extra: str) -> list[str]:
     """Return what the project asks for with an extra, or what builds it."""
-    document = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))
+    document, client = (tomllib.loads((ROOT / path).read_text("utf-8")) for path in PROJECTS)
     if extra == BUILD:
         return list(document["build-system"]["requires"])
     project = document["project"]
-    return [*project["dependencies"], *project["optional-dependencies"][extra]]
+    own = [text for text in project["dependencies"] if not text.startswith(f"{CLIENT}==")]
+    return [*own, *client["project"]["dependencies"], *project["optional-dependencies"][extra]]
 
 
 def lock_text(report: dict[str, Any]) -> str:

@@ -1,4 +1,4 @@
-"""`python -m deploy.lowest`: constraints of pip that install the lowest versions which `pyproject.toml` allows.
+"""`python -m deploy.lowest`: constraints of pip that install the lowest versions which the two `pyproject.toml` allow.
 
 They hold for what runs in production: the dependencies, and those of every extra but `dev`, whose tools only have to
 work. `make test-lowest` installs them and runs the tests.
@@ -7,9 +7,9 @@ work. `make test-lowest` installs them and runs the tests.
 import re
 import sys
 import tomllib
-from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent
+from deploy.lock import PROJECTS, ROOT
+
 _BOUND = re.compile(r"^(?P<name>[A-Za-z0-9._-]+)(\[[^\]]*\])?>=(?P<version>[^,;\s]+)")
 _NOT_RUN = "dev"
 
@@ -22,10 +22,11 @@ def lowest_versions() -> dict[str, str]:
     ValueError
         If a requirement has none.
     """
-    project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
+    project, client = (tomllib.loads((ROOT / path).read_text("utf-8"))["project"] for path in PROJECTS)
     extras = [texts for extra, texts in project["optional-dependencies"].items() if extra != _NOT_RUN]
+    own = [text for text in project["dependencies"] if not text.startswith(f"{client['name']}==")]
     versions = {}
-    for text in [*project["dependencies"], *(text for texts in extras for text in texts)]:
+    for text in [*own, *client["dependencies"], *(text for texts in extras for text in texts)]:
         bound = _BOUND.match(text)
         if bound is None:
             raise ValueError(f"{text} has no lower bound")

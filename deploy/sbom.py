@@ -19,7 +19,7 @@ from typing import Any
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
-from deploy.lock import EXTRAS, ROOT, read_lock
+from deploy.lock import EXTRAS, ROOT, read_lock, requirements
 
 Component = dict[str, Any]
 _DEFAULT_EXTRAS = ("service",)
@@ -97,11 +97,7 @@ def _models() -> Iterator[Component]:
 def _dependencies(project: str, locked: dict[str, tuple[str, str]], extras: list[str]) -> Iterator[dict[str, Any]]:
     """Yield which distribution needs which, as far as they are in the locks."""
     references = {name: _reference(name, version) for name, (version, _) in locked.items()}
-    document = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
-    direct = [
-        *document["dependencies"],
-        *(line for extra in extras for line in document["optional-dependencies"][extra]),
-    ]
+    direct = sorted({text for extra in extras for text in requirements(extra)})
     extras_of: dict[str, set[str]] = {canonicalize_name(r.name): r.extras for r in map(Requirement, direct)}
     yield {"ref": project, "dependsOn": _locked_references(direct, references, set())}
     for name in sorted(references):

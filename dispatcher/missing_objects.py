@@ -17,9 +17,9 @@ from jobkit.database.session import Database
 from jobkit.database.tables import JobRow, MeshRow, ModelRow
 from jobkit.errors import ObjectNotFoundError
 from jobkit.meshes import MESH_MISSING, is_missing, restart
-from jobkit.schema import JobState, MeshProblem, MeshState
 from jobkit.storage.base import ObjectStore
 from jobkit.storage.result_files import file_keys
+from quadpatch_client.schema import JobState, MeshProblem, MeshState
 
 # Rows of one kind in one look: a request each to a remote store.
 MOST = 1000

@@ -20,9 +20,9 @@ from dispatcher.sending import Answer, Outgoing
 from jobkit.database.clock import shared_now
 from jobkit.database.session import Database
 from jobkit.database.tables import CallbackSecretRow, DeliveryRow, DeliveryTryRow, WebhookRow
-from jobkit.schema import DeliveryState
 from jobkit.webhooks.deliveries import message_id
 from jobkit.webhooks.subscriptions import give_up_pending
+from quadpatch_client.schema import DeliveryState
 
 MAX_PER_RECEIVER = 4
 # A subscription that has failed for this long when a message is given up is disabled.

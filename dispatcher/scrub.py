@@ -24,11 +24,11 @@ from jobkit.database.session import Database
 from jobkit.database.tables import MeshRow, ScrubRow
 from jobkit.errors import ObjectNotFoundError, StoreUnavailableError
 from jobkit.meshes import MESH_DAMAGED, is_damaged, restart
-from jobkit.schema import MeshProblem, MeshState
 from jobkit.settings import Settings
 from jobkit.storage.base import ObjectStore
 from jobkit.storage.damage import NamedObject, forget_damaged, note_damaged
 from jobkit.storage.scrub_schedule import ScheduledRead, due_reads
+from quadpatch_client.schema import MeshProblem, MeshState
 
 # Of one round; the next one comes as long after it.
 ROUND_S = 60.0

@@ -23,11 +23,11 @@ from sqlalchemy import func, or_, select
 from jobkit.database.session import Database
 from jobkit.database.tables import JobRow, MeshRow, ModelRow
 from jobkit.errors import ObjectNotFoundError
-from jobkit.schema import JobState
 from jobkit.storage.base import ListedObject, ObjectStore, result_key
 from jobkit.storage.removals import START_S, claim, named_keys, release
 from jobkit.storage.result_files import file_keys
 from jobkit.uploads.parts import PART_PREFIX, named_parts
+from quadpatch_client.schema import JobState
 
 GRACE = timedelta(hours=24)
 CONTENT_PREFIXES = ("meshes", "models")

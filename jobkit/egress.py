@@ -56,7 +56,7 @@ def check_url(url: str, allowed: Networks) -> None:
 
 
 def destination_of(url: str) -> Destination:
-    """Take apart a URL that fits the pattern of `jobkit.schema.webhooks`.
+    """Take apart a URL that fits the pattern of `quadpatch_client.schema.webhooks`.
 
     Raises
     ------

@@ -75,7 +75,7 @@ Beside the tree stand errors that are faults of this code. No handler answers th
 Tested in `tests/test_documents.py`.
 """
 
-from shared_rules.text import printable
+from quadpatch_rules.text import printable
 
 
 class JobkitError(Exception):

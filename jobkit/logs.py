@@ -15,7 +15,7 @@ from types import MappingProxyType
 from typing import TextIO
 
 from jobkit.settings import Settings
-from shared_rules.text import printable
+from quadpatch_rules.text import printable
 
 # In the order in which they stand in a line.
 FIELDS = ("request_id", "job_id", "mesh_id", "model", "attempt", "worker")

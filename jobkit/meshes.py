@@ -20,8 +20,8 @@ from jobkit.database.session import Database
 from jobkit.database.tables import MeshRow
 from jobkit.database.tenancy import mesh_id_of, tenant_of
 from jobkit.errors import MeshNotFoundError, RowConflictError, StaleAttemptError
-from jobkit.schema import Format, Mesh, MeshFacts, MeshLinks, MeshPage, MeshProblem, MeshState, MeshSummary
 from jobkit.storage.base import StoredObject
+from quadpatch_client.schema import Format, Mesh, MeshFacts, MeshLinks, MeshPage, MeshProblem, MeshState, MeshSummary
 
 # Code of the problem of a mesh whose bytes are gone from the store.
 MESH_MISSING = "mesh_missing"

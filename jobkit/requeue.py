@@ -21,7 +21,7 @@ from jobkit.jobs.turns import is_startable
 from jobkit.meshes import MAX_ANALYSES
 from jobkit.models.proofs import give_up_proofs, parts_of, reference_of
 from jobkit.queue import TaskQueue, job_entry, mesh_entry, model_entry
-from jobkit.schema import JobState, MeshProblem, MeshState, ModelState
+from quadpatch_client.schema import JobState, MeshProblem, MeshState, ModelState
 
 # Of jobs that have not ended.
 _OPEN_STATES = tuple(state.value for state in JobState if not state.is_terminal)

@@ -27,9 +27,9 @@ from jobkit.errors import (
     RowConflictError,
     StoreUnavailableError,
 )
-from jobkit.schema import JobState
 from jobkit.storage.base import ObjectStore
 from jobkit.storage.result_files import unnamed
+from quadpatch_client.schema import JobState
 
 # Of one transaction: enough to be fast, few enough to delay no other transaction.
 BATCH = 50

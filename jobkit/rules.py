@@ -11,7 +11,7 @@ from jobkit.database.rule_tables import RuleRow
 from jobkit.database.session import Database
 from jobkit.database.tenancy import own_name, shown_name
 from jobkit.errors import RowConflictError, RuleNotFoundError
-from jobkit.schema import Rule, RuleContent, RuleLinks, RulePage
+from quadpatch_client.schema import Rule, RuleContent, RuleLinks, RulePage
 
 # Of one name, saved at the same moment.
 _MOST_CONFLICTS = 20

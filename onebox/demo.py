@@ -15,16 +15,16 @@ from pathlib import Path
 
 from rich.console import Console
 
-from client.errors import ClientError
-from client.options import HoleChoice, MethodChoice
-from client.repairing import Task, repair
-from client.screen import Screen
-from client.sdk import Client
 from onebox.errors import DemoError
 from onebox.local_stack import ADDRESS_FILE, LOCK_NAME
 from onebox.logs import log_tail
 from onebox.processes import stop
-from shared_rules.parent_death import parent_death_signal
+from quadpatch_client.errors import ClientError
+from quadpatch_client.options import HoleChoice, MethodChoice
+from quadpatch_client.repairing import Task, repair
+from quadpatch_client.screen import Screen
+from quadpatch_client.sdk import Client
+from quadpatch_rules.parent_death import parent_death_signal
 
 _HOST = "127.0.0.1"
 _SCAN = Path("tests/sample_meshes/rangemaps/face000.ply")

@@ -1,6 +1,6 @@
 """A small supervisor: starts programs in order, restarts those that end, stops them in reverse order.
 
-It has one thread on purpose. Children are tied to the thread that forks them (`shared_rules.parent_death`), and each
+It has one thread on purpose. Children are tied to the thread that forks them (`quadpatch_rules.parent_death`), and each
 writes straight into its own log file, so nothing is lost when the supervisor itself is killed.
 """
 
@@ -15,7 +15,7 @@ from pathlib import Path
 
 from onebox.errors import StartError
 from onebox.logs import log_tail, start_anew
-from shared_rules.parent_death import parent_death_signal
+from quadpatch_rules.parent_death import parent_death_signal
 
 _TICK_S = 0.1
 _FIRST_DELAY_S = 0.5

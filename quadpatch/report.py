@@ -23,7 +23,7 @@ from quadpatch.options import RepairOptions
 from quadpatch.recipes.result import Completion, HoleResult, Repair
 from quadpatch.stages import Stages
 from quadpatch.types import TriangleMesh
-from shared_rules.text import printable
+from quadpatch_rules.text import printable
 
 VERDICTS = ("filled", "filled_smooth", "skipped", "refused")
 UNKNOWN_UNIT = "mesh units"

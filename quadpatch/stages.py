@@ -14,7 +14,7 @@ from resource import RUSAGE_SELF, getrusage
 from quadpatch.errors import QuadpatchError
 from quadpatch.processes import ProcessPool
 from quadpatch.progress import Fraction, Progress, no_progress, part_of
-from shared_rules.stages import Stage
+from quadpatch_rules.stages import Stage
 
 _log = logging.getLogger(__name__)
 

@@ -15,8 +15,8 @@ from jobkit.access.keys import PREFIX, Holder, Keys, digest_of
 from jobkit.database.session import Database
 from jobkit.database.tenancy import DEFAULT_TENANT
 from jobkit.errors import DatabaseError, DatabaseUnavailableError, JobkitError, SettingsError
-from jobkit.schema import Scope as KeyScope
 from jobkit.settings import Settings
+from quadpatch_client.schema import Scope as KeyScope
 from service.host_header import Authority, parse_origin, plain_host, requested_authority
 from service.problems import ProblemError, problem_response, to_problem_error
 from service.rate_limits import RateLimiter

@@ -13,7 +13,7 @@ from typing import Any
 
 from jobkit.jobs.jobs import Jobs
 from jobkit.jobs.search import JobSearch
-from jobkit.schema import FileRole, Job, rfc3339
+from quadpatch_client.schema import FileRole, Job, rfc3339
 from service.content import result_name
 
 # Name of the table in an archive.

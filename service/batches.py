@@ -18,8 +18,18 @@ from jobkit.jobs.new_jobs import NewJob
 from jobkit.logs import current_request_id
 from jobkit.meshes import MeshSearch
 from jobkit.requeue import MOST_ENQUEUED, submit_jobs
-from jobkit.schema import MOST_JOBS, Batch, JobSpec, JobState, MeshFilter, NewBatch, RepairSpec, ResolvedModel, Rule
 from jobkit.telemetry import current_traceparent
+from quadpatch_client.schema import (
+    MOST_JOBS,
+    Batch,
+    JobSpec,
+    JobState,
+    MeshFilter,
+    NewBatch,
+    RepairSpec,
+    ResolvedModel,
+    Rule,
+)
 from service.formats import clean_filename
 from service.mesh_checks import check_mesh
 from service.rules import with_rule

@@ -8,7 +8,7 @@ from typing import Annotated, Any
 from fastapi import Header
 from starlette.responses import Response
 
-from jobkit.schema import Job
+from quadpatch_client.schema import Job
 
 CacheControl = Annotated[
     str | None,

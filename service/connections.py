@@ -16,7 +16,7 @@ from typing import Any
 
 from uvicorn.protocols.http.httptools_impl import HttpToolsProtocol
 
-from jobkit.schema import PROBLEM_MEDIA_TYPE, Problem
+from quadpatch_client.schema import PROBLEM_MEDIA_TYPE, Problem
 
 MOST_HEAD_BYTES = 64 << 10
 HEAD_S = 10.0

@@ -15,10 +15,10 @@ from starlette.responses import Response, StreamingResponse
 
 from jobkit.storage.damage import refuse_damaged
 from jobkit.storage.digests import digest_field, verified_chunks
+from quadpatch_rules.tasks import DONE, FILL, Task
 from service.head_requests import is_head
 from service.problems import ProblemError
 from service.services import Services
-from shared_rules.tasks import DONE, FILL, Task
 
 _RANGE = re.compile(r"^bytes=(?:(\d{1,18})-(\d{0,18})|-(\d{1,18}))$")
 _UNSAFE = re.compile(r"[^A-Za-z0-9._ -]")

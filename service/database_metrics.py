@@ -27,9 +27,9 @@ from jobkit.database.tables import (
 )
 from jobkit.jobs.attempts import AT_WORK
 from jobkit.jobs.past_jobs import read_past
-from jobkit.schema import TASKS, DeliveryState, JobState, MeshState, ModelState
 from jobkit.storage.damage import OBJECT_KINDS
 from jobkit.storage.scrub_schedule import oldest_check
+from quadpatch_client.schema import TASKS, DeliveryState, JobState, MeshState, ModelState
 
 _MIB = 1 << 20
 # They start at 0: the rate of a counter that first appears with 1 is 0.

@@ -9,12 +9,12 @@ from fastapi import Depends, Query
 from pydantic import Field
 
 from jobkit.database.searching import Period
-from jobkit.ids import BATCH_ID_PATTERN, SHA256_PATTERN
 from jobkit.jobs.search import JobSearch
 from jobkit.meshes import MeshSearch
-from jobkit.schema import Format, JobState, MeshState
-from jobkit.schema.base import TEXT_PATTERN, SentMoment
-from shared_rules.tasks import Task
+from quadpatch_client.schema import Format, JobState, MeshState
+from quadpatch_client.schema.base import TEXT_PATTERN, SentMoment
+from quadpatch_rules.ids import BATCH_ID_PATTERN, SHA256_PATTERN
+from quadpatch_rules.tasks import Task
 
 MOST_ON_A_PAGE = 500
 Limit = Annotated[int, Query(ge=1, le=MOST_ON_A_PAGE, description="Most items on the page.")]

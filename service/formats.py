@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from pathlib import PurePosixPath
 from typing import get_args
 
-from jobkit.schema import Format
+from quadpatch_client.schema import Format
 
 _BY_MEDIA_TYPE: Mapping[str, Format] = {
     "model/stl": "stl",

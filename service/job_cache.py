@@ -17,7 +17,7 @@ import anyio.to_thread
 from jobkit.errors import DatabaseError, DatabaseUnavailableError, JobNotFoundError
 from jobkit.jobs.estimates import Estimates
 from jobkit.jobs.jobs import Jobs, JobStatus
-from jobkit.schema import Job
+from quadpatch_client.schema import Job
 from service.pacing import Pacer
 
 _MOST_CACHED = 1000

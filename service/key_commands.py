@@ -14,10 +14,10 @@ from pydantic import ValidationError
 from jobkit.access.keys import Keys
 from jobkit.database.session import Database
 from jobkit.errors import DatabaseUnavailableError, KeyNotFoundError, KeyRevokedError
-from jobkit.schema import Key, KeyWithSecret, NewKey, Scope
 from jobkit.settings import Settings
+from quadpatch_client.schema import Key, KeyWithSecret, NewKey, Scope
+from quadpatch_rules.text import printable
 from service.command_line import CommandParser, print_columns
-from shared_rules.text import printable
 
 
 def run(arguments: Sequence[str], settings: Settings) -> int:

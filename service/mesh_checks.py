@@ -7,7 +7,7 @@ Tested in `tests/service/routes/test_tasks.py`.
 
 from jobkit.batches.meshes import MeshOutline
 from jobkit.errors import MeshEncodedError, MeshNotEncodedError, MeshRejectedError
-from jobkit.schema import JobSpec, Mesh, MissingAsNan
+from quadpatch_client.schema import JobSpec, Mesh, MissingAsNan
 
 # What `quadpatch.errors` calls a mesh with coordinates that are no numbers.
 _NOT_FINITE = "not_finite"

@@ -1,7 +1,8 @@
 """What a job would do: for a fill its selection, applied to the hole list that a worker found."""
 
 from jobkit.errors import UnknownHoleError
-from jobkit.schema import (
+from jobkit.settings import Settings
+from quadpatch_client.schema import (
     AutoMethod,
     HoleSelection,
     JobSpec,
@@ -13,9 +14,8 @@ from jobkit.schema import (
     ResolvedModel,
     SmoothMethod,
 )
-from jobkit.settings import Settings
+from quadpatch_rules.hole_selection import Choice, choose_holes, join_islands, unknown_hole
 from service.plan_summary import summary_of
-from shared_rules.hole_selection import Choice, choose_holes, join_islands, unknown_hole
 
 
 def make_plan(spec: JobSpec, facts: MeshFacts, model: ResolvedModel, settings: Settings) -> Plan:

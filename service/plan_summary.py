@@ -5,7 +5,15 @@ Tested in `tests/service/routes/test_tasks.py`.
 
 from collections.abc import Callable, Mapping
 
-from jobkit.schema import Denoising, JobSpec, MissingAsNan, MissingByProperty, RegionBox, RegionByProperty, Task
+from quadpatch_client.schema import (
+    Denoising,
+    JobSpec,
+    MissingAsNan,
+    MissingByProperty,
+    RegionBox,
+    RegionByProperty,
+    Task,
+)
 
 
 def summary_of(spec: JobSpec) -> str:

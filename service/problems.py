@@ -15,8 +15,8 @@ from starlette.responses import JSONResponse
 
 from jobkit import errors
 from jobkit.models import errors as model_errors
-from jobkit.schema import PROBLEM_MEDIA_TYPE, FieldError, Problem, ProblemQuota
-from shared_rules.text import printable
+from quadpatch_client.schema import PROBLEM_MEDIA_TYPE, FieldError, Problem, ProblemQuota
+from quadpatch_rules.text import printable
 
 # The narrowest class decides; classes that are not here are faults of this service.
 STATUS_BY_ERROR: Mapping[type[errors.JobkitError], HTTPStatus] = {

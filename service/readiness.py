@@ -14,7 +14,7 @@ from pydantic import BaseModel, Field
 
 from jobkit.database.leadership import DISPATCHER, current_leader
 from jobkit.errors import JobkitError, QueueUnavailableError
-from jobkit.schema import FieldError
+from quadpatch_client.schema import FieldError
 from service.services import Services
 
 _logger = logging.getLogger("service")

@@ -19,8 +19,8 @@ from jobkit.database.clock import shared_now
 from jobkit.database.session import Database
 from jobkit.database.upload_tables import UploadRow
 from jobkit.errors import StoreFullError
-from jobkit.schema import UploadState
 from jobkit.storage.base import ObjectStore
+from quadpatch_client.schema import UploadState
 
 ACTIVE_FOR = timedelta(minutes=10)
 # Of a body that did not say how long it is: so often the disk is looked at.

@@ -7,9 +7,9 @@ from typing import TypeVar
 
 from jobkit.errors import OptionsConflictError
 from jobkit.rules import Rules
-from jobkit.schema import RepairSpec, Rule
+from quadpatch_client.schema import RepairSpec, Rule
+from quadpatch_rules.tasks import FILL
 from service.services import Services
-from shared_rules.tasks import FILL
 
 _SAID = ("holes", "method", "colours", "acceptance")
 

@@ -8,7 +8,7 @@ from http import HTTPStatus
 
 from fastapi import Request
 
-from jobkit.schema import Scope
+from quadpatch_client.schema import Scope
 from service.problems import ProblemError
 from service.services import PrincipalDep
 

@@ -18,7 +18,7 @@ from jobkit.access.keys import Holder
 from jobkit.access.tenants import Tenants
 from jobkit.database.session import Database
 from jobkit.errors import DatabaseError, DatabaseUnavailableError
-from jobkit.schema import Quotas
+from quadpatch_client.schema import Quotas
 from service.auth import ANONYMOUS, address_of
 from service.problems import ProblemError, problem_response
 from service.rate_limits import Policy, RateLimiter

@@ -22,9 +22,9 @@ from jobkit.access.stream_leases import RENEW_S, StreamLeases
 from jobkit.batches.events import read_new_batch_events
 from jobkit.database.session import Database
 from jobkit.errors import DatabaseError, DatabaseUnavailableError
-from jobkit.ids import BATCH_ID_PATTERN
 from jobkit.jobs.events import NewEvents, read_new_events
-from jobkit.schema import BatchEvent, Event
+from quadpatch_client.schema import BatchEvent, Event
+from quadpatch_rules.ids import BATCH_ID_PATTERN
 from service.problems import RETRY_AFTER_S, ProblemError
 
 POLL_S = 0.25

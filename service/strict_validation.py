@@ -15,11 +15,11 @@ from fastapi.dependencies.models import Dependant
 from fastapi.routing import APIRoute
 
 from jobkit.errors import TooLargeError
+from quadpatch_rules.strict_json import StrictJsonError, read_json
 from service.body_limit import has_body
 from service.content import precondition_failed
 from service.digests import CheckedBody, refuse_coding
 from service.problems import ProblemError, invalid_request, malformed_json
-from shared_rules.strict_json import StrictJsonError, read_json
 
 Handler = Callable[[Request], Coroutine[Any, Any, Response]]
 

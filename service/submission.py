@@ -19,7 +19,9 @@ from jobkit.jobs.new_jobs import NewJob
 from jobkit.logs import current_request_id
 from jobkit.models.resolution import resolve_decoding, resolve_method
 from jobkit.requeue import submit_analysis, submit_job, submit_proof
-from jobkit.schema import (
+from jobkit.settings import Settings
+from jobkit.telemetry import current_traceparent
+from quadpatch_client.schema import (
     DictionaryMethod,
     Job,
     JobSpec,
@@ -30,15 +32,13 @@ from jobkit.schema import (
     conflict_of,
     identity_of,
 )
-from jobkit.settings import Settings
-from jobkit.telemetry import current_traceparent
+from quadpatch_rules.tasks import FILL
 from service.formats import clean_filename
 from service.idempotency import idempotency_of
 from service.mesh_checks import check_mesh, check_reference
 from service.plan import check_hole_ids, make_plan, plan_of_task
 from service.rules import with_rule
 from service.services import Services
-from shared_rules.tasks import FILL
 
 _logger = logging.getLogger("service")
 

@@ -15,11 +15,11 @@ from jobkit.access.tenants import Tenants
 from jobkit.database.quotas import default_quotas
 from jobkit.database.session import Database
 from jobkit.errors import DatabaseUnavailableError, OperatorTenantError, TenantNotFoundError
-from jobkit.ids import TENANT
-from jobkit.schema import Quotas, Tenant, TenantChanges, TenantWithUse
 from jobkit.settings import Settings
+from quadpatch_client.schema import Quotas, Tenant, TenantChanges, TenantWithUse
+from quadpatch_rules.ids import TENANT
+from quadpatch_rules.text import printable
 from service.command_line import CommandParser, print_columns
-from shared_rules.text import printable
 
 _OPTIONS = {name: "--" + name.replace("_", "-") for name in Quotas.model_fields}
 _USE = {"jobs_at_once": "jobs_at_work"}

@@ -14,12 +14,12 @@ from typing import Any
 import jwt
 
 from jobkit.access.keys import Holder
-from jobkit.ids import TENANT_PATTERN
-from jobkit.schema import Scope
 from jobkit.settings import Settings
+from quadpatch_client.schema import Scope
+from quadpatch_rules.ids import TENANT_PATTERN
+from quadpatch_rules.text import printable
 from service.issuer import IssuerError, SigningKey, SigningKeys
 from service.problems import RETRY_AFTER_S, ProblemError
-from shared_rules.text import printable
 
 # Clocks of two machines.
 LEEWAY_S = 30

@@ -9,8 +9,8 @@ from jobkit.jobs.new_jobs import NewJob
 from jobkit.jobs.trainings import check_names
 from jobkit.logs import current_request_id
 from jobkit.meshes import MeshSearch
-from jobkit.schema import Job, MeshState, NewTraining, ResolvedModel, TrainingFilter
 from jobkit.telemetry import current_traceparent
+from quadpatch_client.schema import Job, MeshState, NewTraining, ResolvedModel, TrainingFilter
 from service.idempotency import idempotency_of
 from service.mesh_checks import check_reference
 from service.services import Services

@@ -17,8 +17,8 @@ from starlette.datastructures import MutableHeaders
 from starlette.requests import Request
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from jobkit.ids import SHA256_PATTERN, UPLOAD_ID_PATTERN
-from jobkit.schema import Format
+from quadpatch_client.schema import Format
+from quadpatch_rules.ids import SHA256_PATTERN, UPLOAD_ID_PATTERN
 from service.formats import clean_filename, stated_format
 from service.problems import ProblemError, TusStatus, invalid_request, problem_response
 

@@ -14,9 +14,9 @@ from http import HTTPStatus
 from starlette.concurrency import run_in_threadpool
 
 from jobkit.errors import ObjectDamagedError, ObjectNotFoundError
-from jobkit.schema import Upload, UploadKind, UploadProblem, UploadState
 from jobkit.storage.base import StoredObject
 from jobkit.storage.digests import verified_chunks
+from quadpatch_client.schema import Upload, UploadKind, UploadProblem, UploadState
 from service import uploads as uploading
 from service.problems import ProblemError
 from service.routes.meshes import MESH_PREFIX, register_mesh

@@ -22,11 +22,11 @@ from jobkit.errors import (
     UploadNotFoundError,
     UploadOffsetError,
 )
-from jobkit.schema import Upload
 from jobkit.storage.base import ObjectStore, ObjectWriter
 from jobkit.storage.digests import verified_chunks
 from jobkit.uploads.parts import PART_BYTES, PART_PREFIX, UploadPart, mergeable
 from jobkit.uploads.uploads import Uploads, offset_error
+from quadpatch_client.schema import Upload
 
 _log = logging.getLogger("service")
 

@@ -21,7 +21,7 @@ from moto.server import ThreadedMotoServer
 from psycopg.sql import SQL, Composed, Identifier
 
 from jobkit.database.session import Database
-from shared_rules.parent_death import parent_death_signal
+from quadpatch_rules.parent_death import parent_death_signal
 from tests.waiting import GUARD_S, wait_until
 
 # PostgreSQL refuses to run as root; this one may do nothing, and needs to do nothing.

@@ -15,9 +15,6 @@ from PIL import Image
 
 import jobkit.errors
 import quadpatch.errors
-from client.exit_codes import MEANINGS
-from jobkit.schema import STAGES, JobState
-from jobkit.schema.codes import FAILURE_CODES
 from jobkit.settings import settings_table
 from onebox.demo import find_scan
 from quadpatch.calibration import calibration_set, energy_selection, error_model
@@ -28,6 +25,10 @@ from quadpatch.patches import paper_layout, ray_visibility, scale
 from quadpatch.recipes import assessment, default, fairing_energies, paper
 from quadpatch.report import VERDICTS
 from quadpatch.sparse import gaussian
+from quadpatch_client.cli import app as client_app
+from quadpatch_client.exit_codes import MEANINGS
+from quadpatch_client.schema import STAGES, JobState
+from quadpatch_client.schema.codes import FAILURE_CODES
 from service.contract.codes import problem_codes
 from service.problems import to_problem_error
 
@@ -127,7 +128,7 @@ def test_every_state_verdict_and_stage_is_explained() -> None:
 
 def test_every_reason_of_a_hole_is_explained() -> None:
     method = read("docs/method.md")
-    source = read("shared_rules/hole_selection.py") + read("quadpatch/recipes/assessment.py")
+    source = read("client/quadpatch_rules/hole_selection.py") + read("quadpatch/recipes/assessment.py")
     # A code is followed by a sentence, or stands behind its verdict.
     reasons = re.findall(r'"([a-z_]+)",\s*f?"[^"]* [^"]*"', source)
     reasons += re.findall(r'"(?:filled_smooth|refused)", "(\w+)"', source)
@@ -243,14 +244,20 @@ def test_make_targets_that_are_named_exist() -> None:
         assert named <= targets, path.name
 
 
+def test_commands_of_the_client_that_are_named_exist() -> None:
+    known = {c.name or getattr(c.callback, "__name__", "") for c in client_app.registered_commands}
+    for path in DOCUMENTS:
+        named = re.findall(r"quadpatch-client ([a-z]+)\b(?! to\b)", path.read_text("utf-8"))
+        assert set(named) <= known, path.name
+
+
 def test_commands_that_are_named_exist() -> None:
     for path in DOCUMENTS:
         for module, command in re.findall(r"python -m ([\w.]+)(?: ([a-z]+)\b)?", path.read_text("utf-8")):
             file = ROOT / module.replace(".", "/")
             is_there = (file / "__main__.py").is_file() or file.with_suffix(".py").is_file()
             assert is_there or module == "venv", f"{path.name}: {module}"
-            apps = {"quadpatch": "quadpatch.cli.app", "client": "client.cli", "training": "training.__main__"}
-            apps["onebox"] = "onebox.__main__"
+            apps = {"quadpatch": "quadpatch.cli.app", "training": "training.__main__", "onebox": "onebox.__main__"}
             if command and module in apps:
                 app = importlib.import_module(apps[module]).app
                 known = {c.name or c.callback.__name__ for c in app.registered_commands}

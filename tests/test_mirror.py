@@ -13,14 +13,14 @@ import pytest
 
 ROOT = Path(__file__).resolve().parent.parent
 FOLDERS = (
-    "shared_rules",
+    "client/quadpatch_rules",
+    "client/quadpatch_client",
     "quadpatch",
     "jobkit",
     "service",
     "worker",
     "dispatcher",
     "training",
-    "client",
     "onebox",
     "benchmarks",
     "deploy",
@@ -31,12 +31,13 @@ _WORDS = re.compile(r"Tested in `?(tests/[\w/]+\.py)`?\.\s*\Z")
 
 
 def mirror_of(module: str) -> str:
-    path = Path(module)
+    path = Path(module.removeprefix("client/"))
     return str("tests" / path.parent / f"test_{path.stem.strip('_')}.py")
 
 
 def names_of(module: str) -> list[str]:
     """Return the ways to write a module: its path, its dotted name, and how it is imported from its package."""
+    module = module.removeprefix("client/")
     dotted = module.removesuffix(".py").replace("/", ".").removesuffix(".__init__")
     package, _, name = dotted.rpartition(".")
     return [re.escape(module), re.escape(dotted) + r"\b", rf"from {re.escape(package)} import [^\n]*\b{name}\b"]

@@ -10,7 +10,7 @@ from rich.console import Console
 from quadpatch.errors import OptionError
 from quadpatch.patches.scale import PRESETS
 from quadpatch.sparse.ksvd import KsvdOptions
-from shared_rules.option_words import Preset, Recipe
+from quadpatch_rules.option_words import Preset, Recipe
 from training.commands import corpus, network, normalise
 from training.dictionary import USUAL, LearningOptions
 from training.run import Request, run

@@ -9,7 +9,7 @@ from typing import Any
 
 from quadpatch.patches.normalisation import HEIGHTS, NORMALISATION
 from quadpatch.patches.scale import PRESETS
-from shared_rules.dictionary_file import Card
+from quadpatch_rules.dictionary_file import Card
 from training.dictionary import Learned, LearningOptions
 from training.patterns import PATTERNS
 from training.sources import Source, corpus_sha256

@@ -26,7 +26,7 @@ from quadpatch.patches.scale import EDGES_PER_BIN, PatchScale, base_surface_iter
 from quadpatch.recipes.paper import LEAST_EDGES_PER_BIN
 from quadpatch.recipes.paper import RESOLUTION as USUAL_RESOLUTION
 from quadpatch.types import BoolArray, FloatArray, Patches, TriangleMesh
-from shared_rules.option_words import Preset
+from quadpatch_rules.option_words import Preset
 
 # Patches that vary less than this part of their side show noise, not a pattern worth an atom.
 LEAST_RELIEF = 1e-4

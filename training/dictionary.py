@@ -16,7 +16,7 @@ from quadpatch.progress import Progress, no_progress
 from quadpatch.sparse.dictionary import Dictionary
 from quadpatch.sparse.ksvd import KsvdOptions, OnIteration, masked_ksvd
 from quadpatch.types import FloatArray
-from shared_rules.option_words import Recipe
+from quadpatch_rules.option_words import Recipe
 from training.corpus import PatchRecipe, TrainingPatches, cut_patches, turn_at_random
 from training.evaluation import evaluate
 from training.normalise import read_normalised

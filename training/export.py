@@ -18,7 +18,7 @@ from torch import nn
 
 from quadpatch.formats.output_files import write_whole
 from quadpatch.inpainters.onnx_runtime import ort
-from shared_rules.dictionary_file import Card
+from quadpatch_rules.dictionary_file import Card
 from training.errors import ExportError
 from training.pixel_shuffle import with_pixel_shuffle
 

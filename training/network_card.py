@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from shared_rules.dictionary_file import Card
+from quadpatch_rules.dictionary_file import Card
 from training.architectures import Architecture
 from training.card import PageWording
 from training.checkpoint import TrainingState

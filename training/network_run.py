@@ -14,7 +14,7 @@ from rich.progress import BarColumn, Progress, TextColumn
 from torch import nn
 
 from quadpatch.errors import OptionError
-from shared_rules.dictionary_file import Card
+from quadpatch_rules.dictionary_file import Card
 from training.architectures import Architecture, find_architecture
 from training.board import Board
 from training.card import write_card_page

@@ -4,13 +4,13 @@ import re
 from pathlib import Path
 
 from jobkit.database.session import Database
-from jobkit.ids import MODEL_NAME
 from jobkit.models.registry import Registry
-from jobkit.schema import ModelVersion
 from jobkit.settings import load_settings
 from jobkit.storage.open import open_store
 from quadpatch.errors import OptionError
 from quadpatch.inpainters.proof import prove_model
+from quadpatch_client.schema import ModelVersion
+from quadpatch_rules.ids import MODEL_NAME
 
 
 def parse_reference(text: str) -> tuple[str, int | None]:

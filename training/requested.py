@@ -20,7 +20,7 @@ from quadpatch.progress import Progress, no_progress
 from quadpatch.report import describe_stages
 from quadpatch.sparse.ksvd import KsvdOptions
 from quadpatch.stages import Stages, harmless
-from shared_rules.training_verdict import Verdict, mean_ratio, verdict_of
+from quadpatch_rules.training_verdict import Verdict, mean_ratio, verdict_of
 from training.card import dictionary_card
 from training.corpus import PatchRecipe, read_mesh
 from training.dictionary import Learned, LearningOptions, learn_dictionary

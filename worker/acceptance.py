@@ -5,8 +5,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from jobkit.schema import Acceptance, Accepted, HoleFault, JobSpec, UnmetHole
 from quadpatch.formats.output_files import write_whole
+from quadpatch_client.schema import Acceptance, Accepted, HoleFault, JobSpec, UnmetHole
 from worker.engine.request import REPORT_NAME
 from worker.failures import EngineFailedError, Failure
 

@@ -5,7 +5,7 @@ import json
 from jobkit.jobs.memory_needs import BY_GEOMETRY, expected_from_bytes
 from jobkit.meshes import Analysis
 from jobkit.requeue import submit_analysis
-from jobkit.schema import MeshFacts, MeshProblem
+from quadpatch_client.schema import MeshFacts, MeshProblem
 from worker.checks import Check, run_check
 from worker.context import Context
 from worker.engine.limits import EngineLimits

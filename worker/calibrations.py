@@ -10,7 +10,7 @@ from pathlib import Path
 
 from jobkit.errors import DatabaseError, DatabaseUnavailableError
 from jobkit.meshes import Meshes
-from shared_rules.calibration_records import MOST_BYTES, RecordError, read_records, write_records
+from quadpatch_rules.calibration_records import MOST_BYTES, RecordError, read_records, write_records
 from worker.engine.request import CALIBRATION_NAME
 
 _log = logging.getLogger("quadpatch.worker.calibrations")

@@ -14,8 +14,8 @@ from typing import Any
 from rq.exceptions import NoSuchJobError
 from rq.job import Job
 
-from jobkit.ids import MODEL_NAME, TENANT
 from jobkit.queue import INSPECT_MESH, PROVE_MODEL, RUN_JOB
+from quadpatch_rules.ids import MODEL_NAME, TENANT
 from worker.jobs import inspect_mesh, prove_model, run_job
 
 TASKS: dict[str, Callable[[str], None]] = {RUN_JOB: run_job, INSPECT_MESH: inspect_mesh, PROVE_MODEL: prove_model}

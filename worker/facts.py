@@ -3,7 +3,7 @@
 import math
 from typing import Any
 
-from jobkit.schema import MeshFacts
+from quadpatch_client.schema import MeshFacts
 
 # What `quadpatch.report` writes where a file states no unit; the contract says null.
 _NO_UNIT = "mesh units"

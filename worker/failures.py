@@ -30,7 +30,7 @@ import enum
 import errno
 from dataclasses import dataclass
 
-from shared_rules.text import printable
+from quadpatch_rules.text import printable
 
 _LONGEST_CODE = 64
 # A full disk or an unavailable store takes a while to recover, by itself or by an operator: no need to retry at once.

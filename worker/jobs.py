@@ -17,7 +17,7 @@ from jobkit.errors import (
 )
 from jobkit.logs import log_about
 from jobkit.requeue import GRACE_S
-from jobkit.schema import JobState
+from quadpatch_client.schema import JobState
 from worker.analyses import analyse
 from worker.context import Context, current_context
 from worker.memory import memory_given_back, submit_fitting

@@ -8,9 +8,9 @@ from typing import Any
 
 from jobkit.errors import NotFoundError
 from jobkit.models.registry import Registry
-from jobkit.schema import Deprecation, ResolvedModel
 from jobkit.storage.base import CHUNK_BYTES, ObjectStore
 from jobkit.storage.digests import sha256_of
+from quadpatch_client.schema import Deprecation, ResolvedModel
 from worker.failures import EngineFailedError, Failure
 
 # What `quadpatch.repair.repair_file` calls the ways to fill a hole without a model file.

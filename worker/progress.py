@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Literal
 
-from shared_rules.tasks import FILL, Task
+from quadpatch_rules.tasks import FILL, Task
 
 # What holes are filled by, as far as the time goes: a model that is ready or learned in seconds, or one that is fitted.
 FilledBy = Literal["geometry", "model", "fitting"]

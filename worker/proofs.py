@@ -5,7 +5,7 @@ from dataclasses import replace
 from jobkit.jobs.memory_needs import BY_GEOMETRY, expected_from_bytes
 from jobkit.models.proofs import Proof
 from jobkit.requeue import submit_proof
-from jobkit.schema import ModelProblem, ResolvedModel
+from quadpatch_client.schema import ModelProblem, ResolvedModel
 from worker.checks import Check, run_check
 from worker.context import Context
 from worker.engine.limits import EngineLimits

@@ -25,10 +25,10 @@ from jobkit.jobs.stage_seconds import StageSeconds
 from jobkit.meshes import Meshes
 from jobkit.models.registry import Registry
 from jobkit.requeue import submit_job
-from jobkit.schema import JobError, JobResult, JobState
 from jobkit.telemetry import StageSpans
 from quadpatch.stages import failure_of
-from shared_rules.tasks import TRAIN
+from quadpatch_client.schema import JobError, JobResult, JobState
+from quadpatch_rules.tasks import TRAIN
 from worker.acceptance import check_acceptance
 from worker.calibrations import hand_on, take_back
 from worker.context import Context

@@ -6,7 +6,7 @@ Tested in `tests/worker/test_results.py`.
 from collections.abc import Mapping
 from typing import Any
 
-from jobkit.schema import HoleCounts
+from quadpatch_client.schema import HoleCounts
 
 
 def facts_of_fill(report: Mapping[str, Any]) -> dict[str, Any]:

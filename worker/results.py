@@ -7,12 +7,12 @@ from typing import Any
 
 from jobkit.jobs.endings import Attempt
 from jobkit.jobs.stage_seconds import StageSeconds
-from jobkit.schema import FileRole, JobResult, JobSpec, ResultFile
 from jobkit.storage.base import ObjectStore, result_key
 from jobkit.storage.digests import sha256_of
 from quadpatch.formats.output_files import write_whole
 from quadpatch.stages import failure_of
-from shared_rules.tasks import TRAIN
+from quadpatch_client.schema import FileRole, JobResult, JobSpec, ResultFile
+from quadpatch_rules.tasks import TRAIN
 from worker.engine.request import CLOSE_UPS_NAME, PAGE_NAME, PREVIEW_NAME, REPORT_NAME, EngineRequest
 from worker.failures import Failure
 from worker.result_facts import facts_of_fill, facts_of_task, facts_of_training

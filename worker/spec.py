@@ -5,7 +5,7 @@ from typing import Any, TypeGuard, get_args
 
 from jobkit.jobs.attempts import StartedAttempt
 from jobkit.meshes import MeshSource
-from jobkit.schema import (
+from quadpatch_client.schema import (
     SELF,
     AutoMethod,
     CnnMethod,
@@ -19,7 +19,7 @@ from jobkit.schema import (
     ResultFormat,
     SmoothMethod,
 )
-from shared_rules.tasks import DONE
+from quadpatch_rules.tasks import DONE
 from worker.engine.limits import EngineLimits
 from worker.engine.request import MESH_FOLDER, REFERENCE_FOLDER, EngineRequest
 from worker.progress import FilledBy

@@ -15,9 +15,9 @@ from jobkit.jobs.stage_seconds import StageSeconds
 from jobkit.jobs.trainings import register_learned
 from jobkit.meshes import Meshes, MeshSource
 from jobkit.models.registry import MODEL_PREFIX, MOST_CONFLICTS, Registry
-from jobkit.schema import JobError, JobResult, JobState, TrainingSpec
 from jobkit.storage.base import CHUNK_BYTES, StoredObject
-from shared_rules.tasks import DONE, TRAIN
+from quadpatch_client.schema import JobError, JobResult, JobState, TrainingSpec
+from quadpatch_rules.tasks import DONE, TRAIN
 from worker.context import Context
 from worker.engine.limits import EngineLimits
 from worker.engine.request import EngineRequest

@@ -15,7 +15,7 @@ ROOT = Path(__file__).resolve().parents[2]
 @cache
 def method_sha256() -> str:
     """Hash of the method's code; comments and docstrings don't count."""
-    folders = (ROOT / "quadpatch", ROOT / "shared_rules")
+    folders = (ROOT / "quadpatch", ROOT / "client" / "quadpatch_rules")
     return code_sha256(path for folder in folders for path in folder.rglob("*.py"))
 
 

@@ -12,8 +12,8 @@ from sqlalchemy import CursorResult, delete, insert, select
 from jobkit.database.access_tables import AuditRow
 from jobkit.database.readable_rows import readable
 from jobkit.database.session import Database
-from jobkit.ids import new_audit_id
-from jobkit.schema import AuditEntry, AuditPage
+from quadpatch_client.schema import AuditEntry, AuditPage
+from quadpatch_rules.ids import new_audit_id
 
 
 @dataclass(frozen=True)

@@ -22,8 +22,8 @@ from jobkit.database.readable_rows import readable
 from jobkit.database.session import Database
 from jobkit.database.tenancy import DEFAULT_TENANT, tenant_of
 from jobkit.errors import KeyNotFoundError, KeyRevokedError
-from jobkit.ids import new_key_id
-from jobkit.schema import Key, KeyList, KeyWithSecret, NewKey, Scope
+from quadpatch_client.schema import Key, KeyList, KeyWithSecret, NewKey, Scope
+from quadpatch_rules.ids import new_key_id
 
 PREFIX = "qpk_"
 # How long the key of before is taken after a rotation: stations are given the new one meanwhile.

@@ -13,7 +13,7 @@ from jobkit.database.quotas import effective_quotas, note_tenant, own_quotas, us
 from jobkit.database.session import Database
 from jobkit.database.tenancy import DEFAULT_TENANT
 from jobkit.errors import OperatorTenantError, TenantNotFoundError
-from jobkit.schema import Quotas, Tenant, TenantChanges, TenantList, TenantWithUse, Usage
+from quadpatch_client.schema import Quotas, Tenant, TenantChanges, TenantList, TenantWithUse, Usage
 
 
 class Tenants:

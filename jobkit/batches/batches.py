@@ -24,9 +24,9 @@ from jobkit.database.session import Database
 from jobkit.database.tables import EventRow, JobRow, MeshRow
 from jobkit.database.tenancy import DEFAULT_TENANT, mesh_id_of, tenant_of
 from jobkit.errors import BatchFinishedError, BatchSizeError, MeshNotFoundError
-from jobkit.ids import new_batch_id, new_job_id
 from jobkit.jobs.new_jobs import NamedMesh, NewJob, lock_model, mesh_ids_of, values_of
-from jobkit.schema import MOST_JOBS, Batch, BatchEventPage, BatchPage, JobState, ResolvedModel
+from quadpatch_client.schema import MOST_JOBS, Batch, BatchEventPage, BatchPage, JobState, ResolvedModel
+from quadpatch_rules.ids import new_batch_id, new_job_id
 
 # Rows of one statement.
 _CHUNK = 500

@@ -13,7 +13,7 @@ from sqlalchemy.orm import Session
 from jobkit.database.batch_tables import BatchEventRow, BatchRow
 from jobkit.database.readable_rows import readable
 from jobkit.jobs.events import NewEvents
-from jobkit.schema import BatchEvent, BatchEventType
+from quadpatch_client.schema import BatchEvent, BatchEventType
 
 
 def append_batch_event(

@@ -13,7 +13,7 @@ from jobkit.database.session import Database
 from jobkit.database.tables import MeshRow
 from jobkit.database.tenancy import mesh_id_of
 from jobkit.meshes import MeshSearch
-from jobkit.schema import Mesh, MeshProblem, MeshState
+from quadpatch_client.schema import Mesh, MeshProblem, MeshState
 
 # Ids of one statement.
 _CHUNK = 500

@@ -22,9 +22,9 @@ from jobkit.database.tables import JobRow
 from jobkit.errors import BatchNotFinishedError, BatchNotFoundError
 from jobkit.jobs.transitions import Transition, make_transition
 from jobkit.retention import BATCH, delete_rows, drop_files
-from jobkit.schema import JobState
 from jobkit.storage.base import ObjectStore
 from jobkit.webhooks.outbox import write_end_of_batch
+from quadpatch_client.schema import JobState
 
 IsOver = Callable[[], bool]
 _CANCELS = (

@@ -12,7 +12,7 @@ from jobkit.database.batch_tables import BatchRow
 from jobkit.database.expiry import expiry
 from jobkit.database.tables import JobRow
 from jobkit.errors import BatchNotFoundError
-from jobkit.schema import Batch, BatchLinks, BatchState, JobState
+from quadpatch_client.schema import Batch, BatchLinks, BatchState, JobState
 
 
 def existing_batch(session: Session, batch_id: str, *, locked: bool = False) -> BatchRow:

@@ -7,7 +7,7 @@ from jobkit.database.expiry import expiry
 from jobkit.database.tables import JobRow, MeshRow
 from jobkit.database.training_tables import TrainingMeshRow
 from jobkit.errors import JobNotFoundError
-from jobkit.schema import Job, JobLinks, JobState
+from quadpatch_client.schema import Job, JobLinks, JobState
 
 
 def existing_job(session: Session, job_id: str, *, locked: bool = False) -> JobRow:

@@ -18,8 +18,8 @@ from jobkit.database.tables import JobRow, MeshRow, ModelRow
 from jobkit.database.tenancy import DEFAULT_TENANT, tenant_of
 from jobkit.database.upload_tables import UploadRow
 from jobkit.errors import JobQuotaError, StorageQuotaError, TenantBusyError
-from jobkit.schema import JobState, Quotas, UploadKind, UploadState, Usage
 from jobkit.settings import Settings
+from quadpatch_client.schema import JobState, Quotas, UploadKind, UploadState, Usage
 
 NO_QUOTAS = Quotas()
 _AT_WORK = (JobState.RUNNING.value, JobState.CANCELING.value)

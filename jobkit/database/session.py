@@ -30,8 +30,8 @@ from sqlalchemy.orm import Session
 from jobkit.database.tenancy import TenantSession
 from jobkit.database.write_queue import BUSY_TIMEOUT_MS, WriteQueue
 from jobkit.errors import DatabaseError, DatabaseUnavailableError, RowConflictError, SettingsError
-from jobkit.schema import Quotas
-from shared_rules.text import encodable
+from quadpatch_client.schema import Quotas
+from quadpatch_rules.text import encodable
 
 # Any number, the same for all processes of this project.
 _MIGRATION_LOCK = 0x51554144

@@ -29,7 +29,7 @@ class MeshRow(Owned, Base):
     """An uploaded mesh and its analysis.
 
     `filename` is that of its latest upload. `calibrations` is what repairs found out about it by calibration
-    (`shared_rules/calibration_records.py`), for the next one.
+    (`quadpatch_rules/calibration_records.py`), for the next one.
     `used_at` is when its bytes came last, or when the last job on it ended that retention has removed since.
     `checked_at`, here, of jobs and of models, is when the scrub last read the objects that the row names.
     """

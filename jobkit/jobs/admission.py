@@ -32,7 +32,7 @@ from jobkit.jobs.reservations import (
 )
 from jobkit.jobs.transitions import update_job
 from jobkit.jobs.turns import busy_tenants
-from jobkit.schema import JobState
+from quadpatch_client.schema import JobState
 
 # A job that did not fit is not tried again sooner.
 _PAUSE_S = 1.0

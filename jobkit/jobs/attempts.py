@@ -38,7 +38,7 @@ from jobkit.jobs.reuse import reuse_result
 from jobkit.jobs.stage_seconds import StageSeconds, add_stages
 from jobkit.jobs.transitions import Transition, make_transition, update_job
 from jobkit.jobs.turns import next_in_turn, note_turn
-from jobkit.schema import Job, JobError, JobResult, JobState
+from quadpatch_client.schema import Job, JobError, JobResult, JobState
 
 AT_WORK = (JobState.RUNNING.value, JobState.CANCELING.value)
 # Jobs that a worker tries at one turn: each of them may have to wait for memory.

@@ -15,8 +15,8 @@ from jobkit.database.job_rows import existing_job
 from jobkit.database.tables import AttemptRow, JobRow
 from jobkit.errors import StaleAttemptError
 from jobkit.jobs.transitions import Transition, make_transition
-from jobkit.schema import EventType, JobError, JobResult, JobState
 from jobkit.version import VERSION
+from quadpatch_client.schema import EventType, JobError, JobResult, JobState
 
 
 @dataclass(frozen=True)

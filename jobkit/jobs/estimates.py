@@ -22,7 +22,7 @@ from jobkit.database.session import Database
 from jobkit.database.tables import JobRow
 from jobkit.jobs.past_jobs import Rates, kinds_and_sizes, read_past
 from jobkit.jobs.turns import last_turns, order_of_turns
-from jobkit.schema import Job, JobState
+from quadpatch_client.schema import Job, JobState
 
 _AT_WORK = (JobState.RUNNING.value, JobState.CANCELING.value)
 # A long queue takes long to read: refreshes take a fiftieth of the time at most.

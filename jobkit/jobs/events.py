@@ -15,7 +15,7 @@ from sqlalchemy.orm import Session
 
 from jobkit.database.readable_rows import readable
 from jobkit.database.tables import EventRow, JobRow
-from jobkit.schema import Event, EventType, JobState
+from quadpatch_client.schema import Event, EventType, JobState
 
 _log = logging.getLogger("quadpatch.rows")
 

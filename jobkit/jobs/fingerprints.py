@@ -8,7 +8,7 @@ Tested in `tests/jobkit/jobs/test_reuse.py`.
 import hashlib
 import json
 
-from jobkit.schema import JobSpec, ResolvedModel
+from quadpatch_client.schema import JobSpec, ResolvedModel
 
 # What a sender says for other reasons than the result; of these, what stands in the report as a page all the same.
 _UNRELATED = frozenset({"label", "metadata", "priority", "mesh_name", "callback_url"})

@@ -17,15 +17,15 @@ from jobkit.database.tables import JobRow, MeshRow
 from jobkit.database.tenancy import DEFAULT_TENANT, mesh_id_of, tenant_of
 from jobkit.database.training_tables import TrainingMeshRow
 from jobkit.errors import JobFinishedError, JobNotFoundError, MeshNotFoundError, RowConflictError
-from jobkit.ids import new_job_id
 from jobkit.jobs.events import append_event, read_events
 from jobkit.jobs.fingerprints import fingerprint_of
 from jobkit.jobs.new_jobs import NewJob, lock_model, mesh_ids_of, values_of
 from jobkit.jobs.reuse import reuse_result, source_of
 from jobkit.jobs.search import JobSearch
 from jobkit.jobs.transitions import Transition, make_transition
-from jobkit.schema import EventPage, Job, JobPage, JobState
 from jobkit.storage.result_files import file_key, file_keys
+from quadpatch_client.schema import EventPage, Job, JobPage, JobState
+from quadpatch_rules.ids import new_job_id
 
 
 @dataclass(frozen=True)

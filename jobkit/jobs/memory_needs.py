@@ -12,7 +12,7 @@ from collections.abc import Callable, Sequence
 
 from jobkit.database.session import Database
 from jobkit.jobs.past_jobs import PastJob, Rates, Sample, kind_of, read_past
-from shared_rules.tasks import FILL, TRAIN
+from quadpatch_rules.tasks import FILL, TRAIN
 
 # A fill by geometry alone, and kinds that are as frugal, or that fit a network.
 BY_GEOMETRY = kind_of(FILL, "none")

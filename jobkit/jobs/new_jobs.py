@@ -13,7 +13,7 @@ from jobkit.database.clock import utc_now
 from jobkit.jobs.fingerprints import fingerprint_of
 from jobkit.jobs.turns import rank_of
 from jobkit.models.rows import version_row
-from jobkit.schema import JobSpec, JobState, ResolvedModel
+from quadpatch_client.schema import JobSpec, JobState, ResolvedModel
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ from sqlalchemy import Select, func, literal, select
 from sqlalchemy.orm import Session
 
 from jobkit.database.tables import JobRow, MeshRow
-from jobkit.schema import JobState
+from quadpatch_client.schema import JobState
 
 _SUCCEEDED = [state.value for state in JobState if state.has_result]
 # Fewer past jobs are no basis; older ones may have run on another machine or version.

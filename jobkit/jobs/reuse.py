@@ -12,9 +12,9 @@ from sqlalchemy.orm import Session
 
 from jobkit.database.tables import DamagedRow, JobRow
 from jobkit.jobs.transitions import Transition, make_transition
-from jobkit.schema import JobState
 from jobkit.storage.result_files import file_keys
 from jobkit.version import VERSION
+from quadpatch_client.schema import JobState
 
 _WITH_RESULT = tuple(state.value for state in JobState if state.has_result)
 # Sources that are tried: the files of the latest one may be damaged.

@@ -12,7 +12,7 @@ from jobkit.database.job_rows import names_mesh
 from jobkit.database.searching import ALWAYS, Period, matches
 from jobkit.database.tables import JobRow
 from jobkit.database.tenancy import mesh_id_of
-from jobkit.schema import JobState, Task
+from quadpatch_client.schema import JobState, Task
 
 
 @dataclass(frozen=True)

@@ -7,8 +7,8 @@ from sqlalchemy.orm import Session
 
 from jobkit.database.counters import add_up
 from jobkit.database.tables import StageRow
-from jobkit.schema import Task
-from shared_rules.tasks import FILL
+from quadpatch_client.schema import Task
+from quadpatch_rules.tasks import FILL
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,7 @@ from jobkit.errors import JobNotFoundError, StaleAttemptError
 from jobkit.jobs.attempts import AT_WORK
 from jobkit.jobs.endings import Attempt, Ending, cancel_attempt, end_attempt, failure, is_last_attempt, retry_ending
 from jobkit.jobs.transitions import Transition, make_transition
-from jobkit.schema import JobError, JobState
+from quadpatch_client.schema import JobError, JobState
 
 # A running worker acknowledges a cancel within a second.
 CANCEL_TIMEOUT_S = 1.5

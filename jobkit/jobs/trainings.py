@@ -13,7 +13,7 @@ from jobkit.errors import ConflictError, NameTakenError
 from jobkit.models.aliases import point_alias
 from jobkit.models.proofs import reference_of
 from jobkit.models.publication import check_name, insert_version
-from jobkit.schema import JobResult, TrainingSpec
+from quadpatch_client.schema import JobResult, TrainingSpec
 
 
 def check_names(database: Database, train: TrainingSpec) -> None:

@@ -10,8 +10,8 @@ from sqlalchemy.orm import Session
 
 from jobkit.database.tables import JobRow
 from jobkit.jobs.events import append_event
-from jobkit.schema import TRANSITIONS, EventType, JobState
 from jobkit.webhooks.outbox import write_messages
+from quadpatch_client.schema import TRANSITIONS, EventType, JobState
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,7 @@ from sqlalchemy.orm import Session
 
 from jobkit.database.quotas import free_places
 from jobkit.database.tables import JobRow, TurnRow
-from jobkit.schema import JobState, Priority
+from quadpatch_client.schema import JobState, Priority
 
 # By their rank; rows hold that number.
 PRIORITIES: tuple[Priority, ...] = ("interactive", "normal", "bulk")

@@ -13,7 +13,7 @@ from jobkit.errors import ModelKindError, NameTakenError
 from jobkit.models.default_aliases import DEFAULT_KINDS
 from jobkit.models.errors import ModelDeprecatedError
 from jobkit.models.rows import check_proven, resolved_row, to_alias, version_row
-from jobkit.schema import SELF, Alias
+from quadpatch_client.schema import SELF, Alias
 
 RESERVED_NAMES = frozenset({SELF, "auto", "smooth", "none", "latest"})
 

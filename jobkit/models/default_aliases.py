@@ -1,6 +1,12 @@
 """The aliases that stand for the models of specs that name none, and the kind that each of them means."""
 
-from jobkit.schema import DEFAULT_MODEL, DEFAULT_NETWORK, DEFAULT_PAPER_MODEL, DEFAULT_PAPER_NETWORK, ModelKind
+from quadpatch_client.schema import (
+    DEFAULT_MODEL,
+    DEFAULT_NETWORK,
+    DEFAULT_PAPER_MODEL,
+    DEFAULT_PAPER_NETWORK,
+    ModelKind,
+)
 
 DEFAULT_KINDS: dict[str, ModelKind] = {
     DEFAULT_MODEL: "dictionary",

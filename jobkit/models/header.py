@@ -10,8 +10,8 @@ from typing import Literal
 from pydantic import ValidationError
 
 from jobkit.errors import UnusableModelError
-from jobkit.schema import ModelCard
-from shared_rules.dictionary_file import Card, DictionaryFileError, read_dictionary_card
+from quadpatch_client.schema import ModelCard
+from quadpatch_rules.dictionary_file import Card, DictionaryFileError, read_dictionary_card
 
 MAX_CARD_BYTES = 64 << 10
 # A serialised ONNX ModelProto starts with its first field, ir_version: field 1, a varint.
@@ -41,7 +41,7 @@ def dictionary_card(path: Path) -> Card:
     Raises
     ------
     UnusableModelError
-        If the file is no dictionary, see `shared_rules.dictionary_file`.
+        If the file is no dictionary, see `quadpatch_rules.dictionary_file`.
     """
     try:
         return read_dictionary_card(path)

@@ -17,7 +17,7 @@ from jobkit.errors import ModelNotFoundError, RowConflictError
 from jobkit.models.default_aliases import DEFAULT_KINDS
 from jobkit.models.errors import AliasInUseError, ModelInUseError
 from jobkit.models.rows import alias_row, check_owner, to_version, version_row
-from jobkit.schema import JobState, ModelVersion
+from quadpatch_client.schema import JobState, ModelVersion
 
 _OPEN_STATES = tuple(state.value for state in JobState if not state.is_terminal)
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, BinaryIO
 
 from jobkit.errors import UnusableModelError
-from shared_rules.strict_json import read_json
+from quadpatch_rules.strict_json import read_json
 
 _GRAPH, _OPSET_IMPORT, _METADATA_PROPS = 7, 8, 14
 _REFUSED = {20: "a training loop", 25: "functions of its own"}

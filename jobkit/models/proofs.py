@@ -17,7 +17,7 @@ from jobkit.database.session import Database
 from jobkit.database.tables import ModelRow
 from jobkit.errors import StaleAttemptError
 from jobkit.models.rows import to_version, version_row
-from jobkit.schema import ModelProblem, ModelState, ModelVersion
+from quadpatch_client.schema import ModelProblem, ModelState, ModelVersion
 
 # Proofs before a version is refused.
 MAX_PROOFS = 3

@@ -11,7 +11,7 @@ from jobkit.database.tenancy import shown_name
 from jobkit.errors import NameTakenError
 from jobkit.models.aliases import RESERVED_NAMES
 from jobkit.models.rows import alias_row
-from jobkit.schema import ModelState
+from quadpatch_client.schema import ModelState
 
 
 def check_name(session: Session, own_name: str) -> None:

@@ -32,10 +32,10 @@ from jobkit.models.rows import (
     to_version,
     version_row,
 )
-from jobkit.schema import Alias, Model, ModelKind, ModelList, ModelState, ModelVersion
 from jobkit.storage.base import CHUNK_BYTES, ObjectStore, StoredObject
 from jobkit.storage.removals import assure
-from shared_rules.dictionary_file import Card
+from quadpatch_client.schema import Alias, Model, ModelKind, ModelList, ModelState, ModelVersion
+from quadpatch_rules.dictionary_file import Card
 
 MODEL_PREFIX = "models"
 # Of one name, published at the same moment.

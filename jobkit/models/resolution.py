@@ -2,7 +2,7 @@
 
 from jobkit.errors import ModelKindError, NoNetworkError
 from jobkit.models.registry import Registry
-from jobkit.schema import (
+from quadpatch_client.schema import (
     DEFAULT_MODEL,
     DEFAULT_NETWORK,
     DEFAULT_PAPER_MODEL,

@@ -13,7 +13,7 @@ from jobkit.database.tables import AliasRow, ModelRow
 from jobkit.database.tenancy import names_of, shown_name, tenant_of
 from jobkit.errors import ModelNotFoundError
 from jobkit.models.errors import ModelNotProvenError, ModelRefusedError, SharedModelError
-from jobkit.schema import Alias, Deprecation, Model, ModelLinks, ModelState, ModelVersion
+from quadpatch_client.schema import Alias, Deprecation, Model, ModelLinks, ModelState, ModelVersion
 
 # `with_for_update` of SQLAlchemy: True, or the kind of the lock.
 Lock = dict[str, bool] | Literal[True] | None

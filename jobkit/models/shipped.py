@@ -6,11 +6,11 @@ import re
 from pathlib import Path
 
 from jobkit.errors import ModelNotFoundError, NameTakenError
-from jobkit.ids import MODEL_NAME
 from jobkit.models.default_aliases import DEFAULT_KINDS
 from jobkit.models.registry import Registry
 from jobkit.models.resolution import learned_for
-from jobkit.schema import DEFAULT_PAPER_MODEL, DEFAULT_PAPER_NETWORK, ModelVersion
+from quadpatch_client.schema import DEFAULT_PAPER_MODEL, DEFAULT_PAPER_NETWORK, ModelVersion
+from quadpatch_rules.ids import MODEL_NAME
 
 _FILE = re.compile(rf"^(?P<name>{MODEL_NAME})@(?P<version>[1-9][0-9]*)\.(?:safetensors|onnx)$")
 _logger = logging.getLogger(__name__)

@@ -31,9 +31,9 @@ from jobkit.errors import (
     UploadNotFoundError,
     UploadOffsetError,
 )
-from jobkit.ids import new_upload_id
-from jobkit.schema import Format, Upload, UploadKind, UploadLinks, UploadProblem, UploadState
 from jobkit.uploads.parts import UploadPart, add_parts, drop_parts, parts_of
+from quadpatch_client.schema import Format, Upload, UploadKind, UploadLinks, UploadProblem, UploadState
+from quadpatch_rules.ids import new_upload_id
 
 # How long what was joined is kept.
 _JOINED_FOR = timedelta(hours=1)

@@ -19,8 +19,8 @@ from jobkit.database.session import Database
 from jobkit.database.tables import CallbackSecretRow
 from jobkit.database.tenancy import DEFAULT_TENANT, tenant_of
 from jobkit.errors import CallbackSecretMissingError
-from jobkit.schema import CallbackSecret
 from jobkit.webhooks.subscriptions import OLD_SECRET_S, new_secret
+from quadpatch_client.schema import CallbackSecret
 
 
 class Callbacks:

@@ -13,7 +13,9 @@ from jobkit.database.readable_rows import readable
 from jobkit.database.session import Database
 from jobkit.database.tables import DeliveryRow, DeliveryTryRow, WebhookRow
 from jobkit.errors import DeliveryNotFoundError, DeliveryPendingError, WebhookDisabledError
-from jobkit.schema import (
+from jobkit.webhooks.outbox import Receiver, new_delivery
+from jobkit.webhooks.subscriptions import existing_webhook
+from quadpatch_client.schema import (
     Delivery,
     DeliveryDetail,
     DeliveryLinks,
@@ -22,8 +24,6 @@ from jobkit.schema import (
     DeliveryTry,
     Message,
 )
-from jobkit.webhooks.outbox import Receiver, new_delivery
-from jobkit.webhooks.subscriptions import existing_webhook
 
 
 class Deliveries:

@@ -18,8 +18,8 @@ from jobkit.database.job_rows import existing_job, to_job
 from jobkit.database.readable_rows import readable
 from jobkit.database.tables import DeliveryRow, JobRow, WebhookRow
 from jobkit.egress import destination_of
-from jobkit.ids import new_message_id
-from jobkit.schema import ENDINGS, DeliveryState, EventType, Message, WebhookEvent
+from quadpatch_client.schema import ENDINGS, DeliveryState, EventType, Message, WebhookEvent
+from quadpatch_rules.ids import new_message_id
 
 EVENTS: Mapping[EventType, WebhookEvent] = MappingProxyType(
     {

@@ -15,8 +15,7 @@ from jobkit.database.readable_rows import readable
 from jobkit.database.session import Database
 from jobkit.database.tables import DeliveryRow, WebhookRow
 from jobkit.errors import TooManyWebhooksError, WebhookNotFoundError
-from jobkit.ids import new_webhook_id
-from jobkit.schema import (
+from quadpatch_client.schema import (
     DeliveryState,
     NewWebhook,
     Webhook,
@@ -25,6 +24,7 @@ from jobkit.schema import (
     WebhookList,
     WebhookWithSecret,
 )
+from quadpatch_rules.ids import new_webhook_id
 
 MAX_WEBHOOKS = 100
 # Receivers that know one of the two secrets verify every message while they change over.

@@ -17,7 +17,7 @@ import quadpatch
 from quadpatch.calibration.record import CalibrationRecord, record_of
 from quadpatch.filling.fairing import Energy
 from quadpatch.types import FloatArray, IntArray
-from shared_rules.calibration_records import MOST_RECORDS, RecordError, check_record, read_records, write_records
+from quadpatch_rules.calibration_records import MOST_RECORDS, RecordError, check_record, read_records, write_records
 
 _log = logging.getLogger(__name__)
 

@@ -80,7 +80,7 @@ class CalibrationRecord:
 
 
 def record_of(fields: Mapping[str, Any]) -> CalibrationRecord:
-    """Turn what `CalibrationRecord.plain` gave, and `shared_rules.calibration_records` checked, into a record again."""
+    """Turn what `CalibrationRecord.plain` gave and `quadpatch_rules.calibration_records` checked into a record."""
     return CalibrationRecord(
         EnergyBlend(
             [Energy(**weights) for weights in fields["energies"]],

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from quadpatch.errors import OptionError
 from quadpatch.formats.output_files import is_stream, write_whole
-from shared_rules.calibration_records import MOST_BYTES, RecordError
+from quadpatch_rules.calibration_records import MOST_BYTES, RecordError
 
 if TYPE_CHECKING:
     from quadpatch.calibration.kept import KeptCalibrations

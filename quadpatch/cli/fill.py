@@ -30,10 +30,10 @@ from quadpatch.cli.scipy_start import prepare_libraries
 from quadpatch.errors import OptionError
 from quadpatch.formats.output_files import check_folder, check_outputs, is_stream
 from quadpatch.options import DictionaryOptions, HoleOptions, HoleRule, NetworkOptions, PatchOptions, RepairOptions
-from shared_rules.competition import outcome
-from shared_rules.hole_selection import Cap
-from shared_rules.option_words import CarriedAttribute, Colours, Effort, Recipe
-from shared_rules.rule_text import RuleTextError, read_bridge, read_rule
+from quadpatch_rules.competition import outcome
+from quadpatch_rules.hole_selection import Cap
+from quadpatch_rules.option_words import CarriedAttribute, Colours, Effort, Recipe
+from quadpatch_rules.rule_text import RuleTextError, read_bridge, read_rule
 
 if TYPE_CHECKING:
     from quadpatch.html_report.provenance import Start

@@ -9,7 +9,7 @@ from typing import Annotated, Literal
 import typer
 
 from quadpatch.errors import OptionError
-from shared_rules.option_words import LengthUnit, Preset
+from quadpatch_rules.option_words import LengthUnit, Preset
 
 Source = Annotated[Path, typer.Argument(metavar="IN", help="Mesh: PLY, STL, OBJ, OFF, GLB/glTF or 3MF.")]
 Output = Annotated[

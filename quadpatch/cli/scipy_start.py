@@ -21,7 +21,7 @@ from functools import partial
 from importlib.util import LazyLoader, find_spec, module_from_spec
 from types import ModuleType
 
-from shared_rules.garbage_collection import collect_seldom
+from quadpatch_rules.garbage_collection import collect_seldom
 
 _PARENT, _UNUSED = "numpy", ("f2py", "testing")
 _PUT_OFF = ("scipy.spatial.distance", "scipy.spatial.transform")

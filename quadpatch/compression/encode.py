@@ -25,7 +25,7 @@ from quadpatch.options import PatchOptions, built, check_length_unit, check_seed
 from quadpatch.patches.scale import preset_scale
 from quadpatch.stages import Stages
 from quadpatch.types import TriangleMesh, Triangles, Vertices
-from shared_rules.option_words import LengthUnit
+from quadpatch_rules.option_words import LengthUnit
 
 # Promised errors, as parts of the bounding box's diagonal, between which a file makes sense.
 _SMALLEST_ERROR, _LARGEST_ERROR = 1e-6, 0.1

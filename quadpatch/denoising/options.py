@@ -10,7 +10,7 @@ from typing import Any
 
 from quadpatch.errors import OptionError
 from quadpatch.options import PatchOptions, built, check_length_unit, check_seed
-from shared_rules.option_words import LengthUnit
+from quadpatch_rules.option_words import LengthUnit
 
 Corner = tuple[float, float, float]
 

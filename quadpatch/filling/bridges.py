@@ -19,7 +19,7 @@ from quadpatch.filling.ribs import Rib, Ribs, RibSide, make_clear_rib
 from quadpatch.mesh.holes import Hole
 from quadpatch.mesh.normals import length
 from quadpatch.types import FloatArray, IntArray, TriangleMesh, Vertices
-from shared_rules.hole_selection import MAX_NEW_VERTICES
+from quadpatch_rules.hole_selection import MAX_NEW_VERTICES
 
 BridgeShape = Literal["ring", "strip"]
 

@@ -15,7 +15,7 @@ from quadpatch.formats.moved_normals import moved_vertex_normals
 from quadpatch.formats.scan import Fill, Moved, Scan, VertexAttributes
 from quadpatch.formats.texture import extend_over_corners
 from quadpatch.types import BoolArray, FloatArray, IntArray, Triangles, Vertices
-from shared_rules.option_words import CarriedAttribute
+from quadpatch_rules.option_words import CarriedAttribute
 
 
 @dataclass(frozen=True)

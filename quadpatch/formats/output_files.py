@@ -1,7 +1,7 @@
 """Files that are written whole or not at all: a full disk does not cost the scan that was there before.
 
 A device, a pipe and standard output have no name that may be replaced: they are written as they are, once all bytes
-are there. The client has the same rule (`client.outputs`); a test holds the two together.
+are there. The client has the same rule (`quadpatch_client.outputs`); a test holds the two together.
 """
 
 import errno

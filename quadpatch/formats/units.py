@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from quadpatch.errors import OptionError
 from quadpatch.formats.scan import Scan
-from shared_rules.option_words import LengthUnit
+from quadpatch_rules.option_words import LengthUnit
 
 METRES: Mapping[str, float] = {
     "micron": 1e-6,

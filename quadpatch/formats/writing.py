@@ -10,7 +10,7 @@ from quadpatch.formats.merged_scene import MergedScene, merge_scene
 from quadpatch.formats.output_files import is_stream, write_whole
 from quadpatch.formats.scan import FileBytes, Fill, Scan, Source
 from quadpatch.stages import failure_of
-from shared_rules.option_words import CarriedAttribute
+from quadpatch_rules.option_words import CarriedAttribute
 
 
 def _encode_as_glb(scene: MergedScene) -> bytes:

@@ -19,8 +19,8 @@ from quadpatch.errors import ModelError
 from quadpatch.patches.normalisation import HEIGHTS, NORMALISATION
 from quadpatch.sparse.dictionary import Dictionary
 from quadpatch.types import FloatArray
-from shared_rules.dictionary_file import MAX_HEADER_BYTES, Card, DictionaryFileError, read_dictionary_card
-from shared_rules.option_words import Recipe
+from quadpatch_rules.dictionary_file import MAX_HEADER_BYTES, Card, DictionaryFileError, read_dictionary_card
+from quadpatch_rules.option_words import Recipe
 
 SHIPPED_MODELS = Path(__file__).parent.parent / "shipped_models"
 SUFFIXES = (".safetensors", ".onnx")

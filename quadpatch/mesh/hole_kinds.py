@@ -13,7 +13,7 @@ from quadpatch.mesh.pieces import Pieces
 from quadpatch.mesh.rims import Rims
 from quadpatch.mesh.slits import slits
 from quadpatch.types import BoolArray, FloatArray, IntArray, Vertices
-from shared_rules.hole_selection import HoleKind
+from quadpatch_rules.hole_selection import HoleKind
 
 # The longest loop of a piece is its outer border, if wider than this share of the piece's own diagonal.
 BORDER_SHARE = 0.5

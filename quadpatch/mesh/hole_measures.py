@@ -13,7 +13,7 @@ from quadpatch.mesh.normals import unit
 from quadpatch.mesh.pieces import find_pieces
 from quadpatch.mesh.rims import Rims, rims_of
 from quadpatch.types import FloatArray, IntArray, TriangleMesh
-from shared_rules.hole_selection import HoleKind
+from quadpatch_rules.hole_selection import HoleKind
 
 Vector = tuple[float, float, float]
 _ORIGIN: Vector = (0.0, 0.0, 0.0)

@@ -1,4 +1,4 @@
-"""Which holes to fill: the rules of `shared_rules.hole_selection`, applied to the holes of a mesh.
+"""Which holes to fill: the rules of `quadpatch_rules.hole_selection`, applied to the holes of a mesh.
 
 Measuring stands in `quadpatch.mesh.hole_measures`.
 """
@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from quadpatch.errors import OptionError
 from quadpatch.mesh.hole_measures import Hole, find_holes
 from quadpatch.options import HoleOptions
-from shared_rules.hole_selection import HoleAction, choose_holes, unknown_hole
+from quadpatch_rules.hole_selection import HoleAction, choose_holes, unknown_hole
 
 __all__ = ["Hole", "Selection", "find_holes", "select_holes"]
 

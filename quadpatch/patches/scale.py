@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from quadpatch.options import PatchOptions
-from shared_rules.option_words import Preset
+from quadpatch_rules.option_words import Preset
 
 # A patch must see about as much known surface around a hole as the hole is wide, also when its seed lies off centre.
 HOLES_PER_LENGTH = 1.8

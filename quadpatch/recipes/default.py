@@ -39,7 +39,7 @@ from quadpatch.recipes.result import Repair
 from quadpatch.recipes.verification import verified_results, with_ribs, without_faults
 from quadpatch.stages import Stages
 from quadpatch.types import BoolArray, TriangleMesh, Triangles
-from shared_rules.hole_selection import HoleAction
+from quadpatch_rules.hole_selection import HoleAction
 
 # Calibration holes are at most so many mean edges wide: wider ones cost more and tell the same.
 WIDEST_CALIBRATION = 24.0

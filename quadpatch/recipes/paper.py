@@ -34,7 +34,7 @@ from quadpatch.reconstruction.displacement import rim_vertices
 from quadpatch.reconstruction.placement import place, with_ring_means
 from quadpatch.stages import Stages
 from quadpatch.types import FloatArray, Patches, TriangleMesh, Triangles
-from shared_rules.hole_selection import MODEL_FILLS_ONLY
+from quadpatch_rules.hole_selection import MODEL_FILLS_ONLY
 
 # The paper gives patch length, resolution and overlap for each of its objects. Where none are given, patches are twice
 # as wide as the holes, nearly, with bins as in the paper's networks and every vertex in about nine patches.

@@ -25,7 +25,7 @@ from quadpatch.restoration.patch_detail import PatchDetail, continue_detail
 from quadpatch.restoration.placements import EDGE_NORMALS, LEAST_SQUARES, SMOOTH_NORMALS, placements, poisson_base
 from quadpatch.stages import Stages
 from quadpatch.types import BoolArray, FloatArray, TriangleMesh, Triangles, Vertices
-from shared_rules.option_words import LengthUnit
+from quadpatch_rules.option_words import LengthUnit
 
 # Where the measured vertices are too few to hide some of them.
 PRIOR_PLACEMENT = SMOOTH_NORMALS

@@ -13,9 +13,9 @@ from fastapi import FastAPI
 from fastapi.openapi.utils import get_openapi
 from fastapi.routing import APIRoute
 
-from jobkit.schema import PROBLEM_MEDIA_TYPE, Problem, RepairSpec
-from jobkit.schema.codes import open_enum
 from jobkit.version import VERSION
+from quadpatch_client.schema import PROBLEM_MEDIA_TYPE, Problem, RepairSpec
+from quadpatch_client.schema.codes import open_enum
 from service.auth import public_paths
 from service.contract.codes import EXAMPLE_CODES, problem_codes
 from service.contract.examples import REFERENCE, example_of

@@ -9,8 +9,8 @@ from typing import Annotated, Any
 from fastapi import Header
 from fastapi.routing import APIRouter
 
-from jobkit.schema import Message
-from jobkit.schema.webhooks import EXAMPLE_MESSAGE_ID, MESSAGE_TYPES, MessageType
+from quadpatch_client.schema import Message
+from quadpatch_client.schema.webhooks import EXAMPLE_MESSAGE_ID, MESSAGE_TYPES, MessageType
 
 _MEANINGS: Mapping[MessageType, str] = {
     "job.started": "An attempt at a job started",

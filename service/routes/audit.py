@@ -6,8 +6,8 @@ from fastapi import APIRouter, Query
 
 from jobkit.access.audit import AuditLog
 from jobkit.database.tenancy import DEFAULT_TENANT
-from jobkit.ids import AUDIT_ID_PATTERN
-from jobkit.schema import AuditPage
+from quadpatch_client.schema import AuditPage
+from quadpatch_rules.ids import AUDIT_ID_PATTERN
 from service.routes.common import problems
 from service.services import AllServicesDep, PrincipalDep
 from service.strict_validation import StrictRoute

@@ -8,9 +8,9 @@ from fastapi import APIRouter, Query, Request
 from starlette.responses import Response, StreamingResponse
 
 from jobkit.errors import BatchNotFinishedError, ObjectDamagedError, ObjectNotFoundError
-from jobkit.schema import FileRole, ResultFile
 from jobkit.storage.damage import refuse_damaged
 from jobkit.storage.digests import verified_chunks
+from quadpatch_client.schema import FileRole, ResultFile
 from service.batch_files import TABLE, FileNames, figures, jobs_of
 from service.content import content_disposition
 from service.head_requests import is_head

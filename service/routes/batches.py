@@ -9,8 +9,8 @@ from starlette.concurrency import run_in_threadpool
 from starlette.responses import Response
 
 from jobkit.batches.progress import delete_batch as delete_batch_rows
-from jobkit.ids import BATCH_ID_PATTERN
-from jobkit.schema import Batch, BatchEventPage, BatchPage, JobState, NewBatch
+from quadpatch_client.schema import Batch, BatchEventPage, BatchPage, JobState, NewBatch
+from quadpatch_rules.ids import BATCH_ID_PATTERN
 from service.batches import BatchRequest, submit_batch
 from service.batches import rerun_batch as run_failed_again
 from service.caching import CacheControl, asks_anew

@@ -5,7 +5,7 @@ from http import HTTPStatus
 from fastapi import APIRouter
 from starlette.responses import Response
 
-from jobkit.schema import CallbackSecret
+from quadpatch_client.schema import CallbackSecret
 from service.idempotency import note_replayed
 from service.routes.common import CallerDep, json_response, problems
 from service.services import ServicesDep

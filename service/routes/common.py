@@ -15,10 +15,10 @@ from starlette.responses import Response
 
 from jobkit.access.keys import Holder
 from jobkit.database.idempotency import Idempotency
-from jobkit.ids import BATCH_ID_PATTERN, JOB_ID_PATTERN, SHA256_PATTERN, WEBHOOK_ID_PATTERN
-from jobkit.schema import Job, Problem
-from jobkit.schema.base import EXAMPLE_BATCH_ID, EXAMPLE_JOB_ID, EXAMPLE_SHA256, NAME_PATTERN
-from jobkit.schema.webhooks import EXAMPLE_WEBHOOK_ID
+from quadpatch_client.schema import Job, Problem
+from quadpatch_client.schema.base import EXAMPLE_BATCH_ID, EXAMPLE_JOB_ID, EXAMPLE_SHA256, NAME_PATTERN
+from quadpatch_client.schema.webhooks import EXAMPLE_WEBHOOK_ID
+from quadpatch_rules.ids import BATCH_ID_PATTERN, JOB_ID_PATTERN, SHA256_PATTERN, WEBHOOK_ID_PATTERN
 from service.content import etag_matches
 from service.idempotency import idempotency_of
 from service.problems import RETRY_AFTER_S

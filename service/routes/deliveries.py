@@ -5,9 +5,9 @@ from typing import Annotated
 from fastapi import APIRouter, Path, Query
 from starlette.responses import Response
 
-from jobkit.ids import MESSAGE_ID_PATTERN
-from jobkit.schema import DeliveryDetail, DeliveryPage, DeliveryState
-from jobkit.schema.webhooks import EXAMPLE_MESSAGE_ID
+from quadpatch_client.schema import DeliveryDetail, DeliveryPage, DeliveryState
+from quadpatch_client.schema.webhooks import EXAMPLE_MESSAGE_ID
+from quadpatch_rules.ids import MESSAGE_ID_PATTERN
 from service.routes.common import CallerDep, WebhookIdPath, problems
 from service.routes.webhooks import QUEUED, delivery_response
 from service.services import ServicesDep

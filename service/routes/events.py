@@ -8,7 +8,7 @@ from fastapi.sse import EventSourceResponse
 from starlette.concurrency import run_in_threadpool
 from starlette.responses import Response
 
-from jobkit.schema import EventPage
+from quadpatch_client.schema import EventPage
 from service.routes.common import JobIdPath, json_response, problems
 from service.services import Services, ServicesDep, get_principal
 from service.strict_validation import StrictRoute

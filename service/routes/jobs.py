@@ -9,8 +9,8 @@ from starlette.concurrency import run_in_threadpool
 from starlette.responses import Response
 
 from jobkit.access.keys import Holder
-from jobkit.ids import JOB_ID_PATTERN
-from jobkit.schema import Job, JobPage, JobSpec, Plan, RepairSpec
+from quadpatch_client.schema import Job, JobPage, JobSpec, Plan, RepairSpec
+from quadpatch_rules.ids import JOB_ID_PATTERN
 from service.caching import CACHE_STATUS, CacheControl, asks_anew, note_cache
 from service.finding import JobSearchDep, Limit
 from service.idempotency import note_replayed

@@ -8,9 +8,9 @@ from starlette.responses import Response
 
 from jobkit.access.keys import Keys
 from jobkit.database.tenancy import DEFAULT_TENANT
-from jobkit.ids import KEY_ID_PATTERN
-from jobkit.schema import Key, KeyList, KeyWithSecret, NewKey
-from jobkit.schema.keys import EXAMPLE_KEY_ID
+from quadpatch_client.schema import Key, KeyList, KeyWithSecret, NewKey
+from quadpatch_client.schema.keys import EXAMPLE_KEY_ID
+from quadpatch_rules.ids import KEY_ID_PATTERN
 from service.idempotency import note_replayed
 from service.problems import ProblemError
 from service.routes.common import CallerDep, described_header, json_response, linked, problems

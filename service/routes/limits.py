@@ -9,7 +9,9 @@ from typing import get_args
 from fastapi import APIRouter
 
 from jobkit.access.tenants import Tenants
-from jobkit.schema import (
+from jobkit.settings import Settings
+from jobkit.version import VERSION
+from quadpatch_client.schema import (
     BodyLimits,
     CallerLimits,
     Format,
@@ -18,8 +20,6 @@ from jobkit.schema import (
     RatePolicy,
     Version,
 )
-from jobkit.settings import Settings
-from jobkit.version import VERSION
 from service.rate_limits import WINDOW_S
 from service.routes.common import problems
 from service.services import AllServicesDep, PrincipalDep

@@ -12,9 +12,9 @@ from jobkit.database.searching import CURSOR_PATTERN
 from jobkit.database.tenancy import mesh_id_of
 from jobkit.errors import MeshNotFoundError, ObjectNotFoundError
 from jobkit.meshes import MESH_DAMAGED, MESH_MISSING
-from jobkit.schema import Format, Mesh, MeshPage, MeshState
 from jobkit.storage.base import StoredObject
 from jobkit.storage.removals import assure
+from quadpatch_client.schema import Format, Mesh, MeshPage, MeshState
 from service.body_limit import has_body
 from service.content import Content, content_response
 from service.digests import announced_sha256

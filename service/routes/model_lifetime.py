@@ -6,7 +6,7 @@ from fastapi import APIRouter
 from starlette.responses import Response
 
 from jobkit.models import lifetime
-from jobkit.schema import DeprecationReason, ModelVersion
+from quadpatch_client.schema import DeprecationReason, ModelVersion
 from service.routes.common import AliasPath, ModelNamePath, VersionPath, problems
 from service.services import ServicesDep
 from service.strict_validation import StrictRoute

@@ -12,8 +12,10 @@ from jobkit.database.tenancy import DEFAULT_TENANT, own_name
 from jobkit.models.errors import SharedModelError
 from jobkit.models.proofs import reference_of
 from jobkit.models.registry import MODEL_PREFIX, MOST_VERSIONS
-from jobkit.schema import Alias, AliasTarget, Model, ModelList, ModelState, ModelVersion
-from jobkit.schema.base import NAME_PATTERN
+from quadpatch_client.schema import Alias, AliasTarget, Model, ModelList, ModelState, ModelVersion
+from quadpatch_client.schema.base import NAME_PATTERN
+from quadpatch_rules.dictionary_file import Card
+from quadpatch_rules.strict_json import StrictJsonError, read_json
 from service.content import OCTETS, Content, content_response
 from service.idempotency import note_replayed
 from service.problems import RETRY_AFTER_S, ProblemError, invalid_request
@@ -38,8 +40,6 @@ from service.strict_validation import StrictRoute
 from service.submission import request_proof
 from service.uploads import UploadRules, receive_upload
 from service.waiting import PreferHeader, note_applied, preferred_wait_s
-from shared_rules.dictionary_file import Card
-from shared_rules.strict_json import StrictJsonError, read_json
 
 router = APIRouter(tags=["models"], route_class=StrictRoute)
 

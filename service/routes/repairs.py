@@ -7,7 +7,8 @@ from pydantic import ValidationError
 from starlette.concurrency import run_in_threadpool
 from starlette.responses import Response
 
-from jobkit.schema import JobSpec, RepairSpec
+from quadpatch_client.schema import JobSpec, RepairSpec
+from quadpatch_rules.strict_json import StrictJsonError, read_json
 from service.formats import clean_filename
 from service.problems import invalid_request
 from service.routes.common import FILE, problems
@@ -16,7 +17,6 @@ from service.routes.meshes import MESH_PREFIX, register_mesh
 from service.services import ServicesDep
 from service.strict_validation import StrictRoute
 from service.uploads import UploadRules, receive_upload
-from shared_rules.strict_json import StrictJsonError, read_json
 
 router = APIRouter(tags=["jobs"], route_class=StrictRoute)
 

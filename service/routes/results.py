@@ -7,8 +7,8 @@ from fastapi import APIRouter, Request
 from starlette.responses import Response
 
 from jobkit.errors import JobHasNoResultError, JobNotFinishedError, ObjectNotFoundError, ResultMissingError
-from jobkit.schema import FileRole, Job
-from jobkit.schema.reports import Report
+from quadpatch_client.schema import FileRole, Job
+from quadpatch_client.schema.reports import Report
 from service.batch_files import suffix_of
 from service.content import OCTETS, Content, content_response, result_name
 from service.routes.common import BINARY, CONDITIONAL, JobIdPath, not_modified, problems

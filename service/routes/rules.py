@@ -8,8 +8,8 @@ from starlette.responses import Response
 
 from jobkit.errors import OptionsConflictError
 from jobkit.rules import Rules
-from jobkit.schema import JobSpec, RepairSpec, Rule, RuleContent, RulePage, RulePlan, RuleTrial, conflict_of
-from jobkit.schema.base import NAME_PATTERN, REFERENCE_PATTERN
+from quadpatch_client.schema import JobSpec, RepairSpec, Rule, RuleContent, RulePage, RulePlan, RuleTrial, conflict_of
+from quadpatch_client.schema.base import NAME_PATTERN, REFERENCE_PATTERN
 from service.finding import Limit
 from service.routes.common import VersionPath, described_header, json_response, problems
 from service.services import ServicesDep

@@ -7,8 +7,8 @@ from fastapi import APIRouter, Depends, Path
 
 from jobkit.access.tenants import Tenants
 from jobkit.database.tenancy import DEFAULT_TENANT
-from jobkit.ids import TENANT_PATTERN
-from jobkit.schema import TenantChanges, TenantList, TenantWithUse
+from quadpatch_client.schema import TenantChanges, TenantList, TenantWithUse
+from quadpatch_rules.ids import TENANT_PATTERN
 from service.problems import ProblemError
 from service.routes.common import problems
 from service.services import AllServicesDep, PrincipalDep

@@ -9,7 +9,8 @@ from starlette.responses import Response
 
 from jobkit.errors import JobNotFoundError
 from jobkit.jobs.search import JobSearch
-from jobkit.schema import Job, JobState, NewTraining, Training, TrainingPage
+from quadpatch_client.schema import Job, JobState, NewTraining, Training, TrainingPage
+from quadpatch_rules.tasks import TRAIN
 from service.finding import Limit
 from service.idempotency import note_replayed
 from service.problems import RETRY_AFTER_S
@@ -20,7 +21,6 @@ from service.services import PrincipalDep, Services, ServicesDep
 from service.strict_validation import StrictRoute
 from service.training_submission import submit_training
 from service.waiting import PreferHeader, note_applied
-from shared_rules.tasks import TRAIN
 
 router = APIRouter(tags=["trainings"], route_class=StrictRoute)
 

@@ -8,8 +8,8 @@ from typing import Annotated, Literal
 from fastapi import Header
 from pydantic import WithJsonSchema
 
-from jobkit.schema import UploadKind
 from jobkit.uploads.uploads import NewUpload
+from quadpatch_client.schema import UploadKind
 from service.problems import invalid_request
 from service.tus import CHECKSUMS, MAX_METADATA, read_joined, read_metadata
 

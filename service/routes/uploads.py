@@ -14,10 +14,10 @@ from starlette.concurrency import run_in_threadpool
 from starlette.responses import Response
 
 from jobkit.errors import TooLargeError
-from jobkit.ids import UPLOAD_ID_PATTERN
-from jobkit.schema import Upload, UploadKind
-from jobkit.schema.uploads import EXAMPLE_UPLOAD_ID
 from jobkit.uploads.uploads import NewUpload, offset_error, refuse_final
+from quadpatch_client.schema import Upload, UploadKind
+from quadpatch_client.schema.uploads import EXAMPLE_UPLOAD_ID
+from quadpatch_rules.ids import UPLOAD_ID_PATTERN
 from service.body_limit import has_body
 from service.digests import StatedDigests, refuse_coding
 from service.head_requests import is_head

@@ -6,7 +6,7 @@ from typing import Any
 from fastapi import APIRouter
 from starlette.responses import Response
 
-from jobkit.schema import DeliveryDetail, NewWebhook, Webhook, WebhookChange, WebhookList, WebhookWithSecret
+from quadpatch_client.schema import DeliveryDetail, NewWebhook, Webhook, WebhookChange, WebhookList, WebhookWithSecret
 from service.idempotency import note_replayed
 from service.routes.common import CallerDep, WebhookIdPath, described_header, json_response, linked, problems
 from service.services import ServicesDep

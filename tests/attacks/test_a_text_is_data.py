@@ -18,16 +18,16 @@ from jobkit.database.session import Database, read_json_column, write_json
 from jobkit.errors import JobkitError
 from jobkit.logs import JsonFormatter, TextFormatter
 from jobkit.models.network_header import read_network_card
-from jobkit.schema import DeliveryState, ModelVersion, NewWebhook
 from jobkit.settings import Settings
 from jobkit.webhooks.deliveries import Deliveries
 from jobkit.webhooks.subscriptions import Webhooks
+from quadpatch_client.schema import DeliveryState, ModelVersion, NewWebhook
+from quadpatch_rules.strict_json import MOST_LEVELS, StrictJsonError, read_json
+from quadpatch_rules.text import LONGEST_MESSAGE, has_surrogate, printable
 from service.content import content_disposition
 from service.formats import clean_filename
 from service.problems import MOST_FIELD_ERRORS
 from service.services import Services
-from shared_rules.strict_json import MOST_LEVELS, StrictJsonError, read_json
-from shared_rules.text import LONGEST_MESSAGE, has_surrogate, printable
 from tests.service.sse import sent_events
 from worker.failures import Failure
 

@@ -14,7 +14,7 @@ import pytest
 from worker.engine.seccomp import has_seccomp
 
 ROOT = Path(__file__).resolve().parents[2]
-PACKAGES = ("quadpatch", "jobkit", "service", "worker", "dispatcher", "training", "client", "onebox", "benchmarks")
+PACKAGES = ("quadpatch", "jobkit", "service", "worker", "dispatcher", "training", "onebox", "benchmarks")
 IMPORTS_IT = re.compile(r"^\s*(?:import|from) (?:onnxruntime|quadpatch\.onnx_runtime)\b", re.MULTILINE)
 TRAP = "from worker.engine.seccomp import kill_on_socket; kill_on_socket()\n"
 REPAIR = """

@@ -18,10 +18,10 @@ from jobkit.errors import ObjectDamagedError
 from jobkit.jobs.jobs import Jobs
 from jobkit.jobs.new_jobs import NewJob
 from jobkit.meshes import MESH_DAMAGED, Meshes
-from jobkit.schema import JobSpec, JobState, MeshState, ResolvedModel
 from jobkit.settings import Settings
 from jobkit.storage.base import CHUNK_BYTES, ObjectStore, StoredObject
 from jobkit.storage.digests import verified_chunks
+from quadpatch_client.schema import JobSpec, JobState, MeshState, ResolvedModel
 from service.app import create_app
 from tests.integration.conftest import ply_bytes, punched_relief
 from tests.jobkit.fixtures import DAY, age_rows, finish, new_job

@@ -18,9 +18,9 @@ from jobkit.jobs.timeouts import TimeLimits
 from jobkit.meshes import Meshes
 from jobkit.queue import TaskQueue
 from jobkit.requeue import Reconciled, reconcile
-from jobkit.schema import JobSpec, ResolvedModel
 from jobkit.settings import Settings
 from jobkit.storage.base import StoredObject
+from quadpatch_client.schema import JobSpec, ResolvedModel
 
 LIMITS = TimeLimits(60.0, 60.0, 1024)
 # Raises as soon as the queue is asked for anything.

@@ -21,10 +21,10 @@ from jobkit.models.header import MAX_CARD_BYTES
 from jobkit.models.registry import MODEL_PREFIX, Registry
 from jobkit.queue import TaskQueue, model_entry
 from jobkit.requeue import reconcile
-from jobkit.schema import JobSpec, ModelState, ResolvedModel
 from jobkit.settings import Settings
 from jobkit.storage.base import ObjectStore
 from quadpatch.inpainters.model_file import SHIPPED_MODELS
+from quadpatch_client.schema import JobSpec, ModelState, ResolvedModel
 from service.app import create_app
 from tests.integration.conftest import ply_bytes, punched_relief
 from tests.quadpatch.inpainters.test_onnx_network import N, write_network

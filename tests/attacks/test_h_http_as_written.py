@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator
 import pytest
 from starlette.testclient import TestClient
 
-from jobkit.schema import Job
+from quadpatch_client.schema import Job
 from service.multipart import MAX_OUTSIDE_BYTES
 
 JSON = {"Content-Type": "application/json"}

@@ -16,7 +16,7 @@ from jobkit.database.clock import utc_now
 from jobkit.database.idempotency import KEEP_FOR, Idempotency, forget_keys, note_request
 from jobkit.database.tables import DeliveryRow, IdempotencyRow, JobRow, WebhookRow
 from jobkit.database.upload_tables import UploadRow
-from jobkit.schema import NewKey, Scope
+from quadpatch_client.schema import NewKey, Scope
 from service.services import Services
 
 DOCUMENT = yaml.safe_load((Path(__file__).resolve().parents[2] / "openapi.yaml").read_text("utf-8"))

@@ -11,7 +11,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from starlette.testclient import TestClient
 
-from shared_rules.text import printable
+from quadpatch_rules.text import printable
 
 DOCUMENT = yaml.safe_load((Path(__file__).resolve().parents[2] / "openapi.yaml").read_text("utf-8"))
 # Objects whose names are the sender's own: labels of a job, and the card of a model, which is kept as it is.

@@ -12,20 +12,20 @@ import httpx
 import pytest
 from pydantic import ValidationError
 
-from client.errors import JobFailedError, MeshRejectedError, UnreachableError, UsageError
-from client.exit_codes import ExitCode, exit_code_of
-from client.lenient_json import read_leniently
-from client.options import HoleChoice, MethodChoice
-from client.packing import packed
-from client.progress import no_progress
-from client.repairing import Task, repair
-from client.screen import Screen
-from client.sdk import Client
-from client.transfers import download
-from client.transport import Transport
-from jobkit.schema import Job, JobPage, JobSpec, JobState, Mesh, MeshProblem, MeshState, SmoothMethod
-from tests.client import conftest as scripted
-from tests.client.wire_jobs import JOB_ID, body
+from quadpatch_client.errors import JobFailedError, MeshRejectedError, UnreachableError, UsageError
+from quadpatch_client.exit_codes import ExitCode, exit_code_of
+from quadpatch_client.lenient_json import read_leniently
+from quadpatch_client.options import HoleChoice, MethodChoice
+from quadpatch_client.packing import packed
+from quadpatch_client.progress import no_progress
+from quadpatch_client.repairing import Task, repair
+from quadpatch_client.schema import Job, JobPage, JobSpec, JobState, Mesh, MeshProblem, MeshState, SmoothMethod
+from quadpatch_client.screen import Screen
+from quadpatch_client.sdk import Client
+from quadpatch_client.transfers import download
+from quadpatch_client.transport import Transport
+from tests.quadpatch_client import conftest as scripted
+from tests.quadpatch_client.wire_jobs import JOB_ID, body
 from tests.waiting import GUARD_S
 
 server = scripted.server

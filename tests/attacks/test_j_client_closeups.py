@@ -9,13 +9,13 @@ from pathlib import Path
 
 import pytest
 
-from client import closeups
-from client.closeups import check_closeups_folder, unpack_closeups
-from client.errors import ClientError, UsageError
-from client.sdk import Client
-from jobkit.schema import Job
-from tests.client import conftest as scripted
-from tests.client.wire_jobs import PATH, body
+from quadpatch_client import closeups
+from quadpatch_client.closeups import check_closeups_folder, unpack_closeups
+from quadpatch_client.errors import ClientError, UsageError
+from quadpatch_client.schema import Job
+from quadpatch_client.sdk import Client
+from tests.quadpatch_client import conftest as scripted
+from tests.quadpatch_client.wire_jobs import PATH, body
 
 server = scripted.server
 PNG = b"\x89PNG\r\n\x1a\n" + bytes(100)

@@ -11,15 +11,15 @@ from pathlib import Path
 
 import pytest
 
-from client.errors import UsageError
-from client.exit_codes import ExitCode
-from client.outputs import check_stdout, is_stream
-from client.progress import no_progress
-from client.repairing import format_of
-from client.transfers import download
-from client.transport import Transport
-from tests.client import conftest as scripted
-from tests.client.wire_jobs import JOB_ID, PATH, body
+from quadpatch_client.errors import UsageError
+from quadpatch_client.exit_codes import ExitCode
+from quadpatch_client.outputs import check_stdout, is_stream
+from quadpatch_client.progress import no_progress
+from quadpatch_client.repairing import format_of
+from quadpatch_client.transfers import download
+from quadpatch_client.transport import Transport
+from tests.quadpatch_client import conftest as scripted
+from tests.quadpatch_client.wire_jobs import JOB_ID, PATH, body
 from tests.waiting import GUARD_S
 
 server = scripted.server
@@ -68,7 +68,7 @@ def test_standard_output_gets_the_mesh_behind_what_is_there_already(server: Serv
         scripted.answer(200, MESH),
         scripted.answer(200, REPORT),
     ]
-    command = [sys.executable, "-m", "client", "fetch", JOB_ID, "-o", name, "--url", server.url]
+    command = [sys.executable, "-m", "quadpatch_client", "fetch", JOB_ID, "-o", name, "--url", server.url]
     log = tmp_path / "log"
     log.write_bytes(b"before\n")
     with log.open("ab") as stdout:

@@ -13,10 +13,10 @@ from typing import Any
 import pytest
 import yaml
 
-import client.sdk
+import quadpatch_client.sdk
 from benchmarks.samples import BLOCK, DOCUMENTS, ELLIPSIS, RECORD, line, wrapped
 from jobkit.jobs.timeouts import CANCEL_TIMEOUT_S
-from jobkit.schema import HoleCounts, Job, JobResult, Mesh, MeshFacts
+from quadpatch_client.schema import HoleCounts, Job, JobResult, Mesh, MeshFacts
 from tests.waiting import GUARD_S, wait_until
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -40,9 +40,9 @@ def test_no_document_names_an_index_that_does_not_have_the_project(path: Path) -
 
 
 def test_the_docstring_of_the_sdk_calls_methods_that_there_are() -> None:
-    called = re.findall(r"\bclient\.(\w+)\(", inspect.getdoc(client.sdk) or "")
+    called = re.findall(r"\bclient\.(\w+)\(", inspect.getdoc(quadpatch_client.sdk) or "")
     assert {"upload", "create_job", "wait", "download"} <= set(called)
-    assert all(callable(getattr(client.sdk.Client, name)) for name in called)
+    assert all(callable(getattr(quadpatch_client.sdk.Client, name)) for name in called)
 
 
 def test_examples_of_codes_are_codes_and_of_instances_instances() -> None:

@@ -18,8 +18,8 @@ from starlette.testclient import TestClient
 
 from jobkit.database.tables import MeshRow
 from jobkit.database.tenancy import Owned, TenantSession
-from jobkit.schema import JobResult, ResultFile
 from jobkit.settings import Settings
+from quadpatch_client.schema import JobResult, ResultFile
 from service.app import create_app
 from service.scopes import OF_ALL, OPERATIONS, PUBLIC, scopes_of
 from service.services import Services

@@ -3,8 +3,8 @@ from collections import Counter
 from benchmarks.served import N_RUNNING, furnish
 from jobkit.database.session import Database
 from jobkit.jobs.jobs import Jobs
-from jobkit.schema import JobState
 from jobkit.settings import Settings
+from quadpatch_client.schema import JobState
 
 
 def test_one_job_in_four_has_ended_a_few_run_and_the_others_wait(settings: Settings, database: Database) -> None:

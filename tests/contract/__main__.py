@@ -15,9 +15,9 @@ from pathlib import Path
 import httpx
 import psutil
 
-from client.sdk import Client
-from jobkit.schema import JobSpec
 from onebox.demo import running_stack
+from quadpatch_client.schema import JobSpec
+from quadpatch_client.sdk import Client
 from tests.contract.running import HEADERS, KEY, Known, command, run, start_upload, write_configuration
 from tests.quadpatch.shapes import open_grid, punched, write_ply
 from tests.servers import free_port

@@ -11,10 +11,10 @@ import pytest
 from jobkit.database.session import Database
 from jobkit.jobs.attempts import Attempts
 from jobkit.models.proofs import Proofs
-from jobkit.schema import JobResult, ResultFile
 from jobkit.settings import Settings
 from jobkit.storage.base import result_key
 from jobkit.storage.open import open_store
+from quadpatch_client.schema import JobResult, ResultFile
 from tests.contract.running import HEADERS, KEY, Known, command, run, start_upload, write_configuration
 from tests.waiting import GUARD_S
 

@@ -70,7 +70,7 @@ def test_the_image_installs_nothing_that_is_in_no_lock() -> None:
     installs = re.findall(r"pip install .*", dockerfile)
     assert len(installs) == 2
     assert "--require-hashes --no-deps" in installs[0]
-    assert "--no-deps --no-build-isolation ." in installs[1]
+    assert "--no-deps --no-build-isolation ./client ." in installs[1]
     assert "pip check" in dockerfile
 
 

@@ -11,11 +11,11 @@ from jobkit.jobs.attempts import Attempts
 from jobkit.jobs.jobs import Jobs
 from jobkit.jobs.new_jobs import NewJob
 from jobkit.meshes import Meshes
-from jobkit.schema import JobError, JobSpec, NewWebhook, ResolvedModel, WebhookWithSecret
 from jobkit.settings import Settings
 from jobkit.storage.base import ObjectStore
 from jobkit.webhooks.deliveries import Deliveries
 from jobkit.webhooks.subscriptions import Webhooks
+from quadpatch_client.schema import JobError, JobSpec, NewWebhook, ResolvedModel, WebhookWithSecret
 from tests.dispatcher.receivers import LOOPBACK
 from tests.jobkit.conftest import any_database, any_store, job, mesh, new_job
 

@@ -18,10 +18,10 @@ from jobkit.errors import AddressRefusedError, CallbackSecretMissingError
 from jobkit.jobs.attempts import Attempts
 from jobkit.jobs.jobs import Jobs
 from jobkit.jobs.new_jobs import NewJob
-from jobkit.schema import DeliveryState, JobError, JobSpec, Mesh, ResolvedModel
 from jobkit.settings import Settings
 from jobkit.webhooks.callbacks import Callbacks
 from jobkit.webhooks.outbox import Receiver
+from quadpatch_client.schema import DeliveryState, JobError, JobSpec, Mesh, ResolvedModel
 from tests.dispatcher.receivers import LOOPBACK, receiving
 
 SELF = ResolvedModel(requested="self", kind="self")

@@ -10,8 +10,8 @@ from jobkit.jobs.new_jobs import NewJob
 from jobkit.meshes import MESH_MISSING, Meshes
 from jobkit.models.registry import MODEL_PREFIX, Registry
 from jobkit.retention import delete_job
-from jobkit.schema import Mesh, MeshState
 from jobkit.storage.base import ObjectStore
+from quadpatch_client.schema import Mesh, MeshState
 from tests.jobkit.fixtures import AgingStore, finish, put, upload
 
 

@@ -9,9 +9,9 @@ from dispatcher.sending import Answer
 from jobkit.database.clock import utc_now
 from jobkit.database.session import Database
 from jobkit.database.tables import DeliveryRow, WebhookRow
-from jobkit.schema import DeliveryState
 from jobkit.webhooks.deliveries import Deliveries
 from jobkit.webhooks.subscriptions import Webhooks
+from quadpatch_client.schema import DeliveryState
 from tests.dispatcher.conftest import Subscribe
 
 URL = "http://127.0.0.1:9/"

@@ -13,11 +13,11 @@ from jobkit.jobs.jobs import Jobs
 from jobkit.meshes import Meshes
 from jobkit.queue import TaskQueue
 from jobkit.retention import pin_mesh
-from jobkit.schema import Upload, UploadKind
 from jobkit.settings import Settings
 from jobkit.storage.base import ObjectStore
 from jobkit.uploads.parts import PART_PREFIX, UploadPart
 from jobkit.uploads.uploads import NewUpload, Uploads
+from quadpatch_client.schema import Upload, UploadKind
 from tests.jobkit.fixtures import DAY, AgingStore, age_rows, finish, keys_in, new_job, put, upload
 
 

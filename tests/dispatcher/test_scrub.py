@@ -14,9 +14,9 @@ from jobkit.errors import StoreUnavailableError
 from jobkit.jobs.jobs import Jobs
 from jobkit.meshes import MESH_DAMAGED, Meshes
 from jobkit.models.registry import MODEL_PREFIX, Registry
-from jobkit.schema import Mesh, MeshState
 from jobkit.storage.base import CHUNK_BYTES, ObjectStore, result_key
 from jobkit.storage.scrub_schedule import oldest_check
+from quadpatch_client.schema import Mesh, MeshState
 from tests.jobkit.fixtures import DAY, AgingStore, age_rows, damage, finish, new_job, put, upload
 from tests.waiting import GUARD_S
 

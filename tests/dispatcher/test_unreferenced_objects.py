@@ -14,12 +14,12 @@ from jobkit.jobs.new_jobs import NewJob
 from jobkit.meshes import Meshes
 from jobkit.models.registry import MODEL_PREFIX, Registry
 from jobkit.retention import delete_mesh
-from jobkit.schema import Job, Mesh, UploadKind
 from jobkit.storage.base import ObjectStore, result_key
 from jobkit.storage.open import open_store
 from jobkit.storage.removals import START_S, assure, claim, release
 from jobkit.uploads.parts import PART_PREFIX, UploadPart
 from jobkit.uploads.uploads import NewUpload, Uploads
+from quadpatch_client.schema import Job, Mesh, UploadKind
 from tests.jobkit.fixtures import AgingStore, KilledError, age_rows, fail, finish, keys_in, put, upload
 
 SOON = timedelta(minutes=1)

@@ -20,11 +20,11 @@ from jobkit.database.clock import utc_now
 from jobkit.database.session import Database
 from jobkit.database.tables import DeliveryRow
 from jobkit.jobs.jobs import Jobs
-from jobkit.schema import DeliveryState
 from jobkit.settings import Settings
 from jobkit.webhooks.deliveries import Deliveries
 from jobkit.webhooks.outbox import OMITTED_FIELDS
 from jobkit.webhooks.subscriptions import Webhooks
+from quadpatch_client.schema import DeliveryState
 from tests.dispatcher.conftest import FailJob, Subscribe
 from tests.dispatcher.receivers import receiving
 from tests.waiting import GUARD_S

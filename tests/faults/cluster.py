@@ -16,7 +16,7 @@ import psutil
 
 from jobkit.readiness import READY_FILE_VARIABLE
 from onebox.logs import log_tail
-from shared_rules.parent_death import parent_death_signal
+from quadpatch_rules.parent_death import parent_death_signal
 from tests.faults.network import Network
 from tests.waiting import GUARD_S
 from worker.engine.limits import thread_environment

@@ -12,8 +12,8 @@ from sqlalchemy import select
 from jobkit.database.session import Database
 from jobkit.database.tables import AttemptRow, EventRow, JobRow
 from jobkit.errors import ObjectNotFoundError
-from jobkit.schema import JobResult, JobState
 from jobkit.storage.base import ObjectStore, result_key
+from quadpatch_client.schema import JobResult, JobState
 from tests.faults.injections import Injection
 from tests.faults.load import ExpectedState
 

@@ -8,7 +8,7 @@ from sqlalchemy import select
 
 from jobkit.database.session import Database
 from jobkit.database.tables import JobRow, LeaderRow
-from jobkit.schema import JobState
+from quadpatch_client.schema import JobState
 from tests.faults.cluster import WORKERS, Cluster
 
 

@@ -15,7 +15,7 @@ import httpx
 import numpy as np
 
 from jobkit.database.clock import utc_now
-from jobkit.schema import JobState
+from quadpatch_client.schema import JobState
 from tests.faults.cluster import API_KEY
 from tests.integration.conftest import ply_bytes
 from tests.quadpatch.shapes import punched, relief, sphere

@@ -9,10 +9,10 @@ import numpy as np
 import psutil
 import pytest
 
-from client.sdk import Client
-from jobkit.schema import Job, JobSpec
 from onebox.demo import running_stack
 from quadpatch.types import Triangles, Vertices
+from quadpatch_client.schema import Job, JobSpec
+from quadpatch_client.sdk import Client
 
 # Short leases, so that the loss of a worker shows within seconds.
 FAST = {

@@ -13,10 +13,10 @@ from typing import Any
 import pytest
 from typer.testing import CliRunner, Result
 
-from client.cli import app
-from client.exit_codes import ExitCode
-from client.sdk import Client
-from jobkit.schema import Job, JobSpec, JobState
+from quadpatch_client.cli import app
+from quadpatch_client.exit_codes import ExitCode
+from quadpatch_client.schema import Job, JobSpec, JobState
+from quadpatch_client.sdk import Client
 from tests.waiting import GUARD_S, wait_until
 
 
@@ -163,7 +163,7 @@ def test_ctrl_c_before_the_service_has_answered_cancels_the_job_all_the_same(
 
 
 def test_ctrl_c_cancels_the_job_and_says_so(client: Any, local_stack: Any, large_relief: Path, tmp_path: Path) -> None:
-    command = [sys.executable, "-m", "client", "repair", str(large_relief), "-o", str(tmp_path / "out.ply")]
+    command = [sys.executable, "-m", "quadpatch_client", "repair", str(large_relief), "-o", str(tmp_path / "out.ply")]
     process = subprocess.Popen(
         [*command, "--model", "self", "--url", local_stack.url, "--label", "interrupted"],
         stderr=subprocess.PIPE,

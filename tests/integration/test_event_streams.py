@@ -13,7 +13,7 @@ import pytest
 from jobkit.database.session import Database
 from jobkit.jobs.attempts import Attempts
 from jobkit.jobs.jobs import Jobs
-from jobkit.schema import JobResult
+from quadpatch_client.schema import JobResult
 from tests.service.sse import SentEvent, sent_events
 from tests.waiting import GUARD_S, wait_until
 

@@ -10,13 +10,13 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from client.cli import app
-from client.errors import RefusedError
-from client.exit_codes import ExitCode
-from client.sdk import Client
-from jobkit.schema import Job, JobSpec, JobState
 from quadpatch.formats.reading import read_scan
 from quadpatch.model_choice import BASE_NETWORK
+from quadpatch_client.cli import app
+from quadpatch_client.errors import RefusedError
+from quadpatch_client.exit_codes import ExitCode
+from quadpatch_client.schema import Job, JobSpec, JobState
+from quadpatch_client.sdk import Client
 from tests.quadpatch.shapes import punched, relief, write_ply
 from tests.waiting import GUARD_S
 

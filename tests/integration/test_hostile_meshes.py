@@ -7,10 +7,10 @@ from typing import Any
 
 import pytest
 
-from client.errors import JobFailedError, MeshRejectedError, RefusedError
-from client.progress import no_progress
-from client.sdk import Client
-from jobkit.schema import Job, JobSpec, Mesh
+from quadpatch_client.errors import JobFailedError, MeshRejectedError, RefusedError
+from quadpatch_client.progress import no_progress
+from quadpatch_client.schema import Job, JobSpec, Mesh
+from quadpatch_client.sdk import Client
 from tests.waiting import GUARD_S
 
 SHARED = Path(__file__).resolve().parents[3] / "shared"

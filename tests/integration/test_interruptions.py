@@ -10,10 +10,10 @@ import httpx
 import psutil
 import pytest
 
-from client.errors import JobCanceledError, JobFailedError
-from client.sdk import Client
-from jobkit.schema import Job, JobSpec, JobState
 from onebox.demo import running_stack
+from quadpatch_client.errors import JobCanceledError, JobFailedError
+from quadpatch_client.schema import Job, JobSpec, JobState
+from quadpatch_client.sdk import Client
 from tests.waiting import GUARD_S, wait_until
 
 # Learns from the mesh itself, which takes seconds: time enough to interrupt it.

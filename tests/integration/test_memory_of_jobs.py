@@ -9,9 +9,9 @@ import httpx
 import pytest
 from prometheus_client.parser import text_string_to_metric_families
 
-from client.errors import JobFailedError
-from client.sdk import Client
-from jobkit.schema import Job, JobSpec, JobState
+from quadpatch_client.errors import JobFailedError
+from quadpatch_client.schema import Job, JobSpec, JobState
+from quadpatch_client.sdk import Client
 from tests.integration.conftest import ply_bytes, punched_relief
 from tests.waiting import GUARD_S, wait_until
 

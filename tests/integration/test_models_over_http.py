@@ -6,8 +6,8 @@ from pathlib import Path
 
 import httpx
 
-from client.sdk import Client
-from jobkit.schema import JobSpec
+from quadpatch_client.schema import JobSpec
+from quadpatch_client.sdk import Client
 from tests.integration.conftest import RunningStack
 from tests.quadpatch.inpainters.test_onnx_network import PAPER, write_network
 from tests.waiting import GUARD_S

@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from client.sdk import Client
-from jobkit.schema import JobSpec, JobState
 from quadpatch.formats.reading import read_scan
 from quadpatch.inpainters.model_file import SHIPPED_MODELS
+from quadpatch_client.schema import JobSpec, JobState
+from quadpatch_client.sdk import Client
 from tests.waiting import GUARD_S
 
 NETWORKS = sorted(path.stem for path in SHIPPED_MODELS.glob("*.onnx"))

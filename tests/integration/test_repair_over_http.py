@@ -7,12 +7,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from client.sdk import Client
-from jobkit.schema import JobSpec, JobState, MeshState
 from quadpatch.formats.reading import read_scan
 from quadpatch.inpainters.model_file import shipped_model
 from quadpatch.model_choice import BASE_NETWORK
 from quadpatch.repair import inspect_file
+from quadpatch_client.schema import JobSpec, JobState, MeshState
+from quadpatch_client.sdk import Client
 from tests.integration.conftest import ply_bytes, punched_relief, stl_bytes
 from tests.quadpatch.shapes import punched, relief, write_ply
 from tests.waiting import GUARD_S

@@ -9,9 +9,9 @@ from pathlib import Path
 import httpx
 import pytest
 
-from client import sdk
-from client.errors import UnreachableError
-from client.sdk import Client
+from quadpatch_client import sdk
+from quadpatch_client.errors import UnreachableError
+from quadpatch_client.sdk import Client
 from tests.resumption.campaign import MIB, Trial, memory_growth, run_trial, running_service
 from tests.resumption.clients import mesh_of, send_by_sdk, send_by_tuspy
 from tests.resumption.killable_service import KillableService

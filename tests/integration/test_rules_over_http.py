@@ -6,7 +6,7 @@ from typing import Any
 
 import httpx
 
-from client.sdk import Client
+from quadpatch_client.sdk import Client
 from tests.integration.conftest import RunningStack
 from tests.waiting import GUARD_S, wait_until
 

@@ -12,9 +12,9 @@ from typing import Any
 import httpx
 import pytest
 
-from client.sdk import Client
-from jobkit.schema import Job, JobSpec, JobState, SmoothMethod
 from jobkit.settings import Settings
+from quadpatch_client.schema import Job, JobSpec, JobState, SmoothMethod
+from quadpatch_client.sdk import Client
 from tests.conftest import RunningService
 from tests.integration.conftest import RunningStack, punched_relief, stl_bytes
 from tests.waiting import GUARD_S, wait_until

@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from client.sdk import Client
-from jobkit.schema import Job, JobSpec, JobState
 from quadpatch.formats.reading import read_scan
 from quadpatch.types import FloatArray
+from quadpatch_client.schema import Job, JobSpec, JobState
+from quadpatch_client.sdk import Client
 from tests.integration.conftest import punched_relief, stl_bytes
 from tests.quadpatch.filling.gaps import torn_sphere
 from tests.quadpatch.formats.coloured_files import coloured_ply

@@ -8,13 +8,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from client.errors import JobCanceledError, JobFailedError, MeshRejectedError, RefusedError
-from client.sdk import Client
-from jobkit.schema import Job, JobResult, JobSpec, JobState, Mesh
 from quadpatch.compression.encode import EncodeOptions
 from quadpatch.formats.reading import read_scan
 from quadpatch.tasks.encode import encode_file
 from quadpatch.types import Triangles, Vertices
+from quadpatch_client.errors import JobCanceledError, JobFailedError, MeshRejectedError, RefusedError
+from quadpatch_client.schema import Job, JobResult, JobSpec, JobState, Mesh
+from quadpatch_client.sdk import Client
 from tests.integration.conftest import ply_bytes, punched_relief, stl_bytes
 from tests.waiting import GUARD_S, wait_until
 

@@ -7,10 +7,10 @@ from pathlib import Path
 import httpx
 import pytest
 
-from client.errors import RefusedError
-from client.sdk import Client
-from jobkit.schema import JobSpec, JobState
 from quadpatch.formats.reading import read_scan
+from quadpatch_client.errors import RefusedError
+from quadpatch_client.schema import JobSpec, JobState
+from quadpatch_client.sdk import Client
 from tests.integration.conftest import RunningStack, punched_relief, stl_bytes
 from tests.waiting import GUARD_S
 

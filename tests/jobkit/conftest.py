@@ -11,9 +11,9 @@ from jobkit.database.session import Database
 from jobkit.jobs.jobs import Jobs
 from jobkit.jobs.new_jobs import NewJob
 from jobkit.meshes import Meshes
-from jobkit.schema import DictionaryMethod, Job, JobSpec, Mesh, ResolvedModel
 from jobkit.storage.base import ObjectStore
 from jobkit.storage.open import open_store
+from quadpatch_client.schema import DictionaryMethod, Job, JobSpec, Mesh, ResolvedModel
 from tests.servers import fresh_bucket, fresh_database
 
 

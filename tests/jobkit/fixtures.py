@@ -25,9 +25,9 @@ from jobkit.jobs.attempts import Attempts
 from jobkit.jobs.jobs import Jobs
 from jobkit.jobs.new_jobs import NewJob
 from jobkit.meshes import Meshes
-from jobkit.schema import Job, JobError, JobResult, JobSpec, Mesh, ResolvedModel, ResultFile
 from jobkit.storage.base import ListedObject, ObjectStore, ObjectWriter, StoredObject, result_key
 from jobkit.storage.removals import assure
+from quadpatch_client.schema import Job, JobError, JobResult, JobSpec, Mesh, ResolvedModel, ResultFile
 
 DAY = timedelta(days=1)
 

@@ -5,8 +5,8 @@ import pytest
 from jobkit.database.session import Database
 from jobkit.errors import MeshNotFoundError, StaleAttemptError
 from jobkit.meshes import Meshes
-from jobkit.schema import BoundingBox, Mesh, MeshFacts, MeshProblem, MeshState
 from jobkit.storage.base import StoredObject
+from quadpatch_client.schema import BoundingBox, Mesh, MeshFacts, MeshProblem, MeshState
 
 FACTS = MeshFacts(
     format="stl",

@@ -23,8 +23,8 @@ from jobkit.jobs.new_jobs import NewJob
 from jobkit.jobs.timeouts import TimeLimits, end_overdue
 from jobkit.meshes import Meshes
 from jobkit.models.registry import Registry
-from jobkit.schema import Job, JobError, JobResult, JobState, Mesh
 from jobkit.storage.base import ObjectStore, StoredObject
+from quadpatch_client.schema import Job, JobError, JobResult, JobState, Mesh
 from tests.waiting import GUARD_S, let_others_run
 
 LIMITS = TimeLimits(queue_s=1e6, total_s=1e6, memory_mb=1000)

@@ -15,8 +15,8 @@ from jobkit.models.errors import ModelDeprecatedError, ModelInUseError
 from jobkit.models.lifetime import delete_version, deprecate_version
 from jobkit.models.proofs import Proofs
 from jobkit.models.registry import Registry
-from jobkit.schema import JobSpec, Mesh, ModelState, ResolvedModel
 from jobkit.storage.base import ObjectStore, StoredObject
+from quadpatch_client.schema import JobSpec, Mesh, ModelState, ResolvedModel
 from tests.waiting import GUARD_S
 
 ROUNDS = 8

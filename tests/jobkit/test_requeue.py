@@ -19,8 +19,8 @@ from jobkit.jobs.timeouts import TimeLimits
 from jobkit.meshes import MAX_ANALYSES, Meshes
 from jobkit.queue import INSPECT_MESH, RUN_JOB, TaskQueue, job_entry, mesh_entry
 from jobkit.requeue import GRACE_S, reconcile, submit_analysis, submit_job
-from jobkit.schema import Job, JobState, Mesh, MeshState, TenantChanges
 from jobkit.settings import Settings
+from quadpatch_client.schema import Job, JobState, Mesh, MeshState, TenantChanges
 
 LIMITS = TimeLimits(queue_s=1e6, total_s=1e6, memory_mb=1000)
 

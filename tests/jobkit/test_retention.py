@@ -21,8 +21,8 @@ from jobkit.jobs.jobs import Jobs
 from jobkit.jobs.new_jobs import NewJob
 from jobkit.meshes import Meshes
 from jobkit.retention import BATCH, delete_job, delete_mesh, expire_jobs, expire_meshes, pin_job, pin_mesh
-from jobkit.schema import Denoising, Job, JobSpec, Mesh
 from jobkit.storage.base import ObjectStore
+from quadpatch_client.schema import Denoising, Job, JobSpec, Mesh
 from tests.jobkit.fixtures import DAY, AgingStore, KilledError, age_rows, fail, finish, keys_in, upload
 
 KEY = Idempotency("station", "order-17", "a" * 64)

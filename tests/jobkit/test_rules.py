@@ -7,7 +7,7 @@ import pytest
 from jobkit.database.session import Database
 from jobkit.errors import RuleNotFoundError
 from jobkit.rules import Rules
-from jobkit.schema import Acceptance, RuleContent
+from quadpatch_client.schema import Acceptance, RuleContent
 
 
 def content(error: float) -> RuleContent:

@@ -18,9 +18,9 @@ from jobkit.errors import ConflictError, NotFoundError, StaleAttemptError, Store
 from jobkit.jobs.jobs import Jobs
 from jobkit.meshes import Meshes, is_missing
 from jobkit.retention import delete_job, delete_mesh, expire_jobs, expire_meshes, pin_job, pin_mesh
-from jobkit.schema import JobState
 from jobkit.storage.base import ObjectStore, StoredObject, result_key
 from jobkit.storage.removals import assure, named_keys
+from quadpatch_client.schema import JobState
 from tests.jobkit.fixtures import (
     AgingStore,
     KilledError,

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-import client.outputs
+import quadpatch_client.outputs
 from quadpatch.errors import FormatError, OptionError
 from quadpatch.formats import output_files
 from quadpatch.formats.output_files import check_folder, check_outputs, write_whole
@@ -70,8 +70,8 @@ def test_a_report_goes_to_standard_output_once_although_pictures_are_drawn_after
 def test_the_names_of_streams_are_those_of_the_client(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "pipe")
     for path in (*map(Path, NAMES), tmp_path / "pipe", tmp_path):
-        assert output_files.descriptor_of(path) == client.outputs.descriptor_of(path)
-        assert output_files.is_stream(path) == client.outputs.is_stream(path)
+        assert output_files.descriptor_of(path) == quadpatch_client.outputs.descriptor_of(path)
+        assert output_files.is_stream(path) == quadpatch_client.outputs.is_stream(path)
 
 
 def test_a_descriptor_is_written_where_it_stands(tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""Also tests `shared_rules.parent_death`."""
+"""Also tests `quadpatch_rules.parent_death`."""
 
 import os
 import signal

@@ -12,7 +12,7 @@ from quadpatch.model_choice import AUTO, BASE_NETWORK, SELF, SELF_NETWORK, choos
 from quadpatch.options import NetworkOptions, PatchOptions, RepairOptions
 from quadpatch.progress import no_progress
 from quadpatch.repair import repair_file
-from shared_rules.option_words import Effort
+from quadpatch_rules.option_words import Effort
 from tests.quadpatch.shapes import punched, relief, write_ply
 
 SCAN = punched(relief(100, 2.0, 0.03, 10), *[(x, y, 0.0) for x in (-0.5, 0.5) for y in (-0.45, 0.5)], radius=0.1)

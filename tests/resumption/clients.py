@@ -10,7 +10,7 @@ import httpx
 from tusclient.client import TusClient
 from tusclient.exceptions import TusCommunicationError, TusUploadFailed
 
-from client.sdk import Client
+from quadpatch_client.sdk import Client
 from tests.waiting import GUARD_S, wait_until
 
 TUS = MappingProxyType({"Tus-Resumable": "1.0.0"})

@@ -7,9 +7,9 @@ from typing import Any
 import pytest
 from starlette.testclient import TestClient
 
-from jobkit.schema import BoundingBox, Hole, HoleCounts, Job, JobResult, MeshFacts, ModelVersion, ResultFile
 from jobkit.settings import Settings
 from jobkit.storage.base import result_key
+from quadpatch_client.schema import BoundingBox, Hole, HoleCounts, Job, JobResult, MeshFacts, ModelVersion, ResultFile
 from service.app import create_app
 from service.services import Services
 

@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from starlette.testclient import TestClient
 
-from jobkit.schema import TASKS
+from quadpatch_client.schema import TASKS
 from service.content import content_disposition, result_name
 
 DATA = bytes(range(256)) * 40

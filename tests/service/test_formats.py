@@ -2,7 +2,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from jobkit.schema import Format
+from quadpatch_client.schema import Format
 from service.formats import clean_filename, stated_format
 
 

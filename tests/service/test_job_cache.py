@@ -12,8 +12,8 @@ from jobkit.jobs.estimates import Estimates
 from jobkit.jobs.jobs import Jobs, JobStatus
 from jobkit.jobs.new_jobs import NewJob
 from jobkit.meshes import Meshes
-from jobkit.schema import Job, JobSpec, JobState, ResolvedModel
 from jobkit.storage.base import ObjectStore
+from quadpatch_client.schema import Job, JobSpec, JobState, ResolvedModel
 from service.job_cache import JobCache, OwnJobs
 from tests.service.rounds import most_in_a_round
 from tests.waiting import GUARD_S

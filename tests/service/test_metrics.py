@@ -21,8 +21,8 @@ from jobkit.jobs.memory_needs import MemoryNeeds
 from jobkit.jobs.past_jobs import kind_of
 from jobkit.jobs.reservations import Machine, MachineMemory
 from jobkit.jobs.stage_seconds import StageSeconds
-from jobkit.schema import TASKS, HoleCounts, Job, JobError, JobResult, ModelVersion
 from jobkit.settings import Settings
+from quadpatch_client.schema import TASKS, HoleCounts, Job, JobError, JobResult, ModelVersion
 from service.app import create_app
 from service.metrics import CACHE_S, StateCollector
 from service.services import Services

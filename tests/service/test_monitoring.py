@@ -16,7 +16,7 @@ from jobkit.jobs.admission import Admission, AdmissionRules
 from jobkit.jobs.memory_needs import MemoryNeeds
 from jobkit.jobs.reservations import Machine, MachineMemory
 from jobkit.jobs.stage_seconds import StageSeconds
-from jobkit.schema import HoleCounts, JobResult, ModelVersion
+from quadpatch_client.schema import HoleCounts, JobResult, ModelVersion
 from service.services import Services
 
 ROOT = Path(__file__).parents[2]

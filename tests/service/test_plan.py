@@ -9,7 +9,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from jobkit.schema import JobSpec, Plan, ResolvedModel
 from jobkit.settings import Settings
 from quadpatch.inpainters.paper_dictionary import SelfHeights
 from quadpatch.options import DictionaryOptions, HoleOptions, HoleRule, RepairOptions
@@ -18,6 +17,7 @@ from quadpatch.recipes.paper import inpaint_as_paper
 from quadpatch.recipes.result import HoleResult
 from quadpatch.repair import inspect_file
 from quadpatch.types import TriangleMesh
+from quadpatch_client.schema import JobSpec, Plan, ResolvedModel
 from service.plan import make_plan
 from tests.quadpatch.filling.gaps import cut_torus
 from tests.quadpatch.shapes import flipped, joined, moved, open_grid, plate_with_window, write_ply

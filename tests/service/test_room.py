@@ -16,10 +16,10 @@ from jobkit.database.clock import utc_now
 from jobkit.database.session import Database
 from jobkit.database.upload_tables import UploadRow
 from jobkit.errors import StoreFullError
-from jobkit.schema import UploadKind
 from jobkit.settings import Settings
 from jobkit.storage.base import ObjectStore
 from jobkit.uploads.uploads import NewUpload, Uploads
+from quadpatch_client.schema import UploadKind
 from service.app import create_app
 from service.room import DiskRoom
 from service.services import Services

@@ -12,8 +12,8 @@ from jobkit.jobs.endings import Attempt
 from jobkit.jobs.jobs import Jobs
 from jobkit.jobs.new_jobs import NewJob
 from jobkit.meshes import Meshes
-from jobkit.schema import JobResult, JobSpec, ResolvedModel
 from jobkit.storage.base import ObjectStore
+from quadpatch_client.schema import JobResult, JobSpec, ResolvedModel
 from service import streams
 from service.problems import ProblemError
 from service.streams import EventStreams

@@ -1,4 +1,4 @@
-"""Also tests `jobkit.schema.acceptance`."""
+"""Also tests `quadpatch_client.schema.acceptance`."""
 
 import json
 from pathlib import Path
@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from jobkit.schema import Acceptance, JobSpec
+from quadpatch_client.schema import Acceptance, JobSpec
 from worker.acceptance import check_acceptance, judge
 from worker.engine.request import REPORT_NAME
 from worker.failures import EngineFailedError

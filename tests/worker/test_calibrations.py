@@ -9,8 +9,8 @@ from jobkit.database.session import Database
 from jobkit.meshes import Meshes
 from jobkit.retention import delete_mesh
 from jobkit.storage.base import StoredObject
-from shared_rules.calibration_records import MOST_BYTES, write_records
-from tests.shared_rules.test_calibration_records import KEY, record
+from quadpatch_rules.calibration_records import MOST_BYTES, write_records
+from tests.quadpatch_rules.test_calibration_records import KEY, record
 from worker.calibrations import hand_on, take_back
 from worker.engine.request import CALIBRATION_NAME
 

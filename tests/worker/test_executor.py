@@ -19,10 +19,10 @@ from jobkit.jobs.new_jobs import NewJob
 from jobkit.meshes import Meshes
 from jobkit.queue import TaskQueue
 from jobkit.requeue import submit_job
-from jobkit.schema import JobSpec, JobState, ResolvedModel
 from jobkit.settings import Settings
 from jobkit.storage.base import ObjectStore
 from onebox.valkey import prepare_valkey, running_valkey
+from quadpatch_client.schema import JobSpec, JobState, ResolvedModel
 from tests.integration.conftest import ply_bytes, punched_relief
 from tests.waiting import GUARD_S, end, wait_until
 

@@ -25,10 +25,10 @@ from jobkit.jobs.new_jobs import NewJob
 from jobkit.logs import _add_subject
 from jobkit.meshes import Meshes
 from jobkit.queue import TaskQueue, job_entry
-from jobkit.schema import Job, JobError, JobSpec, JobState, ResolvedModel, TenantChanges
 from jobkit.settings import Settings
 from jobkit.storage.base import ObjectStore
 from jobkit.telemetry import Telemetry
+from quadpatch_client.schema import Job, JobError, JobSpec, JobState, ResolvedModel, TenantChanges
 from tests.integration.conftest import ply_bytes, punched_relief
 from worker.context import Context, use_context
 from worker.engine.client import ForkServer

@@ -5,10 +5,10 @@ import pytest
 
 from jobkit.database.session import Database
 from jobkit.models.registry import Registry
-from jobkit.schema import ModelVersion, ResolvedModel
 from jobkit.storage.base import ObjectStore
 from quadpatch.inpainters.model_file import save_dictionary
 from quadpatch.sparse.dictionary import Dictionary
+from quadpatch_client.schema import ModelVersion, ResolvedModel
 from worker.failures import EngineFailedError
 from worker.models import model_argument
 

@@ -2,7 +2,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from jobkit.schema import STAGES, TASKS, Task
+from quadpatch_client.schema import STAGES, TASKS, Task
 from worker.progress import FilledBy, Progress
 
 stages = st.sampled_from([*STAGES, "preview", "closeups", "html_report", "something new"])

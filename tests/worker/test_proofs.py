@@ -20,9 +20,9 @@ from jobkit.models.proofs import MAX_PROOFS
 from jobkit.models.registry import MODEL_PREFIX, Registry
 from jobkit.models.resolution import resolve_method
 from jobkit.requeue import submit_proof
-from jobkit.schema import JobSpec, ModelProblem, ModelState, ModelVersion
 from jobkit.settings import Settings
 from jobkit.storage.base import ObjectStore
+from quadpatch_client.schema import JobSpec, ModelProblem, ModelState, ModelVersion
 from tests.integration.conftest import ply_bytes, punched_relief
 from tests.quadpatch.inpainters.test_onnx_network import PAPER, N, write_network
 from tests.worker.test_repairs import working

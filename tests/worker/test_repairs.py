@@ -22,10 +22,10 @@ from jobkit.jobs.jobs import Jobs
 from jobkit.jobs.new_jobs import NewJob
 from jobkit.meshes import MAX_ANALYSES, Meshes
 from jobkit.queue import TaskQueue
-from jobkit.schema import Job, JobSpec, JobState, MeshState, ResolvedModel
 from jobkit.settings import Settings
 from jobkit.storage.base import ObjectStore, result_key
 from jobkit.storage.open import open_store
+from quadpatch_client.schema import Job, JobSpec, JobState, MeshState, ResolvedModel
 from tests.integration.conftest import ply_bytes, punched_relief
 from tests.quadpatch.html_report.pages import Page
 from worker.context import Context, use_context

@@ -3,21 +3,21 @@ from typing import Any, get_args
 
 import pytest
 
-import jobkit.schema
 import quadpatch.options
 import quadpatch.restoration.restore
+import quadpatch_client.schema
 from jobkit.jobs.attempts import StartedAttempt
 from jobkit.jobs.endings import Attempt
 from jobkit.meshes import MeshSource
 from jobkit.models.resolution import PAPER_NORMALISATION
-from jobkit.schema import Fitting, Job, JobSpec
 from quadpatch.compression.encode import EncodeOptions
 from quadpatch.denoising.denoise import DenoiseOptions
 from quadpatch.inpainters.model_file import RECIPES
 from quadpatch.options import HoleOptions, HoleRule, NetworkOptions, PatchOptions, RepairOptions
 from quadpatch.restoration.restore import RestoreOptions
-from shared_rules.option_words import Effort, Recipe
-from tests.client.wire_jobs import body
+from quadpatch_client.schema import Fitting, Job, JobSpec
+from quadpatch_rules.option_words import Effort, Recipe
+from tests.quadpatch_client.wire_jobs import body
 from worker.engine.limits import EngineLimits
 from worker.spec import (
     filled_by,
@@ -233,7 +233,7 @@ def test_every_option_of_a_task_reaches_the_method() -> None:
 
 
 def test_the_bases_of_a_restoration_are_those_of_the_method() -> None:
-    assert get_args(jobkit.schema.RestorationBase) == get_args(quadpatch.restoration.restore.Base)
+    assert get_args(quadpatch_client.schema.RestorationBase) == get_args(quadpatch.restoration.restore.Base)
 
 
 def test_a_reference_lies_in_a_folder_of_its_own() -> None:

@@ -13,6 +13,7 @@ import sysconfig
 from pathlib import Path
 
 import quadpatch
+import quadpatch_rules
 from worker.engine.landlock import landlock_version, restrict_files
 from worker.engine.request import EngineRequest
 from worker.engine.seccomp import has_seccomp, restrict_calls
@@ -73,7 +74,8 @@ def _library_folders() -> list[Path]:
     ]
     packages = [path for path in sys.path if Path(path).name in ("site-packages", "dist-packages")]
     beside = Path(__file__).parents[2]
-    own = [Path(quadpatch.__file__).parent, *(beside / name for name in ("worker", "training", "shared_rules"))]
+    packages_of_ours = [Path(str(package.__file__)).parent for package in (quadpatch, quadpatch_rules)]
+    own = [*packages_of_ours, *(beside / name for name in ("worker", "training"))]
     return [
         *own,
         *(Path(place) for place in (*places, *packages) if Path(place).is_absolute() and Path(place) != Path("/")),

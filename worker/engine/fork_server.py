@@ -22,7 +22,7 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
-from shared_rules.parent_death import parent_death_signal
+from quadpatch_rules.parent_death import parent_death_signal
 
 MESSAGE_BYTES = 65536
 # Called with the folder of the request and the write end of the pipe for reports.

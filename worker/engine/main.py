@@ -22,7 +22,7 @@ from quadpatch.recipes.fairing_energies import CALIBRATED_ENERGIES
 from quadpatch.repair import repair_and_keep
 from quadpatch.stages import failure_of
 from quadpatch.tasks.inspect import inspect_any
-from shared_rules.garbage_collection import collect_seldom
+from quadpatch_rules.garbage_collection import collect_seldom
 from worker.engine import preloading  # noqa: F401  loads what would else be loaded in each engine
 from worker.engine.entry import run_confined
 from worker.engine.reports import Reporter

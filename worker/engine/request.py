@@ -70,7 +70,7 @@ class EngineRequest:
     reference : str
         Path of the clean scan in the request's folder; empty where nothing is learned from another mesh.
     missing : dict or None
-        Which vertices to restore, as `jobkit.schema.Missing` says it.
+        Which vertices to restore, as `quadpatch_client.schema.Missing` says it.
     scan : str
         Names the bytes of the mesh and how they are read, for what is kept of a calibration; empty where nothing is.
     meshes : dict

@@ -14,7 +14,7 @@ from typing import Any
 
 import psutil
 
-from shared_rules.text import printable
+from quadpatch_rules.text import printable
 from worker.engine.client import ChildEnd, EngineChild, ForkServer, ForkServerLostError
 from worker.engine.limits import EngineLimits
 from worker.engine.request import LOG_NAME, EngineRequest

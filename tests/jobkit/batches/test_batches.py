@@ -23,9 +23,9 @@ from jobkit.jobs.timeouts import TimeLimits
 from jobkit.queue import TaskQueue
 from jobkit.requeue import MOST_ENQUEUED, reconcile
 from jobkit.retention import pin_job
-from jobkit.schema import MOST_JOBS, Batch, JobState
 from jobkit.settings import Settings
 from jobkit.storage.base import ObjectStore
+from quadpatch_client.schema import MOST_JOBS, Batch, JobState
 from tests.jobkit.fixtures import DAY, finish, keys_in, new_job, upload
 from tests.waiting import GUARD_S
 

@@ -30,9 +30,9 @@ from jobkit.jobs.reservations import Machine, MachineMemory
 from jobkit.jobs.turns import busy_tenants
 from jobkit.meshes import Meshes
 from jobkit.retention import delete_job, delete_mesh
-from jobkit.schema import JobSpec, Quotas, ResolvedModel, TenantChanges, UploadKind
 from jobkit.storage.base import ObjectStore, StoredObject
 from jobkit.uploads.uploads import NewUpload, Uploads
+from quadpatch_client.schema import JobSpec, Quotas, ResolvedModel, TenantChanges, UploadKind
 from tests.jobkit.fixtures import finish
 from tests.waiting import GUARD_S
 

@@ -19,7 +19,7 @@ from jobkit.jobs.jobs import Jobs
 from jobkit.jobs.memory_needs import MemoryNeeds
 from jobkit.jobs.new_jobs import NewJob
 from jobkit.jobs.reservations import Machine, MachineMemory, Reservation, Room
-from jobkit.schema import JobState, Limits
+from quadpatch_client.schema import JobState, Limits
 
 LIMIT_MB, WAIT_S = 1000, 60.0
 amounts = st.integers(0, 2000)

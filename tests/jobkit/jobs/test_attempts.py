@@ -21,8 +21,8 @@ from jobkit.jobs.endings import Attempt
 from jobkit.jobs.jobs import Jobs
 from jobkit.jobs.new_jobs import NewJob
 from jobkit.jobs.timeouts import TimeLimits, end_overdue
-from jobkit.schema import TRANSITIONS, Job, JobError, JobResult, JobState
 from jobkit.version import VERSION
+from quadpatch_client.schema import TRANSITIONS, Job, JobError, JobResult, JobState
 
 LOST = JobError(code="engine_crashed", message="the engine died", stage="fill", retryable=True)
 RESULT = JobResult(format="ply")

@@ -16,8 +16,8 @@ from jobkit.jobs.jobs import Jobs
 from jobkit.jobs.new_jobs import NewJob
 from jobkit.jobs.past_jobs import MIN_PAST, Rates, Sample
 from jobkit.jobs.search import JobSearch
-from jobkit.schema import AutoMethod, Job, JobError, JobResult, JobState, ResolvedModel
-from shared_rules.option_words import Effort
+from quadpatch_client.schema import AutoMethod, Job, JobError, JobResult, JobState, ResolvedModel
+from quadpatch_rules.option_words import Effort
 
 MIB = 1 << 20
 AUTO = ResolvedModel(requested="auto", kind="auto")

@@ -11,8 +11,8 @@ from jobkit.jobs.jobs import Jobs
 from jobkit.jobs.new_jobs import NewJob
 from jobkit.jobs.search import JobSearch
 from jobkit.meshes import Meshes
-from jobkit.schema import Job, JobResult, JobSpec, JobState, ResolvedModel
 from jobkit.storage.base import StoredObject
+from quadpatch_client.schema import Job, JobResult, JobSpec, JobState, ResolvedModel
 
 KEY = Idempotency("station-1", "order-17", "a" * 64)
 

@@ -13,7 +13,7 @@ from jobkit.jobs.jobs import Jobs
 from jobkit.jobs.memory_needs import BASE_MB, BY_GEOMETRY, MemoryNeeds, expected_from_bytes
 from jobkit.jobs.new_jobs import NewJob
 from jobkit.jobs.past_jobs import MIN_PAST, kind_of
-from jobkit.schema import JobResult
+from quadpatch_client.schema import JobResult
 
 MIB = 1 << 20
 

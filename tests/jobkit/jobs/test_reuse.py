@@ -17,9 +17,9 @@ from jobkit.jobs.fingerprints import fingerprint_of
 from jobkit.jobs.jobs import Jobs
 from jobkit.jobs.new_jobs import NewJob
 from jobkit.retention import delete_job, expire_jobs
-from jobkit.schema import JobSpec, JobState, ResolvedModel
 from jobkit.storage.base import ObjectStore
 from jobkit.storage.result_files import unnamed
+from quadpatch_client.schema import JobSpec, JobState, ResolvedModel
 from tests.jobkit.fixtures import DAY, AgingStore, age_rows, finish, keys_in, new_job, upload
 from tests.waiting import GUARD_S
 

@@ -11,7 +11,7 @@ from jobkit.errors import StaleAttemptError
 from jobkit.jobs.attempts import Attempts
 from jobkit.jobs.jobs import Jobs
 from jobkit.jobs.stage_seconds import StageSeconds, add_stages
-from jobkit.schema import TASKS, Job, JobError, JobResult
+from quadpatch_client.schema import TASKS, Job, JobError, JobResult
 
 RESULT = JobResult(format="ply", files=[])
 LOST = JobError(code="worker_lost", message="gone", retryable=True)

@@ -9,7 +9,7 @@ from jobkit.jobs.attempts import Attempts
 from jobkit.jobs.jobs import Jobs
 from jobkit.jobs.new_jobs import NewJob
 from jobkit.jobs.timeouts import CANCEL_TIMEOUT_S, TimeLimits, end_overdue
-from jobkit.schema import Job, JobResult, JobState, Limits
+from quadpatch_client.schema import Job, JobResult, JobState, Limits
 
 LIMITS = TimeLimits(queue_s=1e6, total_s=1e6, memory_mb=1000)
 

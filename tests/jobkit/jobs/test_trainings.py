@@ -30,8 +30,8 @@ from jobkit.jobs.trainings import check_names, register_learned
 from jobkit.meshes import Meshes
 from jobkit.models.registry import MODEL_PREFIX, Registry
 from jobkit.retention import delete_job, delete_mesh, expire_meshes
-from jobkit.schema import Job, JobError, JobResult, JobState, NewTraining, ResolvedModel, TrainingResult
 from jobkit.storage.base import ObjectStore, StoredObject
+from quadpatch_client.schema import Job, JobError, JobResult, JobState, NewTraining, ResolvedModel, TrainingResult
 
 TENANT = "plant-north"
 LOST = JobError(code="engine_crashed", message="it was killed", retryable=True)

@@ -1,7 +1,7 @@
 import pytest
 
 from jobkit.jobs.transitions import Transition
-from jobkit.schema import TRANSITIONS, JobState
+from quadpatch_client.schema import TRANSITIONS, JobState
 
 
 @pytest.mark.parametrize("source", JobState)

@@ -19,8 +19,8 @@ from jobkit.jobs.memory_needs import MemoryNeeds
 from jobkit.jobs.new_jobs import NewJob
 from jobkit.jobs.reservations import Machine, MachineMemory
 from jobkit.jobs.turns import last_turns, next_in_turn, order_of_turns
-from jobkit.schema import JobSpec, Priority, ResolvedModel
 from jobkit.storage.base import ObjectStore
+from quadpatch_client.schema import JobSpec, Priority, ResolvedModel
 from tests.jobkit.fixtures import upload
 
 NOW = datetime(2026, 11, 30, tzinfo=UTC)

@@ -1,4 +1,4 @@
-"""Also tests `jobkit.schema.models`."""
+"""Also tests `quadpatch_client.schema.models`."""
 
 from collections.abc import Callable
 from pathlib import Path

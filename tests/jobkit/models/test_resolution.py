@@ -7,8 +7,8 @@ from jobkit.database.session import Database
 from jobkit.errors import ModelKindError, ModelNotFoundError, NoNetworkError
 from jobkit.models.registry import Registry
 from jobkit.models.resolution import resolve_method
-from jobkit.schema import AutoMethod, CnnMethod, DictionaryMethod, Fitting, SmoothMethod
 from jobkit.storage.base import ObjectStore
+from quadpatch_client.schema import AutoMethod, CnnMethod, DictionaryMethod, Fitting, SmoothMethod
 from tests.jobkit.models.test_registry import NETWORK
 
 

@@ -9,8 +9,8 @@ from jobkit.errors import ModelNotFoundError
 from jobkit.models.lifetime import delete_version, deprecate_version
 from jobkit.models.registry import MODEL_PREFIX, Registry
 from jobkit.models.shipped import seed_shipped
-from jobkit.schema import ModelState
 from jobkit.storage.base import ObjectStore
+from quadpatch_client.schema import ModelState
 from tests.jobkit.models.test_registry import NETWORK
 
 Make = Callable[[int], bytes]

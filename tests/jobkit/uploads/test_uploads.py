@@ -23,9 +23,9 @@ from jobkit.errors import (
     UploadNotFoundError,
     UploadOffsetError,
 )
-from jobkit.schema import Upload, UploadKind, UploadProblem, UploadState
 from jobkit.uploads.parts import PART_BYTES, UploadPart, mergeable, named_parts
 from jobkit.uploads.uploads import EXPIRED_AT_ONCE, NewUpload, Uploads, expire_uploads, refuse_final
+from quadpatch_client.schema import Upload, UploadKind, UploadProblem, UploadState
 
 WHOLE = NewUpload(UploadKind.WHOLE, 100, "scan.ply", "ply")
 PARTIAL = NewUpload(UploadKind.PARTIAL, 100)

@@ -6,9 +6,9 @@ from jobkit.database.clock import utc_now
 from jobkit.database.session import Database
 from jobkit.database.tables import DeliveryRow, DeliveryTryRow
 from jobkit.errors import DeliveryNotFoundError, DeliveryPendingError
-from jobkit.schema import DeliveryState, NewWebhook
 from jobkit.webhooks.deliveries import Deliveries
 from jobkit.webhooks.subscriptions import Webhooks
+from quadpatch_client.schema import DeliveryState, NewWebhook
 
 
 @pytest.fixture

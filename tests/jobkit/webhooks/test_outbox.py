@@ -13,10 +13,10 @@ from jobkit.jobs.attempts import Attempts
 from jobkit.jobs.endings import end_attempt, failure
 from jobkit.jobs.jobs import Jobs
 from jobkit.jobs.new_jobs import NewJob
-from jobkit.schema import Job, JobError, JobResult, JobState, NewWebhook
-from jobkit.schema.webhooks import WebhookEvent
 from jobkit.webhooks.outbox import OMITTED_FIELDS
 from jobkit.webhooks.subscriptions import Webhooks
+from quadpatch_client.schema import Job, JobError, JobResult, JobState, NewWebhook
+from quadpatch_client.schema.webhooks import WebhookEvent
 
 ERROR = JobError(code="no_quads", message="the outline is too small")
 

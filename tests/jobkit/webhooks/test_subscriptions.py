@@ -1,4 +1,4 @@
-"""Also tests `jobkit/schema/webhook_url.py`."""
+"""Also tests `quadpatch_client/schema/webhook_url.py`."""
 
 import base64
 from collections.abc import Callable
@@ -13,10 +13,10 @@ from jobkit.database.clock import utc_now
 from jobkit.database.session import Database
 from jobkit.database.tables import WebhookRow
 from jobkit.errors import AddressRefusedError, TooManyWebhooksError, WebhookDisabledError, WebhookNotFoundError
-from jobkit.schema import NewWebhook, WebhookChange
-from jobkit.schema.webhooks import ENDINGS
 from jobkit.webhooks.deliveries import Deliveries
 from jobkit.webhooks.subscriptions import MAX_WEBHOOKS, Webhooks
+from quadpatch_client.schema import NewWebhook, WebhookChange
+from quadpatch_client.schema.webhooks import ENDINGS
 
 NEW = NewWebhook(url="https://mes.example.com/hook")
 

@@ -7,7 +7,7 @@ import pytest
 
 from quadpatch.calibration.kept import KeptCalibrations, array_digest, key_of
 from quadpatch.recipes.fairing_energies import FAIRING_ENERGIES
-from shared_rules.calibration_records import MOST_BYTES, MOST_RECORDS, RecordError
+from quadpatch_rules.calibration_records import MOST_BYTES, MOST_RECORDS, RecordError
 from tests.quadpatch.calibration.test_record import RECORD
 
 

@@ -17,7 +17,7 @@ from quadpatch.formats.ply.reader import read_ply
 from quadpatch.formats.reading import read_scan
 from quadpatch.formats.scan import Scan
 from quadpatch.formats.writing import write_scan
-from shared_rules.option_words import CarriedAttribute
+from quadpatch_rules.option_words import CarriedAttribute
 from tests.quadpatch.formats.fills import EMPTY, as_scan, cap_holes, n_open_edges
 from tests.quadpatch.shapes import punched, sphere
 

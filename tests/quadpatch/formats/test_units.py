@@ -19,7 +19,7 @@ from quadpatch.tasks.denoise import denoise_file
 from quadpatch.tasks.encode import encode_file
 from quadpatch.tasks.restore import restore_file
 from quadpatch.types import TriangleMesh
-from shared_rules.option_words import LengthUnit
+from quadpatch_rules.option_words import LengthUnit
 from tests.quadpatch.shapes import punched, sphere, write_ply
 
 BALL = sphere(3, radius=10.0)

@@ -6,7 +6,7 @@ from quadpatch.mesh.holes import Hole, find_holes, select_holes
 from quadpatch.mesh.measures import diagonal
 from quadpatch.options import HoleOptions, HoleRule
 from quadpatch.types import TriangleMesh
-from shared_rules.hole_selection import AUTO_DIAMETER_SHARE, HoleKind
+from quadpatch_rules.hole_selection import AUTO_DIAMETER_SHARE, HoleKind
 from tests.quadpatch.shapes import joined, open_grid, punched
 
 

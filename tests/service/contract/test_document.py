@@ -11,8 +11,8 @@ import yaml
 from pydantic import SecretStr
 from starlette.testclient import TestClient
 
-from jobkit.schema.webhooks import MESSAGE_TYPES
 from jobkit.settings import Settings
+from quadpatch_client.schema.webhooks import MESSAGE_TYPES
 from service.app import create_app
 from service.contract.document import to_yaml
 from service.contract.tags import TAGS

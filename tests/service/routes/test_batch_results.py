@@ -11,7 +11,7 @@ import pytest
 from starlette.testclient import TestClient
 
 from jobkit.batches.progress import note_progress
-from jobkit.schema import Job, JobError
+from quadpatch_client.schema import Job, JobError
 from service.batch_files import FileNames
 from service.services import Services
 from tests.jobkit.fixtures import damage

@@ -1,4 +1,4 @@
-"""Also tests `service/batches.py`, `jobkit/batches/meshes.py` and `jobkit/schema/batches.py`."""
+"""Also tests `service/batches.py`, `jobkit/batches/meshes.py` and `quadpatch_client/schema/batches.py`."""
 
 import json
 from collections.abc import Callable
@@ -12,7 +12,7 @@ from jobkit.batches.progress import note_progress
 from jobkit.database.tables import DeliveryRow, JobRow
 from jobkit.errors import StaleAttemptError
 from jobkit.jobs.estimates import Estimates, QueueEstimate
-from jobkit.schema import MOST_JOBS, Job, JobError, MeshProblem, NewBatch
+from quadpatch_client.schema import MOST_JOBS, Job, JobError, MeshProblem, NewBatch
 from service.services import Services
 
 SMOOTH = {"method": {"method": "smooth"}}

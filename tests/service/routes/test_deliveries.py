@@ -5,7 +5,7 @@ from starlette.testclient import TestClient
 
 from jobkit.database.clock import utc_now
 from jobkit.database.tables import DeliveryRow
-from jobkit.ids import new_message_id
+from quadpatch_rules.ids import new_message_id
 from service.services import Services
 
 

@@ -4,8 +4,8 @@ from collections.abc import Callable
 import pytest
 from starlette.testclient import TestClient
 
-from jobkit.schema import Job
 from jobkit.settings import Settings
+from quadpatch_client.schema import Job
 from service.app import create_app
 from service.routes.events import accepts_stream
 from service.services import Services

@@ -8,7 +8,7 @@ from urllib.parse import quote
 import pytest
 from starlette.testclient import TestClient
 
-from jobkit.schema import Job
+from quadpatch_client.schema import Job
 
 
 def upload(client: TestClient, content: bytes, filename: str) -> str:

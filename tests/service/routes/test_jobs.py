@@ -1,4 +1,4 @@
-"""Also tests `jobkit.schema.jobs`, `service.routes.common` and `service.submission`."""
+"""Also tests `quadpatch_client.schema.jobs`, `service.routes.common` and `service.submission`."""
 
 import json
 from collections.abc import Callable
@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 from starlette.testclient import TestClient
 
-from jobkit.schema import AutoMethod, Job, JobError, JobState, ModelVersion
+from quadpatch_client.schema import AutoMethod, Job, JobError, JobState, ModelVersion
 from service.services import Services
 from tests.jobkit.models.test_registry import NETWORK
 

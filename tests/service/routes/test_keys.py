@@ -1,4 +1,4 @@
-"""Keys and the audit log: `jobkit/access/audit.py`, `jobkit/schema/keys.py`, `service/audit.py`."""
+"""Keys and the audit log: `jobkit/access/audit.py`, `quadpatch_client/schema/keys.py`, `service/audit.py`."""
 
 from collections.abc import Iterator
 from datetime import UTC, datetime, timedelta
@@ -11,8 +11,8 @@ from starlette.testclient import TestClient
 from dispatcher.retention import forget_audit
 from jobkit.access.keys import Keys
 from jobkit.database.access_tables import KeyRow
-from jobkit.schema import NewKey, Scope
 from jobkit.settings import Settings
+from quadpatch_client.schema import NewKey, Scope
 from service import auth
 from service.app import create_app
 from service.services import Services

@@ -10,10 +10,10 @@ from starlette.testclient import TestClient
 
 from jobkit.database.session import Database
 from jobkit.database.tables import MeshRow
-from jobkit.schema import MeshProblem
 from jobkit.settings import Settings
 from jobkit.storage.base import ObjectStore
 from jobkit.storage.digests import digest_field
+from quadpatch_client.schema import MeshProblem
 from service.app import create_app
 from service.services import Services
 

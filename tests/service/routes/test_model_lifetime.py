@@ -5,7 +5,7 @@ from collections.abc import Callable
 import pytest
 from starlette.testclient import TestClient
 
-from jobkit.schema import Job, ModelVersion
+from quadpatch_client.schema import Job, ModelVersion
 from service.services import Services
 
 Make = Callable[[int], bytes]

@@ -7,7 +7,7 @@ import pytest
 from starlette.testclient import TestClient
 
 from jobkit.queue import model_entry
-from jobkit.schema import ModelProblem, ModelVersion
+from quadpatch_client.schema import ModelProblem, ModelVersion
 from service.services import Services
 from tests.waiting import GUARD_S, wait_until
 

@@ -6,7 +6,7 @@ from typing import Any
 
 from starlette.testclient import TestClient
 
-from jobkit.schema import Job
+from quadpatch_client.schema import Job
 from service.services import Services
 from tests.waiting import wait_until
 

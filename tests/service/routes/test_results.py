@@ -4,7 +4,7 @@ from collections.abc import Callable
 import pytest
 from starlette.testclient import TestClient
 
-from jobkit.schema import Job, JobError
+from quadpatch_client.schema import Job, JobError
 from service.services import Services
 
 PATHS = [

@@ -3,8 +3,8 @@ from collections.abc import Callable
 import pytest
 from starlette.testclient import TestClient
 
-from jobkit.schema import Job
 from jobkit.settings import Settings
+from quadpatch_client.schema import Job
 from service.app import create_app
 from service.services import Services
 

@@ -11,8 +11,8 @@ from dispatcher.missing_objects import MissingObjects
 from jobkit.database.clock import utc_now
 from jobkit.database.tables import JobRow
 from jobkit.jobs import reuse
-from jobkit.schema import Job, JobResult, ResultFile
 from jobkit.storage.damage import NamedObject, note_damaged
+from quadpatch_client.schema import Job, JobResult, ResultFile
 from service.caching import asks_anew
 from service.services import Services
 

@@ -1,4 +1,4 @@
-"""Also tests `service.rules` and `jobkit.schema.rules`."""
+"""Also tests `service.rules` and `quadpatch_client.schema.rules`."""
 
 from collections.abc import Callable
 from typing import Any

@@ -7,9 +7,9 @@ from typing import Any
 import pytest
 from starlette.testclient import TestClient
 
-from jobkit.schema import TASKS, MeshFacts, MeshProblem, ModelVersion
+from quadpatch_client.schema import TASKS, MeshFacts, MeshProblem, ModelVersion
+from quadpatch_rules.tasks import TRAIN
 from service.services import Services
-from shared_rules.tasks import TRAIN
 
 Publish = Callable[..., ModelVersion]
 Settle = Callable[..., None]

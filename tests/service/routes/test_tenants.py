@@ -1,6 +1,6 @@
 """Tenants, quotas and limits over HTTP: `service/routes/tenants.py`, `service/routes/limits.py`.
 
-Also `service/full_tenants.py`, `jobkit/access/tenants.py` and `jobkit/schema/tenants.py`.
+Also `service/full_tenants.py`, `jobkit/access/tenants.py` and `quadpatch_client/schema/tenants.py`.
 """
 
 import hashlib

@@ -1,4 +1,4 @@
-"""Also tests `service.training_submission`, `jobkit.schema.trainings` and `jobkit.schema.learning`."""
+"""Also tests `service.training_submission`, `quadpatch_client.schema.learning`, `quadpatch_client.schema.trainings`."""
 
 from collections.abc import Callable
 from functools import partial
@@ -11,7 +11,7 @@ from jobkit.jobs.attempts import Attempts
 from jobkit.jobs.trainings import register_learned
 from jobkit.meshes import Meshes
 from jobkit.models.registry import MODEL_PREFIX, Registry
-from jobkit.schema import JobResult, MeshProblem, ModelVersion, TrainingResult
+from quadpatch_client.schema import JobResult, MeshProblem, ModelVersion, TrainingResult
 from service.services import Services
 
 Analyse = Callable[[str], None]

@@ -1,7 +1,7 @@
 """The protocol tus 1.0 by hand.
 
 Also tests `service.routes.upload_headers`, `service.upload_parts`, `service.upload_completion` and
-`jobkit.schema.uploads`.
+`quadpatch_client.schema.uploads`.
 """
 
 import base64

@@ -4,9 +4,9 @@ from typing import Any
 import pytest
 from starlette.testclient import TestClient
 
-from jobkit.schema import Job
 from jobkit.settings import Settings
 from jobkit.webhooks.outbox import OMITTED_FIELDS
+from quadpatch_client.schema import Job
 
 OPEN = "https://8.8.8.8/hook"
 

@@ -1,0 +1,260 @@
+"""The command line. stdout is for data, stderr for everything that a person watches.
+
+Tested in `tests/quadpatch_client/test_keeping.py`.
+"""
+
+import json
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from quadpatch_client.connection import connected, print_json
+from quadpatch_client.exit_codes import exit_codes_text
+from quadpatch_client.job_commands import cancel, delete, fetch, pin, wait
+from quadpatch_client.options import (
+    DEFAULT_URL,
+    AgainOption,
+    AllButLargestOption,
+    BridgeOption,
+    CapOption,
+    CloseupsOption,
+    ColoursOption,
+    FormatOption,
+    HoleChoice,
+    HoleOption,
+    HtmlOption,
+    IncludeBordersOption,
+    JobStateName,
+    JsonOption,
+    KeyOption,
+    LabelOption,
+    LengthUnitOption,
+    MaxDiameterOption,
+    MaxPerimeterOption,
+    MeshArgument,
+    MethodChoice,
+    MethodName,
+    OutputOption,
+    OverwriteOption,
+    PreviewOption,
+    PriorityOption,
+    QuietOption,
+    ReportOption,
+    RuleOption,
+    SeedOption,
+    TimeoutOption,
+    UrlOption,
+    WeldToleranceOption,
+    tolerance,
+)
+from quadpatch_client.repairing import Task, format_of
+from quadpatch_client.running import Connection, run
+from quadpatch_client.screen import Screen
+from quadpatch_client.tables import print_holes, print_jobs, print_models
+from quadpatch_client.task_commands import decode, denoise, encode, restore
+from quadpatch_rules.option_words import Effort, Preset, Recipe
+
+app = typer.Typer(
+    name="quadpatch-client",
+    help="Repair 3D scans through a Quadpatch service: fill holes, restore vertices, take noise away, compress.",
+    epilog=f"Exit codes:\n\n{exit_codes_text()}",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+_PATCHES = "Patches"
+_FITTING = "Fitting a network to the mesh (--effort best, or --method cnn --model self)"
+
+
+@app.command(epilog=f"Exit codes:\n\n{exit_codes_text()}")
+def repair(  # noqa: PLR0913 - one parameter per option of the command line
+    mesh: MeshArgument,
+    *,
+    output: OutputOption,
+    effort: Annotated[
+        Effort | None,
+        typer.Option(
+            help="How much the method auto tries: fast (geometry only), standard (also a dictionary of this mesh and "
+            "the shipped network: seconds), best (also a network fitted to this mesh: a minute).",
+            show_default="standard",
+        ),
+    ] = None,
+    method: Annotated[
+        MethodName | None,
+        typer.Option(
+            help="How holes are filled; auto finds out what is best on this very mesh.",
+            show_default="auto; dictionary with a --model or --recipe",
+        ),
+    ] = None,
+    model: Annotated[
+        str | None,
+        typer.Option(help="name@version, an alias, or 'self': learned from the mesh itself.", show_default="default"),
+    ] = None,
+    recipe: Annotated[
+        Recipe | None,
+        typer.Option(help="How the model is put to use: our way, or exactly the paper's.", show_default="default"),
+    ] = None,
+    max_diameter: MaxDiameterOption = None,
+    max_perimeter: MaxPerimeterOption = None,
+    all_but_largest: AllButLargestOption = False,
+    hole: HoleOption = None,
+    include_borders: IncludeBordersOption = False,
+    cap: CapOption = None,
+    rule: RuleOption = None,
+    bridge: BridgeOption = None,
+    weld_tolerance: WeldToleranceOption = None,
+    patch_length: Annotated[
+        float | None,
+        typer.Option(help="Side of a patch, in mesh units.", show_default="auto", rich_help_panel=_PATCHES),
+    ] = None,
+    resolution: Annotated[
+        int | None, typer.Option(help="Bins along a side.", show_default="auto", rich_help_panel=_PATCHES)
+    ] = None,
+    overlap: Annotated[
+        int | None,
+        typer.Option(help="k: a quad carries 1 + 4 k patches.", show_default="auto", rich_help_panel=_PATCHES),
+    ] = None,
+    preset: Annotated[
+        Preset | None,
+        typer.Option(
+            help="The paper's patches: 0.03 of the longest side in 16 bins, or 0.06 in 24.",
+            show_default="none",
+            rich_help_panel=_PATCHES,
+        ),
+    ] = None,
+    fit_steps: Annotated[
+        int | None,
+        typer.Option(help="Fit at most so many steps.", show_default="of the service", rich_help_panel=_FITTING),
+    ] = None,
+    fit_seconds: Annotated[
+        float | None,
+        typer.Option(help="Fit at most so long.", show_default="of the service", rich_help_panel=_FITTING),
+    ] = None,
+    seed: SeedOption = 0,
+    label: LabelOption = None,
+    priority: PriorityOption = None,
+    format_: FormatOption = None,
+    colours: ColoursOption = None,
+    length_unit: LengthUnitOption = None,
+    report: ReportOption = None,
+    preview: PreviewOption = None,
+    closeups: CloseupsOption = None,
+    html: HtmlOption = None,
+    overwrite: OverwriteOption = False,
+    again: AgainOption = False,
+    timeout: TimeoutOption = None,
+    url: UrlOption = DEFAULT_URL,
+    api_key: KeyOption = None,
+    as_json: JsonOption = False,
+    quiet: QuietOption = False,
+) -> None:
+    """Repair a mesh file: upload it, fill its holes, fetch the result."""
+
+    def task() -> Task:
+        return Task(
+            source=mesh,
+            output=output,
+            holes=HoleChoice(max_diameter, max_perimeter, all_but_largest, hole, include_borders, cap, rule, bridge),
+            method=MethodChoice(
+                method, model, patch_length, resolution, overlap, recipe, fit_steps, fit_seconds, preset, effort
+            ),
+            rest={
+                "seed": seed,
+                "weld_tolerance": tolerance(weld_tolerance),
+                "colours": colours,
+                "length_unit": length_unit,
+                "label": label,
+                "priority": priority or "normal",
+                "output": {
+                    "format": format_ or format_of(output),
+                    "preview": preview is not None,
+                    "closeups": closeups is not None,
+                    "html_report": html is not None,
+                },
+            },
+            report=report,
+            preview=preview,
+            closeups=closeups,
+            html=html,
+            timeout_s=timeout,
+            may_overwrite=overwrite,
+            again=again,
+        )
+
+    run(task, Connection(url, api_key, quiet, as_json))
+
+
+@app.command()
+def holes(  # noqa: PLR0913 - one parameter per option of the command line
+    mesh: MeshArgument,
+    *,
+    max_diameter: MaxDiameterOption = None,
+    max_perimeter: MaxPerimeterOption = None,
+    all_but_largest: AllButLargestOption = False,
+    include_borders: IncludeBordersOption = False,
+    cap: CapOption = None,
+    rule: RuleOption = None,
+    bridge: BridgeOption = None,
+    url: UrlOption = DEFAULT_URL,
+    api_key: KeyOption = None,
+    as_json: JsonOption = False,
+    quiet: QuietOption = False,
+) -> None:
+    """List the holes of a mesh file, and which of them would be filled."""
+    from quadpatch_client.spec import make_spec  # noqa: PLC0415  loads the wire schema, which --help does without
+
+    screen = Screen(quiet)
+    choice = HoleChoice(max_diameter, max_perimeter, all_but_largest, None, include_borders, cap, rule, bridge)
+    with connected(screen, url, api_key) as client:
+        with screen.transfer("uploading") as progress:
+            uploaded = client.upload(mesh, progress)
+        analysed = client.wait_for_mesh(uploaded.id)
+        plan = client.plan(make_spec(uploaded.id, choice, MethodChoice("smooth")))
+    if as_json:
+        print_json(plan)
+    elif analysed.facts is not None:
+        print_holes(_stdout(), analysed.facts, plan)
+
+
+@app.command()
+def models(url: UrlOption = DEFAULT_URL, api_key: KeyOption = None, as_json: JsonOption = False) -> None:
+    """List the models that the service knows."""
+    with connected(Screen(), url, api_key) as client:
+        known = client.models()
+    if as_json:
+        print_json(known)
+    else:
+        print_models(_stdout(), known)
+
+
+@app.command()
+def jobs(  # noqa: PLR0913, PLR0917 - one parameter per option of the command line
+    limit: Annotated[int, typer.Option(min=1, help="Most jobs to list.")] = 20,
+    state: Annotated[JobStateName | None, typer.Option(help="Only jobs in this state.")] = None,
+    label: Annotated[str | None, typer.Option(help="Only jobs with this label; * stands for any characters.")] = None,
+    filename: Annotated[str | None, typer.Option(help="Only jobs on files of this name; * as for --label.")] = None,
+    url: UrlOption = DEFAULT_URL,
+    api_key: KeyOption = None,
+    as_json: JsonOption = False,
+) -> None:
+    """List the latest jobs."""
+    from quadpatch_client.schema import JobState  # noqa: PLC0415  see holes
+
+    with connected(Screen(), url, api_key) as client:
+        search = {name: text for name, text in (("label", label), ("filename", filename)) if text is not None}
+        listed = list(client.jobs(limit, JobState(state) if state else None, **search))
+    if as_json:
+        typer.echo(json.dumps([job.model_dump(mode="json") for job in listed], indent=2))
+    else:
+        print_jobs(_stdout(), listed)
+
+
+for task_command in (restore, denoise, encode, decode):
+    app.command(epilog=f"Exit codes:\n\n{exit_codes_text()}")(task_command)
+for command in (wait, fetch, cancel, delete, pin):
+    app.command()(command)
+
+
+def _stdout() -> Console:
+    return Console(highlight=False)

@@ -1,0 +1,40 @@
+"""What every command does: open the service, turn errors into exit codes, print JSON."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+import typer
+
+from quadpatch_client.errors import ClientError
+from quadpatch_client.exit_codes import ExitCode, exit_code_of
+from quadpatch_client.screen import Screen
+
+if TYPE_CHECKING:
+    from pydantic import BaseModel
+
+    from quadpatch_client.sdk import Client
+
+
+@contextmanager
+def connected(screen: Screen, url: str, api_key: str | None) -> Iterator["Client"]:
+    """Open the service; whatever goes wrong becomes a line on stderr and an exit code."""
+    from quadpatch_client.sdk import Client  # noqa: PLC0415  HTTP and the wire schema take longer to load than --help takes
+
+    try:
+        with Client(url, api_key) as client:
+            yield client
+    except ClientError as error:
+        screen.complain(str(error))
+        raise typer.Exit(exit_code_of(error)) from error
+    except OSError as error:
+        screen.complain(f"{error.filename or 'a file'}: {error.strerror}")
+        raise typer.Exit(ExitCode.USAGE) from error
+    except KeyboardInterrupt:
+        screen.complain("interrupted")
+        raise typer.Exit(ExitCode.INTERRUPTED) from None
+
+
+def print_json(value: "BaseModel") -> None:
+    """Print an answer as JSON on stdout."""
+    typer.echo(value.model_dump_json(indent=2))

@@ -1,0 +1,341 @@
+"""The service in Python: upload a mesh, start a job, wait for it, fetch what it made.
+
+::
+
+    with Client("http://127.0.0.1:8000") as client:
+        mesh = client.upload(Path("scan.ply"))
+        job = client.create_job(JobSpec(mesh_id=mesh.id))
+        job = client.wait(job.id)
+        client.download(job, "result", Path("scan_repaired.ply"))
+
+Tested in `tests/quadpatch_client/test_watching.py`.
+"""
+
+import hashlib
+import json
+import tempfile
+import uuid
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Self
+
+import httpx
+
+from quadpatch_client.closeups import unpack_closeups
+from quadpatch_client.errors import (
+    ClientError,
+    DamagedTransferError,
+    JobCanceledError,
+    JobFailedError,
+    MeshRejectedError,
+    RefusedError,
+    WaitTimeoutError,
+)
+from quadpatch_client.packing import packed
+from quadpatch_client.polling import parse, poll
+from quadpatch_client.progress import ByteProgress, no_progress
+from quadpatch_client.resuming import RESUMABLE_BYTES, upload_resumably
+from quadpatch_client.schema import (
+    FileRole,
+    Job,
+    JobPage,
+    JobSpec,
+    JobState,
+    Mesh,
+    MeshState,
+    ModelList,
+    Plan,
+    identity_of,
+)
+from quadpatch_client.transfers import download, file_chunks, sent_name, sha256_of
+from quadpatch_client.transport import Transport
+from quadpatch_client.watching import watch
+
+_PAGE = 100
+# Of failed and canceled jobs with the same spec that are passed over.
+_MOST_KEYS = 20
+
+
+def ignore_job(job: Job) -> None:
+    """Ignore a change of a job."""
+
+
+class Client:
+    """One service.
+
+    Parameters
+    ----------
+    base_url : str
+        Like `http://127.0.0.1:8000`.
+    api_key : str, optional
+        Needed wherever the service listens to others than its own machine.
+    patience_s : float
+        How long a request is repeated while the line is down, in seconds.
+    """
+
+    def __init__(self, base_url: str, api_key: str | None = None, patience_s: float = 60.0) -> None:
+        self._transport = Transport(base_url, api_key, patience_s)
+        # Of the meshes that were uploaded here, by id: the service may know the same bytes under another name.
+        self._names: dict[str, str] = {}
+
+    def upload(self, path: Path, progress: ByteProgress = no_progress) -> Mesh:
+        """Send a mesh file; bytes that the service has already are not sent again.
+
+        From 32 MiB on, an upload goes on where the line broke.
+
+        A glTF file is sent with the files that it names inside.
+
+        Raises
+        ------
+        UsageError
+            If a glTF file names a file that is not there, or lies outside of its folder.
+        DamagedTransferError
+            If the service received other bytes.
+        """
+        with packed(path) as whole:
+            return self._upload(whole, progress)
+
+    def mesh(self, mesh_id: str) -> Mesh:
+        """Return a mesh as it stands."""
+        return parse(Mesh, self._transport.request("GET", f"/v1/meshes/{mesh_id}"))
+
+    def wait_for_mesh(self, mesh_id: str, timeout_s: float | None = None) -> Mesh:
+        """Wait until a mesh is analysed.
+
+        Raises
+        ------
+        MeshRejectedError
+            If the service could not read it.
+        WaitTimeoutError
+        """
+        for mesh in poll(self._transport, f"/v1/meshes/{mesh_id}", Mesh, timeout_s):
+            if mesh.state == MeshState.REJECTED and mesh.problem is not None:
+                raise MeshRejectedError(mesh.problem)
+            if mesh.state == MeshState.READY:
+                return mesh
+        raise WaitTimeoutError(f"mesh {mesh_id} was not analysed within {timeout_s:g} s")
+
+    def create_job(self, spec: JobSpec, idempotency_key: str | None = None, *, runs_anew: bool = False) -> Job:
+        """Start a job. Repeated on a broken line, it is still started once.
+
+        A spec without `mesh_name` takes the name of the file that this client uploaded last as that mesh.
+
+        Parameters
+        ----------
+        spec : JobSpec
+        idempotency_key : str, optional
+            Give your own to be safe across a restart of your program.
+        runs_anew : bool
+            Whether it runs although an equal job has left a result.
+        """
+        if spec.mesh_name is None:
+            spec = spec.model_copy(update={"mesh_name": self._names.get(spec.mesh_id) or None})
+        response = self._transport.request(
+            "POST",
+            "/v1/jobs",
+            json=spec.model_dump(mode="json"),
+            headers={
+                "Idempotency-Key": idempotency_key or str(uuid.uuid4()),
+                **({"Cache-Control": "no-cache"} if runs_anew else {}),
+            },
+        )
+        return parse(Job, response)
+
+    def create_job_once(self, spec: JobSpec) -> Job:
+        """Start a job, unless the same spec was sent before and its job is on its way or has a result: return that.
+
+        So a program that was ended, or that gave up on a service which was away, finds its job again by asking for
+        the same thing. A job that failed or was canceled is no reason not to start another one.
+        """
+        text = json.dumps(json.loads(identity_of(spec)), sort_keys=True)
+        digest = hashlib.sha256(text.encode()).hexdigest()
+        for number in range(1, _MOST_KEYS + 1):
+            try:
+                job = self.create_job(spec, f"same-{digest}-{number}")
+            except RefusedError as error:
+                # Under the same key an older client sent something else.
+                if error.problem.code != "idempotency_conflict":
+                    raise
+                continue
+            if job.state not in (JobState.FAILED, JobState.CANCELED):
+                return job
+        return self.create_job(spec)
+
+    def plan(self, spec: JobSpec) -> Plan:
+        """Ask what a job would do, without starting it."""
+        response = self._transport.request(
+            "POST", "/v1/jobs", params={"dry_run": "true"}, json=spec.model_dump(mode="json")
+        )
+        return parse(Plan, response)
+
+    def job(self, job_id: str) -> Job:
+        """Return a job as it stands."""
+        return parse(Job, self._transport.request("GET", f"/v1/jobs/{job_id}"))
+
+    def wait(self, job_id: str, on_change: Callable[[Job], None] = ignore_job, timeout_s: float | None = None) -> Job:
+        """Wait for the end of a job and return it.
+
+        Parameters
+        ----------
+        job_id : str
+        on_change : callable
+            Called with the job whenever something about it has changed, its place in the queue and the estimate of
+            its end among it.
+        timeout_s : float, optional
+            None: wait as long as it takes.
+
+        Raises
+        ------
+        JobFailedError, JobCanceledError, WaitTimeoutError
+        """
+        seen = None
+        for job in watch(self._transport, f"/v1/jobs/{job_id}", timeout_s):
+            if job != seen:
+                on_change(job)
+            seen = job
+            if job.state == JobState.FAILED:
+                raise JobFailedError(job)
+            if job.state == JobState.CANCELED:
+                raise JobCanceledError(job)
+            if job.state.is_terminal:
+                return job
+        raise WaitTimeoutError(f"job {job_id} did not end within {timeout_s:g} s")
+
+    def cancel(self, job_id: str) -> Job:
+        """Cancel a job; one that has ended already is returned as it is."""
+        try:
+            return parse(Job, self._transport.request("POST", f"/v1/jobs/{job_id}/cancel"))
+        except RefusedError as error:
+            if error.problem.code != "job_finished":
+                raise
+            return self.job(job_id)
+
+    def delete(self, job_id: str) -> None:
+        """Delete a finished job with all it left. There is no way back."""
+        self._transport.request("DELETE", f"/v1/jobs/{job_id}")
+
+    def pin(self, job_id: str, is_pinned: bool = True) -> None:
+        """Keep a job whatever the retention, or no longer."""
+        self._transport.request("PUT" if is_pinned else "DELETE", f"/v1/jobs/{job_id}/pin")
+
+    def download(
+        self,
+        job: Job,
+        role: FileRole,
+        target: Path,
+        progress: ByteProgress = no_progress,
+    ) -> None:
+        """Fetch a file of a finished job; `target` appears whole or not at all.
+
+        Raises
+        ------
+        ClientError
+            If the job has no such file.
+        DamagedTransferError
+        """
+        file = job.result.file(role) if job.result else None
+        link: str | None = getattr(job.links, role)
+        if file is None or link is None:
+            raise ClientError(f"job {job.id} has no {role}")
+        download(self._transport, link, target, file.sha256, progress)
+
+    def download_closeups(self, job: Job, folder: Path) -> list[Path]:
+        """Fetch the pictures of the chosen holes and unpack them into a folder; return the files, `hole_<id>.png`.
+
+        The folder is made where it is missing. Nothing is written outside of it.
+
+        Raises
+        ------
+        ClientError
+            If the job has none, or what came holds anything but such pictures.
+        DamagedTransferError
+        """
+        with tempfile.TemporaryDirectory() as scratch:
+            archive = Path(scratch) / "closeups.zip"
+            self.download(job, "closeups", archive)
+            return unpack_closeups(archive, folder)
+
+    def models(self) -> ModelList:
+        """Return all models and aliases, fetched page by page; of each model its newest versions."""
+        found = ModelList(models=[], aliases=[])
+        params = {"limit": str(_PAGE)}
+        while True:
+            page = parse(ModelList, self._transport.request("GET", "/v1/models", params=params))
+            found.models += page.models
+            found.aliases += page.aliases
+            if page.next_cursor is None:
+                return found
+            params["cursor"] = page.next_cursor
+
+    def jobs(self, limit: int | None = None, state: JobState | None = None, **search: str) -> Iterator[Job]:
+        """Yield jobs, newest first, fetched page by page.
+
+        Parameters
+        ----------
+        limit : int, optional
+            Most jobs; None: all.
+        state : JobState, optional
+            Only jobs in this state.
+        search : str
+            Further parameters of `GET /v1/jobs`, such as `label="station 4*"`.
+        """
+        left = limit
+        cursor: str | None = None
+        while left is None or left > 0:
+            params = {"limit": str(min(left or _PAGE, _PAGE)), **search}
+            params |= {"cursor": cursor} if cursor else {}
+            params |= {"state": state.value} if state else {}
+            page = parse(JobPage, self._transport.request("GET", "/v1/jobs", params=params))
+            yield from page.items
+            left = None if left is None else left - len(page.items)
+            cursor = page.next_cursor
+            if cursor is None:
+                return
+
+    def close(self) -> None:
+        """Close all connections."""
+        self._transport.close()
+
+    def __enter__(self) -> Self:
+        """Return itself."""
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """Close."""
+        self.close()
+
+    def _upload(self, path: Path, progress: ByteProgress) -> Mesh:
+        sha256 = sha256_of(path)
+        self._names[sha256] = sent_name(path)
+        known = self._find_mesh(sha256)
+        if known is not None and known.state != MeshState.REJECTED:
+            size = path.stat().st_size
+            progress(size, size)
+            return known
+        mesh = self._send(path, sha256, progress)
+        if mesh.id != sha256:
+            raise DamagedTransferError(f"{path.name} arrived damaged: the service got {mesh.id}, sent was {sha256}")
+        return mesh
+
+    def _send(self, path: Path, sha256: str, progress: ByteProgress) -> Mesh:
+        size, name = path.stat().st_size, sent_name(path)
+        if size >= RESUMABLE_BYTES:
+            mesh_id = upload_resumably(self._transport, path, name, sha256, progress)
+            if mesh_id is not None:
+                return self.mesh(mesh_id)
+        response = self._transport.request(
+            "POST",
+            "/v1/meshes",
+            params={"filename": name},
+            headers={"Content-Type": "application/octet-stream", "Content-Length": str(size)},
+            content=lambda: file_chunks(path, progress),
+        )
+        return parse(Mesh, response)
+
+    def _find_mesh(self, mesh_id: str) -> Mesh | None:
+        try:
+            return self.mesh(mesh_id)
+        except RefusedError as error:
+            if error.problem.status != httpx.codes.NOT_FOUND:
+                raise
+            return None
