@@ -11,7 +11,7 @@ TESTS = Path(__file__).parent
 # The fault suite injects faults by the clock, and its limits are `GUARD_S`; the others say why they look at it.
 MAY_LOOK_AT_THE_CLOCK = {
     "waiting.py": "waits for all tests",
-    "client/test_watching.py": "its server stays silent",
+    "quadpatch_client/test_watching.py": "its server stays silent",
     "dispatcher/test_lease_reaper.py": "a moment by the clock is what is handed over",
     "dispatcher/test_sending.py": "its server is slow",
     "jobkit/database/test_leadership.py": "a moment by the clock is what is handed back",

@@ -9,7 +9,8 @@ from pydantic import BaseModel
 
 from quadpatch_client.errors import AnswerError
 from quadpatch_client.lenient_json import read_leniently
-from quadpatch_client.transport import Transport, retry_after_s
+from quadpatch_client.patience import retry_after_s
+from quadpatch_client.transport import Transport
 
 M = TypeVar("M", bound=BaseModel)
 

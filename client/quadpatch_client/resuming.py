@@ -8,9 +8,10 @@ from pathlib import Path
 import httpx
 
 from quadpatch_client.errors import DamagedTransferError, RefusedError, WaitTimeoutError
+from quadpatch_client.patience import TryAgainError
 from quadpatch_client.progress import ByteProgress
 from quadpatch_client.transfers import file_chunks
-from quadpatch_client.transport import Transport, TryAgainError
+from quadpatch_client.transport import Transport
 
 # From this size on an upload is made resumable; a smaller one is sent again as a whole.
 RESUMABLE_BYTES = 32 << 20

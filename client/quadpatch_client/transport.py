@@ -1,28 +1,25 @@
 """HTTP with patience: what may be repeated is repeated, with growing pauses, until the time is up."""
 
-import random
+import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any, Self, TypeVar
 
 import httpx
 from pydantic import ValidationError
-from tenacity import RetryCallState, Retrying, retry_if_exception_type, stop_before_delay, wait_exponential
 
-from quadpatch_client.errors import AnswerError, RefusedError, UnreachableError
+from quadpatch_client.errors import AnswerError, RefusedError
+from quadpatch_client.patience import Line, Patience, TryAgainError, retry_after_s
 from quadpatch_client.schema import PROBLEM_MEDIA_TYPE, Problem
 
 T = TypeVar("T")
 
 # Statuses that say: not now. A gateway in between may answer these without a problem document.
 _TRY_AGAIN = frozenset({429, 502, 503, 504})
-_PAUSE_S = wait_exponential(multiplier=0.25, max=5.0)
 # Where nothing has ever taken a connection, a wrong address is likelier than a dropped line.
 _FIRST_CONTACT_S = 5.0
 _SILENCE_S, _CONNECT_S = 60.0, 5.0
 _TIMEOUT = httpx.Timeout(_SILENCE_S, connect=_CONNECT_S)
-# No connection was made, so that nothing says that a service is there.
-_NOT_REACHED = (httpx.ConnectError, httpx.ConnectTimeout, httpx.UnsupportedProtocol)
 
 
 def _nothing() -> int:
@@ -52,9 +49,7 @@ class Transport:
         headers = {"Authorization": f"Bearer {api_key}"} if api_key else {}
         self.base_url = base_url.rstrip("/")
         self._client = httpx.Client(base_url=self.base_url, headers=headers, timeout=_TIMEOUT)
-        self._patience_s = patience_s
-        self._first_contact_s = first_contact_s
-        self._was_reached = False
+        self._line = Line(self.base_url, patience_s, first_contact_s)
 
     def request(
         self,
@@ -135,32 +130,15 @@ class Transport:
         done : callable, optional
             How many bytes all attempts together have brought; patience begins anew with each failure after more.
         """
-        most = -1
-
-        def note_failure(state: RetryCallState) -> None:
-            nonlocal most
-            self._was_reached = self._was_reached or not isinstance(_error(state), _NOT_REACHED)
-            # Not from the first try: an upload that breaks after minutes is tried again.
-            if done() > most:
-                most, state.attempt_number = done(), 1
-                state.start_time = state.outcome_timestamp or state.start_time
-
-        retrying = Retrying(
-            retry=retry_if_exception_type((httpx.TransportError, TryAgainError)),
-            after=note_failure,
-            wait=_pause_s,
-            stop=self._is_over,
-            reraise=True,
-        )
-        try:
-            result = retrying(attempt)
-        except TryAgainError as error:
-            raise error.final from error
-        except httpx.TransportError as error:
-            within = f"within {self._allowed_s():g} s: {error or type(error).__name__}"
-            raise UnreachableError(f"no answer from {self.base_url} {within}") from error
-        self._was_reached = True
-        return result
+        patience = Patience(self._line)
+        while True:
+            try:
+                result = attempt()
+            except (httpx.TransportError, TryAgainError) as error:
+                time.sleep(patience.pause_s(error, done()))
+            else:
+                self._line.was_reached = True
+                return result
 
     def close(self) -> None:
         """Close all connections."""
@@ -173,36 +151,6 @@ class Transport:
     def __exit__(self, *_: object) -> None:
         """Close."""
         self.close()
-
-    def _is_over(self, state: RetryCallState) -> bool:
-        return stop_before_delay(self._allowed_s())(state)
-
-    def _allowed_s(self) -> float:
-        return self._patience_s if self._was_reached else min(self._patience_s, self._first_contact_s)
-
-
-class TryAgainError(Exception):
-    """The service asks to come back later; `final` is what to raise when there is no later."""
-
-    def __init__(self, final: Exception, retry_after_s: float | None) -> None:
-        super().__init__(str(final))
-        self.final = final
-        self.retry_after_s = retry_after_s
-
-
-def retry_after_s(response: httpx.Response) -> float | None:
-    """Seconds that the service asks to wait, None where it does not say."""
-    text = response.headers.get("Retry-After", "")
-    return float(text) if text.isdecimal() else None
-
-
-def _pause_s(state: RetryCallState) -> float:
-    asked_s: float | None = getattr(_error(state), "retry_after_s", None)
-    return asked_s or _PAUSE_S(state) * random.uniform(0.75, 1.25)
-
-
-def _error(state: RetryCallState) -> BaseException | None:
-    return None if state.outcome is None else state.outcome.exception()
 
 
 def _raise_for_problem(response: httpx.Response) -> None:

@@ -12,9 +12,10 @@ from collections.abc import Iterator
 import httpx
 
 from quadpatch_client.errors import AnswerError, RefusedError
+from quadpatch_client.patience import TryAgainError
 from quadpatch_client.polling import parse, poll
 from quadpatch_client.schema import Job
-from quadpatch_client.transport import Transport, TryAgainError
+from quadpatch_client.transport import Transport
 
 _MEDIA_TYPE = "text/event-stream"
 # A service shows every 15 s that a stream lives; after three of those it does not.

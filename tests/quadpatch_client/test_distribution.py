@@ -19,6 +19,6 @@ def test_the_client_has_the_version_of_the_service_which_needs_just_that() -> No
 
 def test_the_client_asks_for_few_libraries_in_the_bounds_of_the_service() -> None:
     asked = [Requirement(text) for text in requires("quadpatch-client") or []]
-    assert {requirement.name for requirement in asked} == {"httpx", "pydantic", "rich", "tenacity", "typer"}
+    assert {requirement.name for requirement in asked} == {"httpx", "pydantic", "rich", "typer"}
     own = {*SERVICE["dependencies"], *SERVICE["optional-dependencies"]["service"]}
     assert set(CLIENT["dependencies"]) <= own

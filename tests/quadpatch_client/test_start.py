@@ -16,7 +16,7 @@ atexit.register(lambda: print("loaded", *sorted(sys.modules), file=sys.stderr))
 from quadpatch_client.cli import app
 app(prog_name="quadpatch-client")
 """
-LATER = {"httpx", "tenacity", "pydantic", "quadpatch_client.schema", "rich.progress", "numpy", "quadpatch"}
+LATER = {"httpx", "pydantic", "quadpatch_client.schema", "rich.progress", "numpy", "quadpatch"}
 
 
 @pytest.mark.parametrize(

@@ -1,3 +1,5 @@
+"""Also tests `quadpatch_client.patience`."""
+
 import json
 import socket
 from typing import Any
