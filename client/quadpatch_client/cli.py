@@ -9,9 +9,22 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
+from quadpatch_client.batch_command import batch
 from quadpatch_client.connection import connected, print_json
 from quadpatch_client.exit_codes import exit_codes_text
 from quadpatch_client.job_commands import cancel, delete, fetch, pin, wait
+from quadpatch_client.method_options import (
+    EffortOption,
+    FitSecondsOption,
+    FitStepsOption,
+    MethodOption,
+    ModelOption,
+    OverlapOption,
+    PatchLengthOption,
+    PresetOption,
+    RecipeOption,
+    ResolutionOption,
+)
 from quadpatch_client.options import (
     DEFAULT_URL,
     AgainOption,
@@ -34,7 +47,6 @@ from quadpatch_client.options import (
     MaxPerimeterOption,
     MeshArgument,
     MethodChoice,
-    MethodName,
     OutputOption,
     OverwriteOption,
     PreviewOption,
@@ -53,7 +65,7 @@ from quadpatch_client.running import Connection, run
 from quadpatch_client.screen import Screen
 from quadpatch_client.tables import print_holes, print_jobs, print_models
 from quadpatch_client.task_commands import decode, denoise, encode, restore
-from quadpatch_rules.option_words import Effort, Preset, Recipe
+from quadpatch_client.watch_command import watch
 
 app = typer.Typer(
     name="quadpatch-client",
@@ -63,8 +75,6 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
-_PATCHES = "Patches"
-_FITTING = "Fitting a network to the mesh (--effort best, or --method cnn --model self)"
 
 
 @app.command(epilog=f"Exit codes:\n\n{exit_codes_text()}")
@@ -72,29 +82,10 @@ def repair(  # noqa: PLR0913 - one parameter per option of the command line
     mesh: MeshArgument,
     *,
     output: OutputOption,
-    effort: Annotated[
-        Effort | None,
-        typer.Option(
-            help="How much the method auto tries: fast (geometry only), standard (also a dictionary of this mesh and "
-            "the shipped network: seconds), best (also a network fitted to this mesh: a minute).",
-            show_default="standard",
-        ),
-    ] = None,
-    method: Annotated[
-        MethodName | None,
-        typer.Option(
-            help="How holes are filled; auto finds out what is best on this very mesh.",
-            show_default="auto; dictionary with a --model or --recipe",
-        ),
-    ] = None,
-    model: Annotated[
-        str | None,
-        typer.Option(help="name@version, an alias, or 'self': learned from the mesh itself.", show_default="default"),
-    ] = None,
-    recipe: Annotated[
-        Recipe | None,
-        typer.Option(help="How the model is put to use: our way, or exactly the paper's.", show_default="default"),
-    ] = None,
+    effort: EffortOption = None,
+    method: MethodOption = None,
+    model: ModelOption = None,
+    recipe: RecipeOption = None,
     max_diameter: MaxDiameterOption = None,
     max_perimeter: MaxPerimeterOption = None,
     all_but_largest: AllButLargestOption = False,
@@ -104,33 +95,12 @@ def repair(  # noqa: PLR0913 - one parameter per option of the command line
     rule: RuleOption = None,
     bridge: BridgeOption = None,
     weld_tolerance: WeldToleranceOption = None,
-    patch_length: Annotated[
-        float | None,
-        typer.Option(help="Side of a patch, in mesh units.", show_default="auto", rich_help_panel=_PATCHES),
-    ] = None,
-    resolution: Annotated[
-        int | None, typer.Option(help="Bins along a side.", show_default="auto", rich_help_panel=_PATCHES)
-    ] = None,
-    overlap: Annotated[
-        int | None,
-        typer.Option(help="k: a quad carries 1 + 4 k patches.", show_default="auto", rich_help_panel=_PATCHES),
-    ] = None,
-    preset: Annotated[
-        Preset | None,
-        typer.Option(
-            help="The paper's patches: 0.03 of the longest side in 16 bins, or 0.06 in 24.",
-            show_default="none",
-            rich_help_panel=_PATCHES,
-        ),
-    ] = None,
-    fit_steps: Annotated[
-        int | None,
-        typer.Option(help="Fit at most so many steps.", show_default="of the service", rich_help_panel=_FITTING),
-    ] = None,
-    fit_seconds: Annotated[
-        float | None,
-        typer.Option(help="Fit at most so long.", show_default="of the service", rich_help_panel=_FITTING),
-    ] = None,
+    patch_length: PatchLengthOption = None,
+    resolution: ResolutionOption = None,
+    overlap: OverlapOption = None,
+    preset: PresetOption = None,
+    fit_steps: FitStepsOption = None,
+    fit_seconds: FitSecondsOption = None,
     seed: SeedOption = 0,
     label: LabelOption = None,
     priority: PriorityOption = None,
@@ -164,7 +134,7 @@ def repair(  # noqa: PLR0913 - one parameter per option of the command line
                 "weld_tolerance": tolerance(weld_tolerance),
                 "colours": colours,
                 "length_unit": length_unit,
-                "label": label,
+                "label": label or mesh.name,
                 "priority": priority or "normal",
                 "output": {
                     "format": format_ or format_of(output),
@@ -252,6 +222,8 @@ def jobs(  # noqa: PLR0913, PLR0917 - one parameter per option of the command li
 
 for task_command in (restore, denoise, encode, decode):
     app.command(epilog=f"Exit codes:\n\n{exit_codes_text()}")(task_command)
+for folder_command in (batch, watch):
+    app.command(epilog=f"Exit codes:\n\n{exit_codes_text()}")(folder_command)
 for command in (wait, fetch, cancel, delete, pin):
     app.command()(command)
 

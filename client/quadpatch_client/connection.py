@@ -15,14 +15,17 @@ if TYPE_CHECKING:
 
     from quadpatch_client.sdk import Client
 
+# How long a request is repeated while the line is down, in seconds.
+PATIENCE_S = 60.0
+
 
 @contextmanager
-def connected(screen: Screen, url: str, api_key: str | None) -> Iterator["Client"]:
+def connected(screen: Screen, url: str, api_key: str | None, patience_s: float = PATIENCE_S) -> Iterator["Client"]:
     """Open the service; whatever goes wrong becomes a line on stderr and an exit code."""
     from quadpatch_client.sdk import Client  # noqa: PLC0415  HTTP and the wire schema take longer to load than --help takes
 
     try:
-        with Client(url, api_key) as client:
+        with Client(url, api_key, patience_s) as client:
             yield client
     except ClientError as error:
         screen.complain(str(error))

@@ -40,6 +40,15 @@ HoleOption = Annotated[
     list[int] | None,
     typer.Option("--hole", help="Fill just this hole; repeat for more. See `holes`.", rich_help_panel="Which holes"),
 ]
+SavedRuleOption = Annotated[
+    str | None,
+    typer.Option(
+        "--saved-rule",
+        metavar="NAME[@VERSION]",
+        help="A rule that the service keeps: it says which holes are filled, and how. See `rules`.",
+        rich_help_panel="Which holes",
+    ),
+]
 WeldToleranceOption = Annotated[
     str | None,
     typer.Option(
@@ -137,7 +146,9 @@ LengthUnitOption = Annotated[
     ),
 ]
 SeedOption = Annotated[int, typer.Option(help="Starts every random choice.")]
-LabelOption = Annotated[str | None, typer.Option(help="A name for the job, for people.")]
+LabelOption = Annotated[
+    str | None, typer.Option(help="A name for the job, for people.", show_default="name of the file")
+]
 PriorityOption = Annotated[
     Literal["interactive", "normal", "bulk"] | None,
     typer.Option(help="interactive goes before all others, bulk when no other job waits.", show_default="normal"),

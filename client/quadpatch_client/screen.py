@@ -5,6 +5,7 @@ All of it goes to stderr by default; stdout is for data.
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from itertools import count
 from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
@@ -59,6 +60,24 @@ class Screen:
         ) as bar:
             task = bar.add_task(label, total=None)
             yield lambda done, total: bar.update(task, completed=done, total=total)
+
+    @contextmanager
+    def counting(self, label: str, done: int, total: int) -> Iterator[Callable[[str], None]]:
+        """Show how many of a number of things are done; yields what is called with a line for each further one."""
+        if self._quiet or not self.console.is_terminal:
+            numbers = count(done + 1)
+            yield lambda line: self.say(f"{next(numbers)}/{total}  {line}")
+            return
+        from rich.progress import MofNCompleteColumn, Progress, TimeElapsedColumn  # noqa: PLC0415  see above
+
+        with Progress(*_columns(), MofNCompleteColumn(), TimeElapsedColumn(), console=self.console) as bar:
+            task = bar.add_task(label, completed=done, total=total)
+
+            def step(line: str) -> None:
+                bar.console.print(line, markup=False, soft_wrap=True)
+                bar.advance(task)
+
+            yield step
 
     @contextmanager
     def repair(self) -> Iterator[Callable[["Job"], None]]:

@@ -11,6 +11,7 @@ from pydantic import ValidationError
 from quadpatch_client.errors import UsageError
 from quadpatch_client.options import HoleChoice, MethodChoice
 from quadpatch_client.schema import SELF, JobSpec, conflict_of
+from quadpatch_client.wording import said
 from quadpatch_rules.rule_text import RuleTextError, read_bridge, read_rule
 
 Value = TypeVar("Value")
@@ -29,8 +30,7 @@ def make_spec(mesh_id: str, holes: HoleChoice, method: MethodChoice, **rest: Any
     try:
         spec = JobSpec.model_validate(values)
     except ValidationError as error:
-        lines = [f"{'.'.join(str(step) for step in e['loc'])}: {e['msg']}" for e in error.errors()]
-        raise UsageError("; ".join(lines)) from error
+        raise UsageError(said(error)) from error
     conflict = conflict_of(spec)
     if conflict is not None:
         raise UsageError(conflict)

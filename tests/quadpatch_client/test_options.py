@@ -1,3 +1,5 @@
+"""Also tests `quadpatch_client.method_options`."""
+
 from typing import get_args
 
 import pytest
@@ -111,7 +113,7 @@ def test_a_weld_tolerance_reaches_the_spec(word: str, value: float | str) -> Non
 
 @pytest.mark.parametrize("word", ["-1", "nan", "near"])
 def test_a_weld_tolerance_that_is_none_is_named(word: str) -> None:
-    with pytest.raises(UsageError, match="weld_tolerance"):
+    with pytest.raises(UsageError, match="--weld-tolerance has to be"):
         make_spec(MESH_ID, HoleChoice(), MethodChoice(), weld_tolerance=tolerance(word))
 
 
@@ -125,7 +127,7 @@ def test_colours_reach_the_spec() -> None:
 def test_an_option_out_of_its_range_is_named() -> None:
     with pytest.raises(UsageError, match="resolution"):
         make_spec(MESH_ID, HoleChoice(), MethodChoice(resolution=7))
-    with pytest.raises(UsageError, match=r"fitting\.steps"):
+    with pytest.raises(UsageError, match="--fit-steps has to be at least 1, not 0"):
         make_spec(MESH_ID, HoleChoice(), MethodChoice("cnn", "self", fit_steps=0))
 
 

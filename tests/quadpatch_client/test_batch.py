@@ -1,0 +1,82 @@
+"""Also tests `quadpatch_client.batch_summary`, `quadpatch_client.folder_files` and `quadpatch_client.workers`."""
+
+import io
+import threading
+from pathlib import Path
+
+import pytest
+from rich.console import Console
+
+from quadpatch_client.batch_summary import print_summary, row_text, write_csv
+from quadpatch_client.errors import UsageError
+from quadpatch_client.file_repair import Row
+from quadpatch_client.folder_files import mesh_files, plans_in, remove_partial_files
+from quadpatch_client.workers import Workers
+from tests.waiting import GUARD_S
+
+DONE = Row("a.ply", "done", 5, 1, 2, 1, 1, 70, 2.5, "job_1", "")
+FAILED = Row("b.ply", "failed", reason="=the file is empty (invalid_mesh)")
+
+
+def test_the_summary_counts_and_names_what_failed() -> None:
+    console = Console(width=80, file=io.StringIO())
+    print_summary(console, [DONE, FAILED, Row("c.ply", "skipped", reason="holes is 0, not > 0")])
+    text = console.file.getvalue()  # type: ignore[attr-defined]
+    assert "1 done, 1 skipped, 1 failed" in text
+    assert "b.ply: failed: =the file is empty (invalid_mesh)" in text
+    assert all(len(line) <= 80 for line in text.splitlines())
+
+
+def test_a_file_is_told_in_a_line() -> None:
+    assert row_text(DONE) == "a.ply: 3 of 5 holes filled, 2 left open, 2.5 s"
+
+
+def test_no_text_of_others_becomes_a_formula_in_a_spreadsheet(tmp_path: Path) -> None:
+    write_csv(tmp_path / "s.csv", [DONE, FAILED])
+    lines = (tmp_path / "s.csv").read_text("utf-8-sig").splitlines()
+    assert lines[0].startswith("file,state,found,filled")
+    assert lines[1] == "a.ply,done,5,1,2,1,1,70,2.5,job_1,"
+    assert lines[2].endswith(",'=the file is empty (invalid_mesh)")
+
+
+def test_meshes_are_found_by_their_suffix(tmp_path: Path) -> None:
+    for name in ("b.STL", "a.ply", ".hidden.ply", "notes.txt", "in/c.obj", "out/d.ply", ".git/e.ply"):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_bytes(b"")
+    names = [path.relative_to(tmp_path).as_posix() for path in mesh_files(tmp_path, True, tmp_path / "out")]
+    assert names == ["a.ply", "b.STL", "in/c.obj"]
+    assert [path.name for path in mesh_files(tmp_path, False)] == ["a.ply", "b.STL"]
+
+
+def test_two_files_never_share_a_place() -> None:
+    folder, out = Path("in"), Path("out")
+    plans = plans_in(iter([folder / "a.ply", folder / "a.gltf"]), folder, out, None, with_html=True, with_preview=True)
+    assert [plan.output.name for plan in plans] == ["a.ply", "a.glb"]
+    assert plans[1].outputs()[0] == out / "a.glb.report.json"
+    with pytest.raises(UsageError, match=r"would both become out/a\.obj"):
+        plans_in(iter([folder / "a.ply", folder / "a.stl"]), folder, out, "obj", with_html=False, with_preview=False)
+
+
+def test_what_a_killed_client_left_is_removed(tmp_path: Path) -> None:
+    for name in (".a.ply.x.part", "a.part", "b.ply"):
+        (tmp_path / name).write_bytes(b"")
+    remove_partial_files(tmp_path)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.part", "b.ply"]
+
+
+def test_workers_hand_back_results_and_errors_and_keep_nothing_from_ending() -> None:
+    workers = Workers(2)
+    started, is_over = threading.Barrier(3), threading.Event()
+
+    def wait_for_the_others() -> int:
+        started.wait(GUARD_S)
+        is_over.wait(GUARD_S)
+        return 7
+
+    futures = [workers.submit(wait_for_the_others) for _ in range(2)]
+    started.wait(GUARD_S)
+    is_over.set()
+    assert [future.result(GUARD_S) for future in futures] == [7, 7]
+    with pytest.raises(ZeroDivisionError):
+        workers.submit(lambda: 1 // 0).result(GUARD_S)
+    assert all(thread.daemon for thread in threading.enumerate() if "_work" in thread.name)
