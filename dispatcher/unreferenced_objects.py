@@ -30,7 +30,7 @@ from jobkit.uploads.parts import PART_PREFIX, named_parts
 from quadpatch_client.schema import JobState
 
 GRACE = timedelta(hours=24)
-CONTENT_PREFIXES = ("meshes", "models")
+CONTENT_PREFIXES = ("meshes", "models", "views")
 RESULT_PREFIX = "results"
 # Objects of one query, and claims of one transaction.
 _BATCH = 500
@@ -135,7 +135,7 @@ def _sweep_parts(database: Database, store: ObjectStore, batch: list[ListedObjec
 
 
 def _sweep_contents(database: Database, store: ObjectStore, batch: list[ListedObject], before: datetime) -> SweepResult:
-    """Delete meshes and models that no row names; `jobkit.storage.removals` handles uploads of the same bytes."""
+    """Delete meshes, models and views that no row names; `jobkit.storage.removals` handles uploads of the same bytes."""
     keys = {listed.key for listed in batch}
     with database.read() as session:
         keys -= named_keys(session, keys)

@@ -24,6 +24,7 @@
     │   ├── MeshNotEncodedError     mesh_not_encoded      a mesh that is no .qpz file is to be decoded
     │   ├── UnknownHoleError        unknown_hole          an explicit id names no hole of the mesh
     │   ├── NoTrainingMeshError     no_training_mesh      the filter of a training finds no mesh to learn from
+    │   ├── ViewFailedError         view_failed           what a viewer asks for can't be made
     │   ├── MeshInUseError          mesh_in_use           a mesh is to be deleted while jobs name it
     │   ├── JobNotFinishedError     job_not_finished      a result is asked for, or a deletion, before the job has ended
     │   ├── JobHasNoResultError     job_has_no_result     the job ended without one
@@ -226,6 +227,12 @@ class NoTrainingMeshError(ConflictError):
     """The filter of a training finds no mesh to learn from."""
 
     code = "no_training_mesh"
+
+
+class ViewFailedError(ConflictError):
+    """A view can't be made: of what is no surface, or too large, or a model without anything to draw."""
+
+    code = "view_failed"
 
 
 class MeshInUseError(ConflictError):

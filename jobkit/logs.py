@@ -18,7 +18,7 @@ from jobkit.settings import Settings
 from quadpatch_rules.text import printable
 
 # In the order in which they stand in a line.
-FIELDS = ("request_id", "job_id", "mesh_id", "model", "attempt", "worker")
+FIELDS = ("request_id", "job_id", "mesh_id", "model", "view", "attempt", "worker")
 _LONGEST_MESSAGE = 4000
 _LONGEST_TRACEBACK = 20_000
 _TEXT = "%(asctime)s %(levelname)s %(name)s: %(message)s"

@@ -2,7 +2,8 @@
 
 There is one queue for all kinds of tasks: RQ loses a job when a worker that listens to two queues is killed right
 after the pop. All are ordered by age, since the length of an analysis is not known from the file; only jobs whose
-attempt was lost, or that wait for memory, go to the front, since they have waited already.
+attempt was lost, or that wait for memory, go to the front, since they have waited already, and views, which a person
+waits for.
 """
 
 import hashlib
@@ -21,6 +22,7 @@ from jobkit.errors import QueueUnavailableError
 RUN_JOB = "worker.jobs.run_job"
 INSPECT_MESH = "worker.jobs.inspect_mesh"
 PROVE_MODEL = "worker.jobs.prove_model"
+MAKE_VIEW = "worker.jobs.make_view"
 # The engine has limits of its own; this one only frees a worker whose supervision of the engine failed.
 _MARGIN_S = 60
 _SOCKET_TIMEOUT_S = 5.0
@@ -86,6 +88,10 @@ class TaskQueue:
     def enqueue_proof(self, reference: str, attempt: int) -> None:
         """Ask for the proof of a model version, `name@version`; raise QueueUnavailableError."""
         self._enqueue(PROVE_MODEL, reference, model_entry(reference, attempt), at_front=False)
+
+    def enqueue_view(self, view_id: str, attempt: int) -> None:
+        """Ask for a view, in front of all that waits; raise QueueUnavailableError."""
+        self._enqueue(MAKE_VIEW, view_id, view_entry(view_id, attempt), at_front=True)
 
     def entries(self) -> set[str]:
         """Return the entries that wait in the queue; raise QueueUnavailableError."""
@@ -153,6 +159,11 @@ def model_entry(reference: str, attempt: int) -> str:
     RQ takes letters, digits, underscores and dashes only; names of models hold dots as well.
     """
     return f"model_{hashlib.sha256(reference.encode()).hexdigest()[:32]}-{attempt}"
+
+
+def view_entry(view_id: str, attempt: int) -> str:
+    """Return the name of the queue's entry for that attempt at a view."""
+    return f"view_{view_id}-{attempt}"
 
 
 @contextmanager

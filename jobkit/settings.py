@@ -41,8 +41,8 @@ class Settings(BaseSettings):
     )
     object_store_url: str = Field(
         default="",
-        description="Store of meshes, results and models: `s3://bucket/prefix`, with credentials, region and endpoint "
-        "from the AWS_ variables, or `file:///a/folder`; empty: file://DATA_DIR/objects.",
+        description="Store of meshes, results, models and views: `s3://bucket/prefix`, with credentials, region and "
+        "endpoint from the AWS_ variables, or `file:///a/folder`; empty: file://DATA_DIR/objects.",
     )
     queue_name: str = Field(
         default="quadpatch", pattern=r"^[a-z0-9-]+$", description="Queue that all tasks go through."
@@ -77,8 +77,8 @@ class Settings(BaseSettings):
         default=102_400,
         ge=0,
         le=2**32,
-        description="Most MiB that a tenant stores, meshes, results, models and open uploads together; 0: no limit. "
-        "This and the next four hold for tenants for which nothing else was set, and never for the tenant `default`.",
+        description="Most MiB that a tenant stores, meshes, results, models, views and open uploads together; 0: no "
+        "limit. This and the next four hold for tenants for which nothing else was set, and never for the tenant `default`.",
     )
     tenant_jobs_waiting: int = Field(
         default=10_000, ge=0, le=2**31, description="Most jobs of a tenant that wait for a worker; 0: no limit."

@@ -47,6 +47,7 @@ from service.routes import (
     tenants,
     trainings,
     uploads,
+    views,
     webhooks,
 )
 from service.scopes import check_scope
@@ -88,7 +89,7 @@ def create_app(settings: Settings, telemetry: Telemetry | None = None) -> FastAP
     app.state.documents = {}
     app.state.telemetry = telemetry or Telemetry()
     about_access = (keys, tenants, limits, audit)
-    about_jobs = (meshes, uploads, jobs, events, results, repairs, retention, batches, batch_results)
+    about_jobs = (meshes, uploads, jobs, events, results, views, repairs, retention, batches, batch_results)
     about_models = (models, model_lifetime, trainings)
     about_messages = (webhooks, callbacks, deliveries)
     about_service = (health, documentation, metrics)
@@ -123,6 +124,7 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
             services.job_waiters.close()
             services.mesh_waiters.close()
             services.model_waiters.close()
+            services.view_waiters.close()
     finally:
         app.state.registry.unregister(collector)
         services.close()

@@ -28,6 +28,7 @@ from jobkit.settings import Settings
 from jobkit.storage.base import ObjectStore
 from jobkit.storage.open import open_store
 from jobkit.uploads.uploads import Uploads
+from jobkit.views import Views
 from jobkit.webhooks.callbacks import Callbacks
 from jobkit.webhooks.deliveries import Deliveries
 from jobkit.webhooks.subscriptions import Webhooks
@@ -67,6 +68,8 @@ class Services:
     job_waiters: Waiters
     mesh_waiters: Waiters
     model_waiters: Waiters
+    views: Views
+    view_waiters: Waiters
     audit: AuditTrail
 
     def of(self, tenant: str) -> "Services":
@@ -83,6 +86,7 @@ class Services:
             webhooks=self.webhooks.of(database),
             callbacks=self.callbacks.of(database),
             deliveries=Deliveries(database),
+            views=Views(database),
             job_cache=replace(self.job_cache, tenant=tenant),
         )
 
@@ -109,6 +113,7 @@ def open_services(settings: Settings) -> Services:
     queue = TaskQueue(redis_url, settings.queue_name, settings.job_time_limit_s)
     proofs = Proofs(database)
     jobs, meshes = Jobs(database, settings.job_retention_days), Meshes(database, settings.mesh_retention_days)
+    views = Views(database)
     estimates, check = Estimates(database), partial(check_url, allowed=settings.webhook_networks)
     return Services(
         settings,
@@ -134,6 +139,8 @@ def open_services(settings: Settings) -> Services:
         Waiters(jobs.unfinished, settings.max_waiters),
         Waiters(meshes.unfinished, settings.max_waiters),
         Waiters(proofs.unfinished, settings.max_waiters),
+        views,
+        Waiters(views.unfinished, settings.max_waiters),
         AuditTrail(AuditLog(database)),
     )
 

@@ -27,6 +27,7 @@ from jobkit.queue import TaskQueue
 from jobkit.settings import Settings
 from jobkit.storage.base import ObjectStore
 from jobkit.telemetry import Telemetry
+from jobkit.views import Views
 from worker.engine.client import ForkServer
 from worker.machine_memory import machine_memory
 
@@ -87,6 +88,11 @@ class Context:
     def proofs(self) -> Proofs:
         """Proofs of models."""
         return Proofs(self.database)
+
+    @property
+    def views(self) -> Views:
+        """Views of meshes, jobs and models."""
+        return Views(self.database)
 
     @property
     def registry(self) -> Registry:

@@ -18,6 +18,7 @@ from jobkit.errors import (
 from jobkit.logs import log_about
 from jobkit.requeue import GRACE_S
 from quadpatch_client.schema import JobState
+from worker import views
 from worker.analyses import analyse
 from worker.context import Context, current_context
 from worker.memory import memory_given_back, submit_fitting
@@ -90,6 +91,18 @@ def prove_model(reference: str) -> None:
         return
     with log_about(model=reference, attempt=proof.attempt), memory_given_back(context):
         prove(context, proof)
+
+
+def make_view(view_id: str) -> None:
+    """Make what a viewer asks for of a mesh, a job or a model."""
+    context = current_context()
+    try:
+        attempt = _available(context)(lambda: context.views.start(view_id, context.name, context.settings.lease_s))
+    except (StaleAttemptError, DatabaseUnavailableError) as error:
+        _log.info("nothing to do: %s", error)
+        return
+    with log_about(view=view_id, attempt=attempt.attempt), memory_given_back(context):
+        views.make_view(context, attempt)
 
 
 def _available(context: Context) -> Retrying:

@@ -17,6 +17,7 @@ from jobkit.database.clock import shared_now, utc_now
 from jobkit.database.tables import JobRow, MeshRow, ModelRow
 from jobkit.database.tenancy import DEFAULT_TENANT, tenant_of
 from jobkit.database.upload_tables import UploadRow
+from jobkit.database.view_tables import ViewRow
 from jobkit.errors import JobQuotaError, StorageQuotaError, TenantBusyError
 from jobkit.settings import Settings
 from quadpatch_client.schema import JobState, Quotas, UploadKind, UploadState, Usage
@@ -143,12 +144,13 @@ def usage_of(session: Session, tenant: str) -> Usage:
 
 
 def stored_bytes(session: Session, tenant: str) -> int:
-    """Add up the bytes of a tenant: meshes, results, models, and uploads as large as they are to be."""
+    """Add up the bytes of a tenant: meshes, results, models, views, and uploads as large as they are to be."""
     is_open = (UploadRow.state == UploadState.OPEN.value) | (UploadRow.kind == UploadKind.PARTIAL.value)
     return (
         _sum(session, MeshRow.size_bytes, MeshRow.tenant == tenant)
         + _sum(session, JobRow.result_bytes, JobRow.tenant == tenant, JobRow.result_bytes > 0)
         + _sum(session, ModelRow.size_bytes, ModelRow.tenant == tenant)
+        + _sum(session, ViewRow.size_bytes, ViewRow.tenant == tenant)
         + _sum(session, UploadRow.size_bytes, UploadRow.tenant == tenant, is_open)
     )
 

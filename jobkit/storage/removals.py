@@ -22,6 +22,7 @@ from sqlalchemy.orm import Session
 from jobkit.database.clock import shared_now
 from jobkit.database.session import Database
 from jobkit.database.tables import MeshRow, ModelRow, RemovalRow
+from jobkit.database.view_tables import ViewRow
 from jobkit.errors import ObjectNotFoundError, RowConflictError, StoreUnavailableError
 from jobkit.storage.base import ObjectStore
 from jobkit.storage.damage import forget_damaged, is_known_damaged
@@ -36,13 +37,13 @@ _PAUSE_S = 0.05
 
 
 def named_keys(session: Session, keys: set[str]) -> set[str]:
-    """Return those of the keys that a mesh or a model names."""
-    queries = [select(table.key).where(table.key.in_(keys)) for table in (MeshRow, ModelRow)]
-    return {key for query in queries for key in session.scalars(query)}
+    """Return those of the keys that a mesh, a model or a view names."""
+    queries = [select(table.key).where(table.key.in_(keys)) for table in (MeshRow, ModelRow, ViewRow)]
+    return {key for query in queries for key in session.scalars(query) if key is not None}
 
 
 def claim(database: Database, keys: Iterable[str]) -> list[str]:
-    """Claim those keys that no mesh, model or other sweep names; return them."""
+    """Claim those keys that no mesh, model, view or other sweep names; return them."""
     requested_keys = set(keys)
     try:
         with database.write() as session:

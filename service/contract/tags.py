@@ -11,6 +11,7 @@ TAGS: Mapping[str, str] = {
     "jobs": "Start jobs, follow, cancel and repeat them.",
     "batches": "Many jobs at once: start, follow, cancel, fetch and repeat them.",
     "results": "Repaired meshes, reports and pictures of jobs that have ended.",
+    "views": "What a viewer shows of meshes, results and models; made when they are first asked for.",
     "retention": "Keep jobs and meshes that would expire.",
     "models": "Dictionaries and networks: versions, aliases, deprecation.",
     "trainings": "Learn dictionaries from uploaded meshes, judge them, and publish them as models.",

@@ -123,7 +123,7 @@ def _file_response(
     media_type: str,
 ) -> Response:
     job, keys = services.jobs.with_files(job_id)
-    _require_result(job)
+    require_result(job)
     file = job.result.file(role) if job.result else None
     if file is None:
         raise ObjectNotFoundError(f"job {job_id} left no {role}")
@@ -137,7 +137,8 @@ def _file_response(
         raise ResultMissingError(f"the {role} of job {job_id} is gone from the store; run the job again") from error
 
 
-def _require_result(job: Job) -> None:
+def require_result(job: Job) -> None:
+    """Raise JobNotFinishedError or JobHasNoResultError where a job has no result."""
     if not job.state.is_terminal:
         raise JobNotFinishedError(f"job {job.id} is {job.state.value}; it has no result yet")
     if not job.state.has_result:

@@ -17,6 +17,7 @@ COMMANDS = (
     "benchmarks.service",
     "benchmarks.stages",
     "benchmarks.streaming",
+    "benchmarks.views",
 )
 
 

@@ -37,6 +37,7 @@ from worker.engine.request import (
     EngineTask,
 )
 from worker.engine.tasks import MESH_TASKS, train
+from worker.engine.views import write_view
 
 
 def run_request(folder: Path, descriptor: int) -> None:
@@ -90,6 +91,11 @@ def _prove(_folder: Path, request: EngineRequest, reporter: Reporter, _pool: Pro
     prove_model(request.model, request.model_card)
 
 
+def _view(folder: Path, request: EngineRequest, reporter: Reporter, _pool: ProcessPool) -> None:
+    reporter.progress("view", 0.0)
+    write_view(folder, request)
+
+
 def _do_task(folder: Path, request: EngineRequest, reporter: Reporter, _pool: ProcessPool) -> None:
     done = MESH_TASKS[request.task](folder, request, reporter.progress)
     _write_json(folder / REPORT_NAME, done.report)
@@ -110,6 +116,7 @@ _TASKS: dict[EngineTask, Callable[[Path, EngineRequest, Reporter, ProcessPool], 
     "train": _train,
     "inspect": _inspect,
     "prove": _prove,
+    "view": _view,
 }
 
 

@@ -15,6 +15,8 @@
     report.html      the report as a page
     calibration.json what repairs of this mesh found out by calibration; the engine adds what it finds out
     facts.json       what an inspection found
+    result/, report/ the result and the report of a job that is to be viewed
+    view.bin         what a viewer asked for: GLB, JSON or PNG
     engine.log       all that the child prints
 
 Tested in `tests/worker/engine/test_main.py`.
@@ -37,9 +39,10 @@ PREVIEW_NAME = "preview.png"
 CLOSE_UPS_NAME = "closeups.zip"
 PAGE_NAME = "report.html"
 CALIBRATION_NAME = "calibration.json"
+VIEW_NAME = "view.bin"
 LOG_NAME = "engine.log"
 
-EngineTask = Literal["repair", "restore", "denoise", "encode", "decode", "train", "inspect", "prove"]
+EngineTask = Literal["repair", "restore", "denoise", "encode", "decode", "train", "inspect", "prove", "view"]
 
 
 @dataclass(frozen=True)
@@ -49,7 +52,7 @@ class EngineRequest:
     Attributes
     ----------
     task : str
-        "repair" fills holes; the other tasks of a job have their own names; "inspect" and "prove" are no jobs.
+        "repair" fills holes; the other tasks of a job have their own names; "inspect", "prove" and "view" are no jobs.
     source : str
         Path of the mesh file in the request's folder; empty where a model is proven.
     limits : EngineLimits
@@ -58,7 +61,8 @@ class EngineRequest:
     model : str
         As `quadpatch.repair.repair_file` takes it: `smooth`, `self` or the path of a model file.
     options : dict
-        As `from_dict` of the task's options takes it, for a repair `quadpatch.options.RepairOptions`.
+        As `from_dict` of the task's options takes it, for a repair `quadpatch.options.RepairOptions`. Of a view its
+        `kind` and `level`, as `jobkit.views.ViewOrder` has them.
     model_card : dict or None
         Of a network, in place of the one in its file.
     with_preview : bool
@@ -74,7 +78,8 @@ class EngineRequest:
     scan : str
         Names the bytes of the mesh and how they are read, for what is kept of a calibration; empty where nothing is.
     meshes : dict
-        Of a training: paths of its mesh files in the request's folder by the ids of the meshes.
+        Of a training: paths of its mesh files in the request's folder by the ids of the meshes. Of the view of a job:
+        those of its files by their roles.
     """
 
     task: EngineTask
