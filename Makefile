@@ -6,7 +6,7 @@ READY  := $(VENV)/.ready
 # Twice quiet: errors only.
 PIP    := $(BIN)/python -m pip --quiet --quiet --disable-pip-version-check
 
-.PHONY: demo test contract-changes coverage test-slow test-postgres test-lowest explore faults resumption fuzz mutants flood contract check serve openapi samples lock sbom bench bench-stages bench-quality bench-scans clean
+.PHONY: demo web test contract-changes coverage test-slow test-postgres test-lowest explore faults resumption fuzz mutants flood contract check serve openapi samples lock sbom bench bench-stages bench-quality bench-scans clean
 
 $(READY): pyproject.toml client/pyproject.toml constraints.txt
 	@echo "setting up $(VENV); this takes a few minutes the first time ..." >&2
@@ -23,6 +23,16 @@ $(NODE_READY): $(NODE)/package-lock.json | $(READY)
 	@PATH="$(abspath $(BIN)):$$PATH" npm ci --prefix $(NODE) --silent --no-audit --no-fund --ignore-scripts
 	@touch $@
 
+# The page. Its libraries are bundled; of Node.js nothing is installed with the service.
+WEB_READY := web/node_modules/.ready
+$(WEB_READY): web/package-lock.json | $(READY)
+	@PATH="$(abspath $(BIN)):$$PATH" npm ci --prefix web --silent --no-audit --no-fund --ignore-scripts
+	@touch $@
+
+web: $(WEB_READY)         ## check the types of the page, and build it anew into service/page
+	@PATH="$(abspath $(BIN)):$$PATH" npm --prefix web --silent run check
+	@PATH="$(abspath $(BIN)):$$PATH" npm --prefix web --silent run build
+
 demo: $(READY)            ## repair a real scan over HTTP; results land in demo/
 	@$(BIN)/python -m onebox demo
 
@@ -36,7 +46,7 @@ serve: $(READY)           ## a local stack on http://127.0.0.1:8000 until Ctrl-C
 PYTEST := pytest -n 2 --dist loadfile
 PYTHON_OF_TESTS := PYTHONDONTWRITEBYTECODE= OMP_NUM_THREADS=1 $(BIN)/python -m
 TEST := $(PYTHON_OF_TESTS) $(PYTEST)
-test: $(READY) $(NODE_READY)  ## the tests, with the real Valkey
+test: $(READY) $(NODE_READY) $(WEB_READY)  ## the tests, with the real Valkey
 	@$(TEST) --durations 10 -m "not slow" $(ARGS)
 
 # What it measures, and how child processes take part, stands in pyproject.toml under [tool.coverage.run].

@@ -40,6 +40,7 @@ from service.routes import (
     metrics,
     model_lifetime,
     models,
+    page,
     repairs,
     results,
     retention,
@@ -92,7 +93,7 @@ def create_app(settings: Settings, telemetry: Telemetry | None = None) -> FastAP
     about_jobs = (meshes, uploads, jobs, events, results, views, repairs, retention, batches, batch_results)
     about_models = (models, model_lifetime, trainings)
     about_messages = (webhooks, callbacks, deliveries)
-    about_service = (health, documentation, metrics)
+    about_service = (health, page, documentation, metrics)
     modules = (*about_jobs, *about_models, rules, *about_messages, *about_access, *about_service)
     routers = [module.router for module in modules]
     for router in routers:

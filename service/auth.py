@@ -30,7 +30,8 @@ _DOCUMENTATION = (
     "openapi.json",
     "openapi.yaml",
 )
-PUBLIC_PATHS = frozenset({"/", "/healthz", "/readyz", *(f"/{path}" for path in _DOCUMENTATION)})
+_PAGE = ("", "page/page.js", "page/page.css", "page/icon.svg", "page/licences.txt")
+PUBLIC_PATHS = frozenset({"/healthz", "/readyz", *(f"/{path}" for path in (*_DOCUMENTATION, *_PAGE))})
 METRICS_PATH = "/metrics"
 ALL_SCOPES = frozenset(KeyScope)
 # Who asks without a key: from this machine, where none is needed, and for what is public.

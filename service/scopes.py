@@ -112,7 +112,7 @@ OF_ALL = frozenset({"get_limits", "get_version"})
 # What sends a mesh and starts a job at once needs both.
 ALSO_NEEDS: Mapping[str, Scope] = {"repair": Scope.UPLOAD}
 # Of the service itself; `service.auth.PUBLIC_PATHS` names those that need no key.
-PUBLIC = frozenset({"healthz", "readyz", "page", "openapi_yaml", "openapi_json", "docs", "docs_asset"})
+PUBLIC = frozenset({"healthz", "readyz", "page", "page_asset", "openapi_yaml", "openapi_json", "docs", "docs_asset"})
 _SCOPE_OF: Mapping[str, Scope] = {name: scope for scope, names in OPERATIONS.items() for name in names}
 
 

@@ -39,9 +39,15 @@ def called_name(call: ast.Call) -> str:
     return call.func.attr if isinstance(call.func, ast.Attribute) else getattr(call.func, "id", "")
 
 
+def is_expectation(call: ast.Call) -> bool:
+    """Whether it is Playwright's way to assert what a browser shows: `expect(locator).to_be_visible()`."""
+    subject = call.func.value if isinstance(call.func, ast.Attribute) else None
+    return isinstance(subject, ast.Call) and called_name(subject) == "expect" and "to_" in called_name(call)
+
+
 def is_assertion(node: ast.AST) -> bool:
     if isinstance(node, ast.Call):
-        return called_name(node) in RAISING or called_name(node).startswith("assert_")
+        return called_name(node) in RAISING or called_name(node).startswith("assert_") or is_expectation(node)
     return isinstance(node, ast.Assert)
 
 
@@ -99,6 +105,7 @@ def test_a_test_without_an_assertion_is_found(source: str) -> None:
         "def test_a(): assert f()",
         "def test_a():\n    with pytest.raises(ValueError): f()",
         "def test_a(): np.testing.assert_allclose(f(), 1)",
+        "def test_a(): expect(page.locator('p')).not_to_be_visible()",
         "def f(): assert 1\ndef g(): f()\ndef test_a(): g()",
         "from tests.waiting import wait_until as wait\ndef test_a(): wait(f)",
     ],

@@ -113,9 +113,3 @@ def test_a_store_that_cannot_be_written_is_not_ready(client: TestClient, break_s
     assert answer.status_code == 503
     assert answer.headers["retry-after"] == "2"
     assert [error["pointer"] for error in answer.json()["errors"]] == ["store"]
-
-
-def test_the_page_says_what_this_is(client: TestClient) -> None:
-    answer = client.get("/")
-    assert answer.headers["content-type"].startswith("text/html")
-    assert "Quadpatch" in answer.text

@@ -1,0 +1,37 @@
+/** What is done with each hole: what a person chose, as rules of a job. */
+import type { HoleRule } from "./api/types";
+
+export const ACTIONS = ["auto", "model", "smooth", "flat", "skip"] as const;
+export type Action = (typeof ACTIONS)[number];
+/** By the ids of holes; one that is missing is left to the automatic rule. */
+export type Choices = ReadonlyMap<number, Action>;
+
+export function withChoice(choices: Choices, id: number, action: Action): Choices {
+  const changed = new Map(choices);
+  if (action === "auto") changed.delete(id);
+  else changed.set(id, action);
+  return changed;
+}
+
+/** One rule for each action, with the ids of its holes. */
+export function rulesOf(choices: Choices): HoleRule[] {
+  const actions = [...new Set(choices.values())].filter((action) => action !== "auto");
+  return actions.map((action) => ({
+    action,
+    ids: [...choices].filter(([, chosen]) => chosen === action).map(([id]) => id),
+  }));
+}
+
+/** What is known of a hole before a repair, in a plan, or after it. */
+export interface HoleRow {
+  id: number;
+  kind: string;
+  diameter: number;
+  perimeter: number;
+  centre: readonly number[] | null;
+  /** A state in words: what would be done, or what was. */
+  note: string;
+  isOpen: boolean;
+  confidence?: number | null;
+  expectedError?: number | null;
+}

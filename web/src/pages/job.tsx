@@ -1,0 +1,129 @@
+/** One job: its stages while it works, then before and after in 3D, each hole with its verdict, and the files. */
+import { useMemo, useState } from "preact/hooks";
+import { post } from "../api/client";
+import { hasEnded, hasResult, useJob } from "../api/following";
+import type { FillReport, HoleReport, Job } from "../api/types";
+import { useAnswer, useTitle } from "../hooks";
+import type { HoleRow } from "../holes";
+import { DropZone } from "../parts/dropzone";
+import { ActionButton, DownloadButton, Facts } from "../parts/forms";
+import { HoleList } from "../parts/hole_list";
+import { FailureNote, Loading, Note, ProblemNote } from "../parts/notes";
+import { Progress } from "../parts/progress";
+import { go } from "../route";
+import { count, duration, time } from "../text/format";
+import { t, tCode } from "../text/text";
+import { Workspace } from "../viewer/workspace";
+import { State } from "./scans";
+
+export function JobPage({ id }: { id: string }) {
+  const { job, problem } = useJob(id);
+  useTitle(job?.mesh_name ?? t("job"));
+  if (problem) return <ProblemNote problem={problem} />;
+  if (!job) return <Loading />;
+  return (
+    <>
+      <h1>{job.mesh_name ?? job.id}</h1>
+      <p><State of={job.state} group="job_state" /> {job.spec.label}</p>
+      {!hasEnded(job) && <Progress job={job} />}
+      {job.error && <FailureNote {...job.error} />}
+      {hasResult(job) && <Downloads job={job} />}
+      {hasResult(job) && (job.spec.task ?? "fill") === "fill" && <Repaired job={job} />}
+      {job.result?.warnings?.map((warning) => <Note key={warning}><span lang="en">{warning}</span></Note>)}
+      <JobFacts job={job} />
+    </>
+  );
+}
+
+function Downloads({ job }: { job: Job }) {
+  const { links } = job;
+  const files: [string | null | undefined, string][] = [
+    [links.result, t("download_result", { format: job.result?.format ?? "" })],
+    [links.html_report, t("download_html_report")],
+    [links.report, t("download_report")],
+    [links.preview, t("download_preview")],
+    [links.closeups, t("download_closeups")],
+  ];
+  return (
+    <div class="actions" role="group" aria-label={t("download")}>
+      {files.map(([path, label]) => path && <DownloadButton key={path} path={path} label={label} />)}
+    </div>
+  );
+}
+
+function Repaired({ job }: { job: Job }) {
+  const report = useAnswer<FillReport>(`/v1/jobs/${job.id}/report`);
+  const [reference, setReference] = useState<string | null>(null);
+  const holes = useMemo(() => (report.value?.holes ?? []).map(row), [report.value]);
+  const unit = report.value?.length_unit;
+  return (
+    <>
+      <ProblemNote problem={report.problem} />
+      <Workspace
+        before={`/v1/meshes/${job.mesh_id}/view`}
+        after={`/v1/jobs/${job.id}/view`}
+        reference={reference}
+        outlines={`/v1/meshes/${job.mesh_id}/outlines`}
+        holes={holes}
+        unit={unit}
+        list={(selected, onSelect) => (
+          <>
+            <h2>{t("holes")}{report.value && ` (${count(holes.length)})`}</h2>
+            {report.value ? <HoleList {...{ holes, unit, selected, onSelect }} /> : <Loading />}
+          </>
+        )}
+      >
+        <section>
+          <h2>{t("reference")}</h2>
+          <p>{t("reference_why")}</p>
+          <DropZone label={t("drop_reference")} isSmall onMesh={setReference} />
+        </section>
+      </Workspace>
+    </>
+  );
+}
+
+function row(hole: HoleReport): HoleRow {
+  const why = hole.code ? `: ${tCode("reason", hole.code)}` : "";
+  return {
+    id: hole.id,
+    kind: hole.kind,
+    diameter: hole.diameter,
+    perimeter: hole.perimeter,
+    centre: hole.centre,
+    note: `${tCode("verdict", hole.verdict)}${why}`,
+    isOpen: hole.verdict === "skipped" || hole.verdict === "refused",
+    confidence: hole.confidence,
+    expectedError: hole.expected_error,
+  };
+}
+
+function JobFacts({ job }: { job: Job }) {
+  const { method } = job.spec;
+  const effort = method?.method === "auto" ? t(`effort_${method.effort ?? "standard"}`) : null;
+  return (
+    <section>
+      <h2>{t("about_job")}</h2>
+      <Facts
+        facts={[
+          [t("job"), <code>{job.id}</code>],
+          [t("task"), tCode("task", job.spec.task ?? "fill")],
+          [t("method"), effort ?? tCode("method", method?.method ?? "auto")],
+          [t("rule"), job.spec.rule ?? "–"],
+          [t("created_at"), time(job.created_at)],
+          [t("finished_at"), time(job.finished_at)],
+          [t("work_time"), job.result?.seconds != null ? duration(job.result.seconds) : "–"],
+        ]}
+      />
+      <div class="actions">
+        <a href={`#/meshes/${job.mesh_id}`}>{t("to_scan")}</a>
+        {hasEnded(job) && (
+          <ActionButton
+            label={t("rerun")}
+            work={async () => go(`/jobs/${(await post<Job>(`/v1/jobs/${job.id}/rerun`)).id}`)}
+          />
+        )}
+      </div>
+    </section>
+  );
+}

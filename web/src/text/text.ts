@@ -1,0 +1,50 @@
+/** Sentences of the page in the language of the reader. */
+import { de } from "./de";
+import { en } from "./en";
+
+export type TextKey = keyof typeof en;
+export type Language = "en" | "de";
+
+const MESSAGES: Record<Language, Record<TextKey, string>> = { en, de };
+const NAME = "quadpatch-language";
+const listeners = new Set<() => void>();
+
+let current: Language = startLanguage();
+
+export function language(): Language {
+  return current;
+}
+
+export function setLanguage(chosen: Language): void {
+  current = chosen;
+  localStorage.setItem(NAME, chosen);
+  document.documentElement.lang = chosen;
+  for (const listener of listeners) listener();
+}
+
+export function onLanguageChange(listener: () => void): () => void {
+  listeners.add(listener);
+  return () => listeners.delete(listener);
+}
+
+/** A sentence; `{name}` in it stands for what `values` has under that name. */
+export function t(key: TextKey, values: Record<string, string | number> = {}): string {
+  return MESSAGES[current][key].replace(/\{(\w+)\}/g, (_, name: string) => String(values[name] ?? `{${name}}`));
+}
+
+/** The sentence of a code of the service, such as a state or a problem; the code where there is none. */
+export function tCode(group: string, code: string): string {
+  const key = `${group}_${code.replaceAll(".", "_")}`;
+  return key in en ? t(key as TextKey) : code.replaceAll("_", " ");
+}
+
+export function hasText(key: string): key is TextKey {
+  return key in en;
+}
+
+function startLanguage(): Language {
+  const chosen = localStorage.getItem(NAME) ?? navigator.language.slice(0, 2);
+  const known: Language = chosen === "de" ? "de" : "en";
+  document.documentElement.lang = known;
+  return known;
+}
