@@ -56,7 +56,7 @@ def check_parts(data: bytes, name: str) -> None:
         kind, message, depth = waiting.pop()
         if depth > MAX_DEPTH:
             raise ModelError(f"{name}: the network is nested over {MAX_DEPTH} messages deep")
-        for number, value in _fields(message, name):
+        for number, value in fields(message, name):
             _check_field(kind, number, value, name)
             child = _CHILDREN[kind].get(number)
             if child in _REFUSED:
@@ -74,7 +74,7 @@ def _check_field(kind: str, number: int, value: int | memoryview, name: str) -> 
         raise ModelError(f"{name}: weights of the network lie outside of its file")
 
 
-def _fields(message: memoryview, name: str) -> Iterator[tuple[int, int | memoryview]]:
+def fields(message: memoryview, name: str) -> Iterator[tuple[int, int | memoryview]]:
     """Yield number and value of each field; fixed-width values, which nothing here needs, come as 0."""
     start = 0
     while start < len(message):

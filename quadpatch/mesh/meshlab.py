@@ -120,11 +120,14 @@ class CollapseOptions:
         Of the border against the surface.
     keeps_topology : bool
         Whether collapses that close a handle or a hole are left out.
+    keeps_border : bool
+        Whether vertices on the border stay where they are.
     """
 
     quality: float = 0.3
     border_weight: float = 1.0
     keeps_topology: bool = False
+    keeps_border: bool = False
 
 
 def collapse_edges(mesh: TriangleMesh, n_triangles: int, options: CollapseOptions | None = None) -> TriangleMesh:
@@ -144,6 +147,7 @@ def collapse_edges(mesh: TriangleMesh, n_triangles: int, options: CollapseOption
         boundaryweight=options.border_weight,
         preservenormal=True,
         preservetopology=options.keeps_topology,
+        preserveboundary=options.keeps_border,
     )
     return TriangleMesh(vertices, triangles)
 

@@ -17,7 +17,7 @@ from quadpatch.formats.scene_parts import PartFill
 from quadpatch.mesh.weld import first_of_equal
 from quadpatch.types import BoolArray, FloatArray, IntArray, Triangles, Vertices
 
-_COMPONENTS = {"f4": 5126, "u4": 5125}
+_COMPONENTS = {"f4": 5126, "u4": 5125, "u2": 5123, "i1": 5120}
 _TYPES = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4"}
 _ARRAY_BUFFER, _ELEMENT_ARRAY_BUFFER = 34962, 34963
 
@@ -74,22 +74,38 @@ class Store:
         return len(self.document[name]) - 1
 
     def add_array(self, values: NDArray[Any], code: str, is_index: bool = False) -> int:
-        """Append an array (n,) or (n, k) as `f4` or `u4`; returns the number of its accessor.
+        """Append an array (n,) or (n, k) as `f4`, `u4` or `u2`; returns the number of its accessor.
 
         The document states the range of each array, and JSON knows no NaN and no infinity: NaN becomes 0, and what
         float32 can't hold becomes its largest number.
         """
         table = _finite(values.reshape(len(values), -1)).astype("<" + code)
         target = _ELEMENT_ARRAY_BUFFER if is_index else _ARRAY_BUFFER
+        return self._add_accessor(table, code, self.add_bytes(table.tobytes(), {"target": target}), {})
+
+    def add_fractions(self, values: FloatArray, code: str) -> int:
+        """Append an array (n, 3) or (n, 4) from -1 to 1, or from 0 to 1, as normalised `i1` or `u2`.
+
+        Rows are padded to a multiple of four bytes, as vertex attributes have to be.
+        """
+        table = np.rint(np.clip(values, -1.0, 1.0) * np.iinfo(code).max).astype("<" + code)
+        row = table.shape[1] * table.itemsize
+        padded = np.zeros((len(table), (row + 3) // 4 * 4), np.uint8)
+        padded[:, :row] = table.view(np.uint8).reshape(len(table), row)
+        view = self.add_bytes(padded.tobytes(), {"target": _ARRAY_BUFFER, "byteStride": padded.shape[1]})
+        return self._add_accessor(table, code, view, {"normalized": True})
+
+    def _add_accessor(self, table: NDArray[Any], code: str, view: int, rest: Mapping[str, Any]) -> int:
         return self.add(
             "accessors",
             {
-                "bufferView": self.add_bytes(table.tobytes(), {"target": target}),
+                "bufferView": view,
                 "componentType": _COMPONENTS[code],
                 "count": len(table),
                 "type": _TYPES[table.shape[1]],
                 "min": table.min(axis=0).tolist(),
                 "max": table.max(axis=0).tolist(),
+                **rest,
             },
         )
 
