@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from dispatcher.unreferenced_objects import GRACE, SweepResult, sweep_objects
+from dispatcher.unreferenced_objects import CONTENT_PREFIXES, GRACE, SweepResult, sweep_objects
 from jobkit.database.clock import utc_now
 from jobkit.database.session import Database
 from jobkit.errors import StoreUnavailableError
@@ -19,6 +19,7 @@ from jobkit.storage.open import open_store
 from jobkit.storage.removals import START_S, assure, claim, release
 from jobkit.uploads.parts import PART_PREFIX, UploadPart
 from jobkit.uploads.uploads import NewUpload, Uploads
+from jobkit.views import VIEW_PREFIX, ViewOrder, Views
 from quadpatch_client.schema import Job, Mesh, UploadKind
 from tests.jobkit.fixtures import AgingStore, KilledError, age_rows, fail, finish, keys_in, put, upload
 
@@ -61,6 +62,20 @@ def test_what_no_row_names_goes_after_a_day_and_not_before(
     aging.wait(2 * SOON)
     assert sweep(database, aging) == SweepResult(3, sum(orphan.size_bytes for orphan in orphans))
     assert keys_in(store) == before
+
+
+def test_views_go_a_day_after_what_they_show(
+    database: Database, store: ObjectStore, aging: AgingStore, mesh: Mesh
+) -> None:
+    views = Views(database)
+    stored = put(aging, b"glTF", VIEW_PREFIX)
+    views.publish(views.start(views.order(ViewOrder("outlines", mesh_id=mesh.id)).id, "w", 60), stored)
+    aging.wait(GRACE + SOON)
+    assert sweep(database, aging) == SweepResult()
+    delete_mesh(database, mesh.id)
+    anchor(database, aging)
+    assert sweep(database, aging).objects == 2
+    assert stored.key not in keys_in(store)
 
 
 def test_files_of_attempts_that_published_nothing_go(
@@ -106,7 +121,7 @@ def test_bytes_that_come_again_before_the_last_look_are_kept(database: Database,
     arrived: list[str] = []
 
     def send_again(prefix: str) -> None:
-        if prefix not in ("results", "meshes", "models"):
+        if prefix not in ("results", *CONTENT_PREFIXES):
             arrived.append(put(aging, b"ply\n").key)
 
     aging.on_list = send_again
