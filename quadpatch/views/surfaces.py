@@ -188,6 +188,8 @@ def _with_distance(part: Part, reference: TriangleMesh) -> Part:
 
 def _hole_values(surface: _Surface, reduced: Reduction) -> dict[str, FloatArray]:
     """Give each vertex what the report says of its hole; `UNKNOWN` where it says nothing."""
+    if not len(reduced.invented.triangles):
+        return {}
     position = np.cumsum(surface.is_invented) - 1
     hole = np.full(len(reduced.invented.vertices), int(UNKNOWN))
     hole[reduced.invented.triangles] = surface.invented_hole[position[reduced.invented_source]][:, None]
