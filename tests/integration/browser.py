@@ -1,6 +1,7 @@
 """A headless Chromium with WebGL in software, and what the tests of the page do in it."""
 
 import base64
+import io
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -10,7 +11,10 @@ from typing import Any, cast
 from urllib.parse import urlsplit
 
 import httpx
+import numpy as np
 import pytest
+from numpy.typing import NDArray
+from PIL import Image
 from playwright.sync_api import Browser, Locator, Page, expect, sync_playwright
 
 from tests.waiting import GUARD_S, wait_until
@@ -25,6 +29,14 @@ _DROP = """([area, name, text]) => {
     dataTransfer.items.add(new File([bytes], name));
     for (const type of ["dragover", "drop"])
         area.dispatchEvent(new DragEvent(type, { dataTransfer, bubbles: true, cancelable: true }));
+}"""
+# Through the object model: the page's policy takes no style sheet from elsewhere.
+_BARE = """(canvas, isBare) => {
+    const area = canvas.parentElement;
+    const set = (element, name, value) =>
+        isBare ? element.style.setProperty(name, value, "important") : element.style.removeProperty(name);
+    set(area, "background", "#00ff00");
+    for (const other of area.children) if (other !== canvas) set(other, "visibility", "hidden");
 }"""
 _AXE = "() => axe.run().then(({violations}) => violations.map(({id, nodes}) => [id, nodes.map((n) => n.html)]))"
 
@@ -51,6 +63,14 @@ class Visit:
         # As a debugger would, since the page's own policy keeps other scripts out.
         self.page.evaluate(AXE.read_text("utf-8") + ";0")
         return cast(list[Any], self.page.evaluate(_AXE))
+
+    def picture(self) -> NDArray[np.uint8]:
+        """The 3D view as (height, width, 3); where nothing is drawn it is pure green."""
+        canvas = self.page.locator("canvas")
+        canvas.evaluate(_BARE, True)
+        png = canvas.screenshot()
+        canvas.evaluate(_BARE, False)
+        return np.asarray(Image.open(io.BytesIO(png)).convert("RGB"))
 
     def hosts(self) -> set[str]:
         """Where requests went to, the page's own memory aside."""

@@ -8,11 +8,13 @@ from pathlib import Path
 import numpy as np
 import psutil
 import pytest
+from playwright.sync_api import Browser
 
 from onebox.demo import running_stack
 from quadpatch.types import Triangles, Vertices
 from quadpatch_client.schema import Job, JobSpec
 from quadpatch_client.sdk import Client
+from tests.integration.browser import Service, Visit, running_chromium, visiting
 
 # Short leases, so that the loss of a worker shows within seconds.
 FAST = {
@@ -84,6 +86,28 @@ def run_stack(
 def local_stack(run_stack: Callable[..., AbstractContextManager[RunningStack]]) -> Iterator[RunningStack]:
     with run_stack() as stack:
         yield stack
+
+
+@pytest.fixture(scope="module")
+def chromium() -> Iterator[Browser]:
+    with running_chromium() as browser:
+        yield browser
+
+
+@pytest.fixture
+def visit(chromium: Browser, local_stack: RunningStack) -> Iterator[Visit]:
+    """A window in a browser; in the end it has asked no other machine, and nothing has failed in it."""
+    with visiting(chromium, local_stack.url) as visit:
+        yield visit
+        assert visit.hosts() <= {local_stack.url.removeprefix("http://")}
+        assert visit.errors == []
+
+
+@pytest.fixture
+def api(local_stack: RunningStack) -> Iterator[Service]:
+    service = Service(local_stack.url)
+    with service.http:
+        yield service
 
 
 class FreshClient(Client):

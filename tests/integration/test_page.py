@@ -2,36 +2,15 @@
 
 import json
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from contextlib import AbstractContextManager
 from pathlib import Path
 
 import pytest
 from playwright.sync_api import Browser, Request, Route, expect
 
-from tests.integration.browser import AXE, Service, Visit, running_chromium, visiting
+from tests.integration.browser import AXE, Service, Visit, visiting
 from tests.integration.conftest import RunningStack, ply_bytes, punched_relief
-
-
-@pytest.fixture(scope="module")
-def chromium() -> Iterator[Browser]:
-    with running_chromium() as browser:
-        yield browser
-
-
-@pytest.fixture
-def visit(chromium: Browser, local_stack: RunningStack) -> Iterator[Visit]:
-    with visiting(chromium, local_stack.url) as visit:
-        yield visit
-        assert visit.hosts() <= {local_stack.url.removeprefix("http://")}
-        assert visit.errors == []
-
-
-@pytest.fixture
-def api(local_stack: RunningStack) -> Iterator[Service]:
-    service = Service(local_stack.url)
-    with service.http:
-        yield service
 
 
 def relief(n: int = 40) -> bytes:

@@ -1,7 +1,7 @@
 /** All holes as a table: a number flies to its hole; before a repair each has a choice, after it a verdict. */
 import { useEffect, useRef, useState } from "preact/hooks";
 import { ACTIONS, type Action, type Choices, type HoleRow } from "../holes";
-import { count, length, percent, place } from "../text/format";
+import { coordinates, count, number, percent, unitName } from "../text/format";
 import { t, tCode } from "../text/text";
 
 // A browser is slow with thousands of rows.
@@ -17,14 +17,14 @@ interface Props {
 }
 
 export function HoleList(props: Props) {
-  const { holes, selected } = props;
+  const { holes, selected, unit } = props;
   const [nShown, setShown] = useState(STEP);
   const body = useRef<HTMLTableSectionElement>(null);
-  const place = holes.findIndex((hole) => hole.id === selected);
+  const at = holes.findIndex((hole) => hole.id === selected);
   useEffect(() => {
-    if (place >= nShown) setShown(place + STEP);
+    if (at >= nShown) setShown(at + STEP);
     body.current?.querySelector("tr.selected")?.scrollIntoView({ block: "nearest" });
-  }, [place, nShown]);
+  }, [at, nShown]);
   if (holes.length === 0) return <p>{t("no_holes")}</p>;
   const isReport = holes.some((hole) => hole.confidence !== undefined);
   return (
@@ -34,11 +34,11 @@ export function HoleList(props: Props) {
         <thead>
           <tr>
             <th scope="col">{t("hole")}</th>
-            <th scope="col">{t("diameter")}</th>
+            <th scope="col">{t("diameter")} ({unitName(unit)})</th>
             <th scope="col">{props.onChoose ? t("choice") : t("verdict")}</th>
             {isReport && <th scope="col">{t("confidence")}</th>}
-            {isReport && <th scope="col">{t("expected_error")}</th>}
-            <th scope="col">{t("place")}</th>
+            {isReport && <th scope="col">{t("expected_error")} ({unitName(unit)})</th>}
+            <th scope="col">{t("place")} ({unitName(unit)})</th>
           </tr>
         </thead>
         <tbody ref={body}>
@@ -56,7 +56,7 @@ export function HoleList(props: Props) {
   );
 }
 
-function Row({ hole, unit, selected, onSelect, choices, onChoose, isReport }: Props & { hole: HoleRow; isReport: boolean }) {
+function Row({ hole, selected, onSelect, choices, onChoose, isReport }: Props & { hole: HoleRow; isReport: boolean }) {
   const isSelected = hole.id === selected;
   return (
     <tr class={isSelected ? "selected" : ""} data-hole={hole.id}>
@@ -72,7 +72,7 @@ function Row({ hole, unit, selected, onSelect, choices, onChoose, isReport }: Pr
         </button>{" "}
         <small>{tCode("kind", hole.kind)}</small>
       </th>
-      <td class="number">{length(hole.diameter, unit)}</td>
+      <td class="number">{number(hole.diameter)}</td>
       <td>
         {onChoose && (
           <select
@@ -86,8 +86,8 @@ function Row({ hole, unit, selected, onSelect, choices, onChoose, isReport }: Pr
         <small class={hole.isOpen ? "open" : "closed"}>{hole.note}</small>
       </td>
       {isReport && <td class="number">{percent(hole.confidence)}</td>}
-      {isReport && <td class="number">{length(hole.expectedError, unit)}</td>}
-      <td class="place">{place(hole.centre, unit)}</td>
+      {isReport && <td class="number">{hole.expectedError != null ? number(hole.expectedError, 2) : "–"}</td>}
+      <td class="place">{coordinates(hole.centre)}</td>
     </tr>
   );
 }

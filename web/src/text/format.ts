@@ -27,9 +27,8 @@ export function length(value: number | null | undefined, unit: string | null | u
   return value === null || value === undefined ? "–" : `${number(value)} ${unitName(unit)}`;
 }
 
-export function place(point: readonly number[] | null | undefined, unit: string | null | undefined): string {
-  if (!point) return "–";
-  return `${point.map((value) => number(value, 4)).join(" / ")} ${unitName(unit)}`;
+export function coordinates(point: readonly number[] | null): string {
+  return point?.map((value) => number(value, 4)).join(" / ") ?? "–";
 }
 
 export function percent(share: number | null | undefined): string {

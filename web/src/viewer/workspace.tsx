@@ -2,6 +2,7 @@
 import type { ComponentChildren } from "preact";
 import { useState } from "preact/hooks";
 import type { Action, Choices, HoleRow } from "../holes";
+import { Viewer } from "./viewer";
 
 /** Keys that choose what is done with the selected hole. */
 const CHOICES: Record<string, Action> = { f: "model", l: "skip", s: "smooth", x: "flat", a: "auto" };
@@ -22,7 +23,9 @@ export function Workspace(props: {
 }) {
   const { holes } = props;
   const [selected, setSelected] = useState<number | null>(null);
-  const select = (id: number) => setSelected(id);
+  // Selected again, it is flown to again.
+  const [nSelections, setSelections] = useState(0);
+  const select = (id: number) => (setSelected(id), setSelections((n) => n + 1));
   const step = (by: number) => {
     const at = holes.findIndex((hole) => hole.id === selected);
     const next = holes[at < 0 ? 0 : (at + by + holes.length) % holes.length];
@@ -41,6 +44,7 @@ export function Workspace(props: {
   };
   return (
     <div class="workspace" onKeyDown={onKeyDown}>
+      <Viewer {...props} selected={selected} nSelections={nSelections} onSelect={select} />
       <div class="side">
         {props.list(selected, select)}
         {props.children}
