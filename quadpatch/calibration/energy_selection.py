@@ -12,18 +12,14 @@ from dataclasses import dataclass, replace
 from math import erfc, sqrt
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from quadpatch.calibration.calibration_set import ROUNDING, CalibrationSet, choose_energy, error_per_hole
-from quadpatch.calibration.synthetic_holes import new_loops
-from quadpatch.filling.fairing import Energy, triangles_around
+from quadpatch.filling.fairing import Energy
 from quadpatch.filling.fill import ClosedMesh, close_holes, fair_holes
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.filling.parts import surroundings
-from quadpatch.mesh.averages import mean_by
-from quadpatch.mesh.distance import distance_to_mesh
+from quadpatch.filling.rim_residuals import rim_residuals
 from quadpatch.mesh.loop_diameter import loop_diameter
-from quadpatch.mesh.measures import used_vertices
 from quadpatch.processes import ProcessPool
 from quadpatch.progress import Fraction, no_fraction, part_of
 from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh
@@ -80,19 +76,22 @@ class EnergyBlend:
             fill = fair_holes(close_holes(mesh, loops), self.energies[0])
             return replace(fill, energy_weights=np.ones((len(loops), 1)))
         is_wide = np.array([loop_diameter(mesh.vertices[loop]) for loop in loops]) > self.widest
-        misses = np.full((len(loops), len(self.energies)), np.nan)
+        misses, closed = np.full((len(loops), len(self.energies)), np.nan), close_holes(mesh, loops)
         if self.belief:
-            misses = leave_one_ring_out(mesh, loops, self.energies, part_of(reach, 0.0, 0.5))
-        return self.fill_weighted(mesh, loops, self.weights(misses, is_wide), part_of(reach, 0.5, 1.0))
+            misses = rim_residuals(closed.coarse(), self.energies, part_of(reach, 0.0, 0.5))
+        return self._fair_weighted(closed, self.weights(misses, is_wide), part_of(reach, 0.5, 1.0))
 
     def fill_weighted(
         self, mesh: TriangleMesh, loops: list[IntArray], weights: FloatArray, reach: Fraction = no_fraction
     ) -> FilledMesh:
         """Close boundary loops, by weights (n_loops, n_energies) whose rows sum to 1."""
+        return self._fair_weighted(close_holes(mesh, loops), weights, reach)
+
+    def _fair_weighted(self, closed: ClosedMesh, weights: FloatArray, reach: Fraction) -> FilledMesh:
         weights = np.where(weights >= _LEAST_WEIGHT, weights, 0.0)
         weights /= weights.sum(axis=1, keepdims=True)
         used = np.flatnonzero(weights.any(axis=0)).tolist()
-        fills = _faired(close_holes(mesh, loops), [self.energies[i] for i in used], reach)
+        fills = _faired(closed, [self.energies[i] for i in used], reach)
         return replace(_blended(fills, weights[:, used]), energy_weights=weights)
 
     def fair(self, closed: ClosedMesh, weights: FloatArray) -> FilledMesh:
@@ -188,7 +187,7 @@ def learn_energy_blend(
 
 
 class _Residuals:
-    """What `leave_one_ring_out` finds at calibration holes: a helper looks for it at once, by all energies.
+    """What `rim_residuals` finds at calibration holes: a helper looks for it at once, by all energies.
 
     It is cheaper to wait until it is known which energies are worth it, and that is done where there is no helper.
     """
@@ -198,14 +197,14 @@ class _Residuals:
         self._found: Future[FloatArray] | None = None
         if pool.is_shared:
             region, loops = surroundings(calibration.opened, calibration.loops)
-            self._found = pool.submit(leave_one_ring_out, region.mesh, loops, energies)
+            self._found = pool.submit(_rim_residuals_of, region.mesh, loops, energies)
 
     def of(self, chosen: list[int], reach: Fraction) -> FloatArray:
         """Give the residuals (n_holes, k) of some energies (k,)."""
         if self._found is not None:
             return self._found.result()[:, chosen]
         energies = [self._energies[i] for i in chosen]
-        return leave_one_ring_out(self._calibration.opened, self._calibration.loops, energies, reach)
+        return rim_residuals(self._calibration.closed, energies, reach)
 
 
 def _without_weighing(blend: EnergyBlend, fills: list[FilledMesh]) -> tuple[EnergyBlend, FilledMesh]:
@@ -231,54 +230,9 @@ def _faired(closed: ClosedMesh, energies: Sequence[Energy], reach: Fraction) -> 
     return fills
 
 
-def leave_one_ring_out(
-    mesh: TriangleMesh, loops: list[IntArray], energies: Sequence[Energy], reach: Fraction = no_fraction
-) -> FloatArray:
-    """Open holes one ring wider, close them by each energy, and measure how far it misses the vertices that were there.
-
-    Parameters
-    ----------
-    mesh : TriangleMesh
-        With the holes open.
-    loops : list of (n_loop,) int64
-    energies : sequence of Energy
-    reach : callable
-        Told the done fraction.
-
-    Returns
-    -------
-    (n_holes, n_energies) float64
-        Mean distance, in mesh units; NaN for a hole that can't be opened wider without running into something else.
-    """
-    rim = np.concatenate(loops)
-    hole = np.repeat(np.arange(len(loops)), [len(loop) for loop in loops])
-    n_vertices = len(mesh.vertices)
-    ring = np.zeros(len(mesh.triangles), bool)
-    ring[triangles_around(mesh.triangles, rim, n_vertices, 1)] = True
-    remaining = mesh.triangles[~ring]
-    removed = np.flatnonzero(used_vertices(mesh.triangles, n_vertices) & ~used_vertices(remaining, n_vertices))
-    rim_tree = cKDTree(mesh.vertices[rim])
-    wider_loops = new_loops(mesh, ring)
-    closed = close_holes(TriangleMesh(mesh.vertices, remaining), wider_loops, graded=True)
-    opened = np.zeros(len(loops), bool)
-    for number, loop in enumerate(wider_loops):
-        if number not in closed.unfilled:
-            opened[hole[rim_tree.query(mesh.vertices[loop])[1]]] = True
-    hole_of_removed = hole[rim_tree.query(mesh.vertices[removed])[1]]
-    misses = np.full((len(loops), len(energies)), np.nan)
-    has_residual = np.zeros(len(loops), bool)
-    has_residual[hole_of_removed] = True
-    has_residual &= opened
-    # A rim that is joined to an island opens into two loops, which say nothing about the ring between them.
-    has_residual &= np.array([len(np.unique(loop)) == len(loop) for loop in loops])
-    if has_residual.any():
-        for number, energy in enumerate(energies):
-            filled = fair_holes(closed, energy)
-            new = TriangleMesh(filled.mesh.vertices, filled.mesh.triangles[filled.n_measured_triangles :])
-            distance = distance_to_mesh(mesh.vertices[removed], new)
-            misses[has_residual, number] = mean_by(hole_of_removed, distance, len(loops))[has_residual]
-            reach((number + 1) / len(energies))
-    return misses
+def _rim_residuals_of(mesh: TriangleMesh, loops: list[IntArray], energies: Sequence[Energy]) -> FloatArray:
+    """Find them in another process: closing the holes once more is cheaper than sending their equations."""
+    return rim_residuals(close_holes(mesh, loops, graded=True), energies)
 
 
 def _blended(fills: list[FilledMesh], weights: FloatArray) -> FilledMesh:

@@ -64,6 +64,11 @@ class ClosedMesh:
         """Number of loops."""
         return len(self.disagreement)
 
+    def coarse(self) -> "ClosedMesh":
+        """Close them with fewer vertices far from the rims, where holes are large for their edges."""
+        grading = self.near.grading
+        return self if grading is self.plate.grading else close_rims(self.near, grading)
+
     @cached_property
     def filled(self) -> FilledMesh:
         """The mesh, filled by the plate; other energies move its new vertices."""
@@ -82,9 +87,13 @@ def close_holes(mesh: TriangleMesh, loops: list[IntArray], *, graded: bool = Fal
         Fewer vertices far from the rims: for fills that are measured and thrown away.
     """
     near = RimNeighbourhood.of(mesh, loops).straightened()
-    patch, unfilled = near.triangulate()
-    if graded:
-        patch = replace(patch, grading=Grading.of(patch.spacing, patch.vertices, near.loops))
+    return close_rims(near, near.grading if graded else None)
+
+
+def close_rims(near: RimNeighbourhood, grading: Grading | None = None) -> ClosedMesh:
+    """Close holes, of which the surroundings are known, as `close_holes` does."""
+    patch, unfilled = near.triangulation
+    patch = replace(patch, grading=grading)
     # A first, crumpled fairing; its bulge makes room for more vertices, and its shape better weights.
     patch = fair_refined(refine(patch, near.edges), near.adjacent_triangles, THIN_PLATE, uniform=True)
     patch = relax(refine(patch, near.edges), near.adjacent_triangles, near.edges)
@@ -94,7 +103,7 @@ def close_holes(mesh: TriangleMesh, loops: list[IntArray], *, graded: bool = Fal
     equations = equations_of(plate, near.adjacent_triangles, equations.connectivity)
     # Both on the same shape: else their distance is that from a shape which has not settled.
     both = (equations.minimise(energy) for energy in (THIN_PLATE, ALTERNATIVE_ENERGY))
-    disagreement = _mean_by_hole(plate, length(np.subtract(*both)), len(loops))
+    disagreement = _mean_by_hole(plate, length(np.subtract(*both)), len(near.loops))
     return ClosedMesh(near, plate, equations, disagreement, near.rim_variation(), unfilled)
 
 
@@ -115,7 +124,7 @@ def close_flat(mesh: TriangleMesh, loops: list[IntArray]) -> FilledMesh:
         Its disagreement and rim variation are NaN: nothing is known of its error.
     """
     near = RimNeighbourhood.of(mesh, loops).straightened()
-    patch, unfilled = near.triangulate()
+    patch, unfilled = near.triangulation
     return near.filled(near.with_flat_corners(refine(patch, near.edges)), unfilled)
 
 
@@ -186,11 +195,11 @@ def equations_of(
     """
     if connectivity is None:
         connectivity = Connectivity(np.concatenate([adjacent_triangles, patch.triangles]), patch.is_new)
-    unit_area = None if uniform else _uniform_area(patch)
-    return FairingEquations(patch.vertices, connectivity, uniform=uniform, unit_area=unit_area)
+    unit = None if uniform else unit_area(patch)
+    return FairingEquations(patch.vertices, connectivity, uniform=uniform, unit_area=unit)
 
 
-def _uniform_area(patch: Refined) -> float | None:
+def unit_area(patch: Refined) -> float | None:
     """Estimate the mean area at the new vertices that a graded patch would have were it uniform, in mesh units squared.
 
     The weights of an energy depend on it: so they mean the same with and without grading.

@@ -2,12 +2,13 @@
 
 from collections import Counter
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 
 from quadpatch.filling.fairing import triangles_around
 from quadpatch.filling.filled_mesh import FilledMesh
-from quadpatch.filling.refinement import Refined
+from quadpatch.filling.refinement import Grading, Refined
 from quadpatch.filling.triangulation import EdgeSet, Forbidden, triangulate_loops
 from quadpatch.mesh.intersections import LEAST_HEIGHT, heights
 from quadpatch.mesh.loops import cut_at, laid_out
@@ -118,6 +119,16 @@ class RimNeighbourhood:
             triangles=np.concatenate([patch.triangles[rest], np.array(triangles, np.int64).reshape(-1, 3)]),
             hole=np.concatenate([patch.hole[rest], np.array(hole, np.int64)]),
         )
+
+    @cached_property
+    def triangulation(self) -> tuple[Refined, list[int]]:
+        """All loops triangulated as `triangulate` does, with no edge that exists already."""
+        return self.triangulate()
+
+    @cached_property
+    def grading(self) -> Grading | None:
+        """How fills may be graded, see `quadpatch.filling.refinement.Grading`."""
+        return Grading.of(self.triangulation[0].spacing, self.vertices, self.loops)
 
     def triangulate(self, forbidden: Forbidden | None = None) -> tuple[Refined, list[int]]:
         """Triangulate all loops, without new vertices.
