@@ -15,7 +15,7 @@ import numpy as np
 
 from quadpatch.calibration.calibration_set import ROUNDING, CalibrationSet, choose_energy, error_per_hole
 from quadpatch.filling.fairing import Energy
-from quadpatch.filling.fill import ClosedMesh, close_holes, fair_holes
+from quadpatch.filling.fill import ClosedMesh, close_holes, fair_by_each, fair_holes
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.filling.parts import surroundings
 from quadpatch.filling.rim_residuals import rim_residuals
@@ -91,7 +91,7 @@ class EnergyBlend:
         weights = np.where(weights >= _LEAST_WEIGHT, weights, 0.0)
         weights /= weights.sum(axis=1, keepdims=True)
         used = np.flatnonzero(weights.any(axis=0)).tolist()
-        fills = _faired(closed, [self.energies[i] for i in used], reach)
+        fills = fair_by_each(closed, [self.energies[i] for i in used], weights[:, used], reach)
         return replace(_blended(fills, weights[:, used]), energy_weights=weights)
 
     def fair(self, closed: ClosedMesh, weights: FloatArray) -> FilledMesh:
@@ -222,7 +222,7 @@ def _without_weighing(blend: EnergyBlend, fills: list[FilledMesh]) -> tuple[Ener
 
 
 def _faired(closed: ClosedMesh, energies: Sequence[Energy], reach: Fraction) -> list[FilledMesh]:
-    """Fair holes by each energy."""
+    """Fair holes by each energy alone."""
     fills = []
     for energy in energies:
         fills.append(fair_holes(closed, energy))

@@ -3,6 +3,7 @@
 It is the baseline of learned fills, and has the vertices that they displace.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -15,7 +16,8 @@ from quadpatch.filling.refinement import Grading, Refined, refine, relax
 from quadpatch.filling.rim_neighbourhood import RimNeighbourhood
 from quadpatch.mesh.averages import mean_by
 from quadpatch.mesh.normals import area_vectors, length, vertex_areas
-from quadpatch.types import FloatArray, IntArray, TriangleMesh, Triangles
+from quadpatch.progress import Fraction, no_fraction
+from quadpatch.types import FloatArray, IntArray, TriangleMesh, Triangles, Vertices
 
 # What the thin plate is compared with to see how far two sensible answers lie apart.
 ALTERNATIVE_ENERGY = Energy(plate=1.0, variation=0.4)
@@ -136,31 +138,54 @@ def fair_holes(closed: ClosedMesh, energy: Energy) -> FilledMesh:
     FilledMesh
         The input's vertices and triangles are its bit-exact prefix.
     """
-    vertices = _fair_patch(closed, energy).vertices[closed.plate.n_measured :]
-    return closed.filled.with_vertices(vertices + closed.near.centre)
+    return fair_by_each(closed, [energy], np.ones((closed.n_holes, 1)))[0]
 
 
-def _fair_patch(closed: ClosedMesh, energy: Energy) -> Refined:
-    """Fair twice, since the weights depend on the shape."""
-    plate, adjacent_triangles, n_holes = closed.plate, closed.near.adjacent_triangles, closed.n_holes
-    first = replace(plate, vertices=closed.equations.minimise(energy))
-    second = equations_of(first, adjacent_triangles, closed.equations.connectivity)
-    faired = replace(plate, vertices=second.minimise(energy))
+def fair_by_each(
+    closed: ClosedMesh, energies: Sequence[Energy], weights: FloatArray, reach: Fraction = no_fraction
+) -> list[FilledMesh]:
+    """Fair all holes by each energy: twice, since the equations depend on the shape.
+
+    The shape of the second time is the mean of the first fills, whose equations serve all energies.
+
+    Parameters
+    ----------
+    closed : ClosedMesh
+    energies : sequence of Energy
+    weights : (n_holes, n_energies) float64
+        Shares of the fills in that mean; rows sum to 1.
+    reach : callable
+        Told the done fraction.
+    """
+    plate, n = closed.plate, closed.plate.n_measured
+    of_new = weights[closed.filled.vertex_hole]
+    shape = plate.vertices.copy()
+    shape[n:] = 0.0
+    for number, energy in enumerate(energies):
+        shape[n:] += of_new[:, number, None] * _without_overshoot(closed, closed.equations.minimise(energy))[n:]
+        reach(0.5 * (number + 1) / len(energies))
+    equations = equations_of(
+        replace(plate, vertices=shape), closed.near.adjacent_triangles, closed.equations.connectivity
+    )
+    fills = []
+    for energy in energies:
+        vertices = _without_overshoot(closed, equations.minimise(energy))[n:]
+        fills.append(closed.filled.with_vertices(vertices + closed.near.centre))
+        reach(0.5 + 0.5 * len(fills) / len(energies))
+    return fills
+
+
+def _without_overshoot(closed: ClosedMesh, vertices: Vertices) -> Vertices:
+    """Take the thin plate where curvature that is carried on from a ragged rim runs away."""
+    plate, n_holes = closed.plate, closed.n_holes
     hole = _hole_of_new(plate)
     new = hole >= 0
     furthest = np.zeros(n_holes)
-    np.maximum.at(furthest, hole[new], _distances(faired, plate)[new])
-    # Curvature carried on from a ragged rim can overshoot; such a hole takes the thin plate.
+    np.maximum.at(furthest, hole[new], np.linalg.norm(vertices - plate.vertices, axis=1)[new])
     runaway = furthest > OVERSHOOT_LIMIT * rim_diagonals(
         plate.vertices, plate.triangles, plate.hole, plate.n_measured, n_holes
     )
-    vertices = np.where((new & runaway[hole])[:, None], plate.vertices, faired.vertices)
-    return replace(faired, vertices=vertices)
-
-
-def _distances(one: Refined, other: Refined) -> FloatArray:
-    """Distance (n,) between the places of every vertex."""
-    return np.asarray(np.linalg.norm(one.vertices - other.vertices, axis=1))
+    return np.where((new & runaway[hole])[:, None], plate.vertices, vertices)
 
 
 def _hole_of_new(patch: Refined) -> IntArray:
