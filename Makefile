@@ -33,7 +33,7 @@ web: $(WEB_READY)         ## check the types of the page, and build it anew into
 	@PATH="$(abspath $(BIN)):$$PATH" npm --prefix web --silent run check
 	@PATH="$(abspath $(BIN)):$$PATH" npm --prefix web --silent run build
 
-demo: $(READY)            ## repair a real scan over HTTP; results land in demo/
+demo: $(READY)            ## repair a raw scan and a relief over HTTP; results land in demo/
 	@$(BIN)/python -m onebox demo
 
 serve: $(READY)           ## a local stack on http://127.0.0.1:8000 until Ctrl-C

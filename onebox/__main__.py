@@ -46,11 +46,18 @@ def serve(
 
 @app.command()
 def demo(
-    folder: Annotated[Path, typer.Option(help="Where to leave the result.")] = Path("demo"),
+    folder: Annotated[Path, typer.Option(help="Where to leave the results.")] = Path("demo"),
+    stay: Annotated[
+        bool | None,
+        typer.Option(
+            help="Open the page in the browser at the end, and serve it until Ctrl-C. Default: on a terminal.",
+            show_default=False,
+        ),
+    ] = None,
 ) -> None:
-    """Repair a real scan over HTTP: needs nothing but this installation, and a minute."""
+    """Repair a real scan and a relief over HTTP: needs nothing but this installation, and a minute."""
     try:
-        run_demo(folder)
+        run_demo(folder, stays=sys.stdout.isatty() and sys.stdin.isatty() if stay is None else stay)
     except OneBoxError as error:
         _fail(error)
     except KeyboardInterrupt:

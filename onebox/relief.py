@@ -1,29 +1,23 @@
-"""Draw what learning adds: a procedural relief with holes, filled by geometry alone and by a dictionary of the relief.
+"""A relief with holes whose surface is known: made by code, to show what learning adds.
 
-    python -m benchmarks.learned_picture docs/images/learned.png
+It is a section of a gyroid on irregular vertices, so that no hole has a twin.
 
-The relief is a section of a gyroid on irregular vertices; each fill's caption has its mean distance from the surface
-that was cut away.
+Tested in `tests/onebox/test_relief.py`.
 """
 
-import sys
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
-from quadpatch.inpainters.dictionary import SelfDictionary
-from quadpatch.inpainters.inpainter import Inpainter
 from quadpatch.mesh.distance import distance_to_mesh
 from quadpatch.mesh.raycast import RayScene
-from quadpatch.options import RepairOptions
 from quadpatch.preview.camera import view_of
 from quadpatch.preview.pair import TINT
 from quadpatch.preview.parts import part_of
 from quadpatch.preview.png import to_pixels, write_png
 from quadpatch.preview.shading import CLAY, Clay
-from quadpatch.recipes.default import inpaint
-from quadpatch.recipes.result import Repair
 from quadpatch.types import FloatArray, TriangleMesh
 
 _N_SIDE, _WAVES, _DEPTH = 180, 12, 0.025
@@ -34,17 +28,38 @@ _TILE, _GAP, _CAPTION = 420, 8, 26
 _STRENGTH = 0.35
 
 
-def draw(path: Path) -> None:
-    """Repair the relief twice and draw both repairs beside the damaged one, as PNG."""
-    truth = _relief()
-    damaged = _without_disks(truth)
-    fills: list[tuple[str, Inpainter | None]] = [("geometry alone", None), ("learned from the mesh", SelfDictionary())]
-    tiles = [("with holes", _drawn(damaged, len(damaged.triangles)))]
-    for name, inpainter in fills:
-        repair = inpaint(damaged, inpainter, RepairOptions())
-        caption = f"{name}: off by {_mean_error(repair, truth) / _RADIUS:.1%} of the holes' radius"
-        tiles.append((caption, _drawn(repair.filled.mesh, len(damaged.triangles))))
-    write_png(path, _sheet(tiles))
+@dataclass(frozen=True)
+class PunchedRelief:
+    """The relief before and after holes were cut into it.
+
+    Attributes
+    ----------
+    truth, damaged : TriangleMesh
+        With the same vertices.
+    """
+
+    truth: TriangleMesh
+    damaged: TriangleMesh
+
+    @classmethod
+    def make(cls) -> "PunchedRelief":
+        """Make it; it has the same bits every time."""
+        truth = _relief()
+        return cls(truth, _without_disks(truth))
+
+    def error(self, repaired: TriangleMesh) -> float:
+        """Mean distance of the new vertices of a repair to the surface that was cut away, in radii of the holes."""
+        new = repaired.vertices[len(self.damaged.vertices) :]
+        return float(distance_to_mesh(new, self.truth).mean()) / _RADIUS
+
+    def draw(self, repairs: dict[str, TriangleMesh], path: Path) -> None:
+        """Draw the damaged relief and its repairs beside each other as PNG, with the error of each."""
+        n_measured = len(self.damaged.triangles)
+        tiles = [("with holes", _drawn(self.damaged, n_measured))]
+        for name, repaired in repairs.items():
+            caption = f"{name}: off by {self.error(repaired):.1%} of the holes' radius"
+            tiles.append((caption, _drawn(repaired, n_measured)))
+        write_png(path, _sheet(tiles))
 
 
 def _relief() -> TriangleMesh:
@@ -64,11 +79,6 @@ def _without_disks(mesh: TriangleMesh) -> TriangleMesh:
     return TriangleMesh(mesh.vertices, mesh.triangles[(distance >= _RADIUS)[mesh.triangles].all(axis=1)])
 
 
-def _mean_error(repair: Repair, truth: TriangleMesh) -> float:
-    new = repair.filled.mesh.vertices[repair.filled.n_measured_vertices :]
-    return float(distance_to_mesh(new, truth).mean())
-
-
 def _drawn(mesh: TriangleMesh, n_measured: int) -> FloatArray:
     is_new = np.arange(len(mesh.triangles)) >= n_measured
     clay = Clay(mesh, RayScene(mesh), np.where(is_new[:, None], CLAY + _STRENGTH * (TINT - CLAY), CLAY))
@@ -85,7 +95,3 @@ def _sheet(tiles: list[tuple[str, FloatArray]]) -> Image.Image:
         pen.text((left, 4), caption, font=ImageFont.load_default(15), fill=(60, 60, 60))
         sheet.paste(Image.fromarray(to_pixels(tile)), (left, _CAPTION))
     return sheet
-
-
-if __name__ == "__main__":
-    draw(Path(sys.argv[1]))
