@@ -10,6 +10,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from quadpatch_client.async_sdk import AsyncClient, AsyncJobHandle
     from quadpatch_client.errors import (
         AnswerError,
         ClientError,
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
         UsageError,
         WaitTimeoutError,
     )
+    from quadpatch_client.handles import JobHandle
     from quadpatch_client.schema import Job, JobSpec, JobState, Mesh, Plan
     from quadpatch_client.sdk import Client
 
@@ -40,16 +42,21 @@ _ERRORS = (
 _MODULES = {
     **dict.fromkeys(_ERRORS, "errors"),
     **dict.fromkeys(("Job", "JobSpec", "JobState", "Mesh", "Plan"), "schema"),
+    **dict.fromkeys(("AsyncClient", "AsyncJobHandle"), "async_sdk"),
     "Client": "sdk",
+    "JobHandle": "handles",
 }
 __all__ = [
     "AnswerError",
+    "AsyncClient",
+    "AsyncJobHandle",
     "Client",
     "ClientError",
     "DamagedTransferError",
     "Job",
     "JobCanceledError",
     "JobFailedError",
+    "JobHandle",
     "JobSpec",
     "JobState",
     "Mesh",

@@ -1,6 +1,6 @@
-"""`quadpatch-client`."""
+"""`python -m quadpatch_client`, the same as `quadpatch-client`."""
 
-from quadpatch_client.cli import app
+from quadpatch_client.entry import run
 
 if __name__ == "__main__":
-    app(prog_name="quadpatch-client")
+    run()

@@ -90,7 +90,7 @@ def batch(  # noqa: PLR0913 - one parameter per option of the command line
     quiet: QuietOption = False,
 ) -> None:
     """Repair all meshes of a folder. Run again, it goes on where it was ended, and tries again what failed."""
-    screen = Screen(quiet)
+    screen = Screen(quiet, as_json=as_json)
     with connected(screen, url, api_key, _PATIENCE_S) as client:
         options = job_options(
             HoleChoice(max_diameter, max_perimeter, False, None, include_borders, cap, rule),

@@ -4,6 +4,7 @@ Tested in `tests/quadpatch_client/test_keeping.py`.
 """
 
 import json
+from importlib.metadata import version
 from typing import Annotated
 
 import typer
@@ -11,6 +12,7 @@ from rich.console import Console
 
 from quadpatch_client.batch_command import batch
 from quadpatch_client.connection import connected, print_json
+from quadpatch_client.doctor_command import doctor
 from quadpatch_client.exit_codes import exit_codes_text
 from quadpatch_client.job_commands import cancel, delete, fetch, pin, wait
 from quadpatch_client.method_options import (
@@ -72,9 +74,23 @@ app = typer.Typer(
     help="Repair 3D scans through a Quadpatch service: fill holes, restore vertices, take noise away, compress.",
     epilog=f"Exit codes:\n\n{exit_codes_text()}",
     no_args_is_help=True,
-    add_completion=False,
     pretty_exceptions_enable=False,
 )
+
+
+def _show_version(is_asked: bool) -> None:
+    if is_asked:
+        typer.echo(f"quadpatch-client {version('quadpatch-client')}")
+        raise typer.Exit
+
+
+@app.callback()
+def _options(
+    _: Annotated[
+        bool, typer.Option("--version", callback=_show_version, is_eager=True, help="Print the version and end.")
+    ] = False,
+) -> None:
+    """Take the options of the program itself."""
 
 
 @app.command(epilog=f"Exit codes:\n\n{exit_codes_text()}")
@@ -174,7 +190,7 @@ def holes(  # noqa: PLR0913 - one parameter per option of the command line
     """List the holes of a mesh file, and which of them would be filled."""
     from quadpatch_client.spec import make_spec  # noqa: PLC0415  loads the wire schema, which --help does without
 
-    screen = Screen(quiet)
+    screen = Screen(quiet, as_json=as_json)
     choice = HoleChoice(max_diameter, max_perimeter, all_but_largest, None, include_borders, cap, rule, bridge)
     with connected(screen, url, api_key) as client:
         with screen.transfer("uploading") as progress:
@@ -190,7 +206,7 @@ def holes(  # noqa: PLR0913 - one parameter per option of the command line
 @app.command()
 def models(url: UrlOption = DEFAULT_URL, api_key: KeyOption = None, as_json: JsonOption = False) -> None:
     """List the models that the service knows."""
-    with connected(Screen(), url, api_key) as client:
+    with connected(Screen(as_json=as_json), url, api_key) as client:
         known = client.models()
     if as_json:
         print_json(known)
@@ -211,7 +227,7 @@ def jobs(  # noqa: PLR0913, PLR0917 - one parameter per option of the command li
     """List the latest jobs."""
     from quadpatch_client.schema import JobState  # noqa: PLC0415  see holes
 
-    with connected(Screen(), url, api_key) as client:
+    with connected(Screen(as_json=as_json), url, api_key) as client:
         search = {name: text for name, text in (("label", label), ("filename", filename)) if text is not None}
         listed = list(client.jobs(limit, JobState(state) if state else None, **search))
     if as_json:
@@ -222,6 +238,7 @@ def jobs(  # noqa: PLR0913, PLR0917 - one parameter per option of the command li
 
 for task_command in (restore, denoise, encode, decode):
     app.command(epilog=f"Exit codes:\n\n{exit_codes_text()}")(task_command)
+app.command()(doctor)
 for folder_command in (batch, watch):
     app.command(epilog=f"Exit codes:\n\n{exit_codes_text()}")(folder_command)
 for command in (wait, fetch, cancel, delete, pin):

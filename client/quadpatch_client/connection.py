@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import typer
 
 from quadpatch_client.errors import ClientError
-from quadpatch_client.exit_codes import ExitCode, exit_code_of
+from quadpatch_client.exit_codes import ExitCode, error_code, exit_code_of
 from quadpatch_client.screen import Screen
 
 if TYPE_CHECKING:
@@ -28,13 +28,14 @@ def connected(screen: Screen, url: str, api_key: str | None, patience_s: float =
         with Client(url, api_key, patience_s) as client:
             yield client
     except ClientError as error:
-        screen.complain(str(error))
-        raise typer.Exit(exit_code_of(error)) from error
+        exit_code = exit_code_of(error)
+        screen.fail(str(error), exit_code, error_code(error), getattr(getattr(error, "job", None), "id", None))
+        raise typer.Exit(exit_code) from error
     except OSError as error:
-        screen.complain(f"{error.filename or 'a file'}: {error.strerror}")
+        screen.fail(f"{error.filename or 'a file'}: {error.strerror}", ExitCode.USAGE, "usage")
         raise typer.Exit(ExitCode.USAGE) from error
     except KeyboardInterrupt:
-        screen.complain("interrupted")
+        screen.fail("interrupted", ExitCode.INTERRUPTED, "interrupted")
         raise typer.Exit(ExitCode.INTERRUPTED) from None
 
 

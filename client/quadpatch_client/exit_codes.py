@@ -3,6 +3,7 @@
 Tested in `tests/quadpatch_client/test_keeping.py`.
 """
 
+import re
 from enum import IntEnum
 
 from quadpatch_client.errors import (
@@ -62,3 +63,12 @@ def exit_code_of(error: ClientError) -> ExitCode:
         WaitTimeoutError: ExitCode.CANCELED,
     }
     return by_class.get(type(error), ExitCode.OTHER)
+
+
+def error_code(error: ClientError) -> str:
+    """Return the stable code of an error, for scripts: that of the service or of the job, where one said it."""
+    if isinstance(error, RefusedError | MeshRejectedError):
+        return error.problem.code
+    if isinstance(error, JobFailedError) and error.job.error is not None:
+        return error.job.error.code
+    return re.sub(r"(?<=[a-z])(?=[A-Z])", "_", type(error).__name__.removesuffix("Error")).lower()

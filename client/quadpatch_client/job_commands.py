@@ -41,7 +41,7 @@ def wait(
     quiet: QuietOption = False,
 ) -> None:
     """Wait for the end of a job that was started before; Ctrl-C leaves it alone."""
-    screen = Screen(quiet)
+    screen = Screen(quiet, as_json=as_json)
     with connected(screen, url, api_key) as client, screen.repair() as on_change:
         ended = client.wait(job, on_change, timeout)
     if as_json:
@@ -70,7 +70,7 @@ def fetch(  # noqa: PLR0913 - one parameter per option of the command line
     quiet: QuietOption = False,
 ) -> None:
     """Wait for a job that was started before, and fetch what it made."""
-    screen = Screen(quiet)
+    screen = Screen(quiet, as_json=as_json)
     with connected(screen, url, api_key) as client:
         Files("", output, report, preview, closeups, html).check()
         check_stdout([output, report, preview, html], as_json)
@@ -89,7 +89,7 @@ def cancel(
     as_json: JsonOption = False,
 ) -> None:
     """Cancel a job."""
-    screen = Screen()
+    screen = Screen(as_json=as_json)
     with connected(screen, url, api_key) as client:
         canceled = client.cancel(job)
     if as_json:

@@ -38,7 +38,7 @@ def run(make: Callable[[], Task], connection: Connection) -> None:
         Builds the task from what was typed.
     connection : Connection
     """
-    screen = Screen(connection.quiet)
+    screen = Screen(connection.quiet, as_json=connection.as_json)
     with connected(screen, connection.url, connection.api_key) as client:
         task = make()
         check_stdout([task.output, task.report, task.preview, task.html], connection.as_json)

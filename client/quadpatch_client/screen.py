@@ -3,6 +3,8 @@
 All of it goes to stderr by default; stdout is for data.
 """
 
+import json
+import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from itertools import count
@@ -27,9 +29,12 @@ class Screen:
         Show errors only.
     console : rich.console.Console, optional
         Where to show it; None: stderr.
+    as_json : bool
+        Print what a command fails with as JSON on stdout, too.
     """
 
-    def __init__(self, quiet: bool = False, console: Console | None = None) -> None:
+    def __init__(self, quiet: bool = False, console: Console | None = None, as_json: bool = False) -> None:
+        self._as_json = as_json
         self.console = console or Console(stderr=True, highlight=False)
         self._quiet = quiet
 
@@ -46,6 +51,23 @@ class Screen:
     def complain(self, text: str) -> None:
         """Print an error, quiet or not."""
         self.console.print(f"error: {text}", style="red", markup=False, soft_wrap=True)
+
+    def fail(self, message: str, exit_code: int, code: str, job: str | None = None) -> None:
+        """Print what a command ends with.
+
+        Parameters
+        ----------
+        message : str
+        exit_code : int
+        code : str
+            Stable, for scripts.
+        job : str, optional
+            Id of the job that it is about.
+        """
+        self.complain(message)
+        if self._as_json:
+            error = {"code": code, "message": message, "exit_code": exit_code, "job": job}
+            sys.stdout.write(json.dumps({"error": error}, indent=2) + "\n")
 
     @contextmanager
     def transfer(self, label: str) -> Iterator[ByteProgress]:

@@ -17,7 +17,7 @@ import tempfile
 import uuid
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Self
+from typing import Any, Self
 
 import httpx
 
@@ -31,7 +31,9 @@ from quadpatch_client.errors import (
     RefusedError,
     WaitTimeoutError,
 )
+from quadpatch_client.handles import JobHandle
 from quadpatch_client.packing import packed
+from quadpatch_client.parallel_upload import PARALLEL_BYTES, upload_in_parts
 from quadpatch_client.polling import parse, poll
 from quadpatch_client.progress import ByteProgress, no_progress
 from quadpatch_client.resuming import RESUMABLE_BYTES, upload_resumably
@@ -58,6 +60,20 @@ _MOST_KEYS = 20
 
 def ignore_job(job: Job) -> None:
     """Ignore a change of a job."""
+
+
+def with_result(job: Job) -> Job:
+    """Return a job that has ended with a result.
+
+    Raises
+    ------
+    JobFailedError, JobCanceledError
+    """
+    if job.state == JobState.FAILED:
+        raise JobFailedError(job)
+    if job.state == JobState.CANCELED:
+        raise JobCanceledError(job)
+    return job
 
 
 class Client:
@@ -188,18 +204,52 @@ class Client:
         ------
         JobFailedError, JobCanceledError, WaitTimeoutError
         """
+        for job in self.events(job_id, timeout_s):
+            on_change(job)
+            if job.state.is_terminal:
+                return with_result(job)
+        raise WaitTimeoutError(f"job {job_id} did not end within {timeout_s:g} s")
+
+    def events(self, job_id: str, timeout_s: float | None = None) -> Iterator[Job]:
+        """Yield a job as it stands now, and whenever something about it has changed, until it has ended.
+
+        Parameters
+        ----------
+        job_id : str
+        timeout_s : float, optional
+            None: as long as it takes.
+        """
         seen = None
         for job in watch(self._transport, f"/v1/jobs/{job_id}", timeout_s):
             if job != seen:
-                on_change(job)
+                yield job
             seen = job
-            if job.state == JobState.FAILED:
-                raise JobFailedError(job)
-            if job.state == JobState.CANCELED:
-                raise JobCanceledError(job)
-            if job.state.is_terminal:
-                return job
-        raise WaitTimeoutError(f"job {job_id} did not end within {timeout_s:g} s")
+
+    def repair(self, path: Path, **options: Any) -> "JobHandle":
+        """Send a scan and start a job on it; the same file with the same options finds its job again.
+
+        Parameters
+        ----------
+        path : Path
+        **options
+            Fields of the job spec, such as `holes={"max_diameter": 20.0}` or `output={"preview": True}`.
+
+        Examples
+        --------
+        >>> with Client(URL) as client:
+        ...     job = client.repair(Path("scan.ply"), method={"method": "smooth"})
+        ...     job.fetch(Path("repaired.ply"), report=Path("report.json"))
+        ...     print(job.wait().state)
+        [PosixPath('repaired.ply'), PosixPath('report.json')]
+        succeeded
+        """
+        mesh = self.upload(path)
+        named = {"label": path.name, "mesh_name": sent_name(path) or None, **options}
+        return JobHandle(self, self.create_job_once(JobSpec.model_validate({"mesh_id": mesh.id, **named})))
+
+    def handle(self, job_id: str) -> "JobHandle":
+        """Return a handle of a job that was started before."""
+        return JobHandle(self, self.job(job_id))
 
     def cancel(self, job_id: str) -> Job:
         """Cancel a job; one that has ended already is returned as it is."""
@@ -320,7 +370,8 @@ class Client:
     def _send(self, path: Path, sha256: str, progress: ByteProgress) -> Mesh:
         size, name = path.stat().st_size, sent_name(path)
         if size >= RESUMABLE_BYTES:
-            mesh_id = upload_resumably(self._transport, path, name, sha256, progress)
+            upload = upload_in_parts if size >= PARALLEL_BYTES else upload_resumably
+            mesh_id = upload(self._transport, path, name, sha256, progress)
             if mesh_id is not None:
                 return self.mesh(mesh_id)
         response = self._transport.request(

@@ -30,12 +30,13 @@ def sent_name(path: Path) -> str:
     return _CONTROL.sub("", path.name).encode("utf-8", "replace").decode("utf-8")[-_LONGEST_NAME:]
 
 
-def file_chunks(path: Path, progress: ByteProgress, start: int = 0) -> Iterator[bytes]:
-    """Yield the bytes of a file from `start` on, telling how far it is."""
+def file_chunks(path: Path, progress: ByteProgress, start: int = 0, end: int | None = None) -> Iterator[bytes]:
+    """Yield the bytes of a file from `start` on, up to its end or to `end`, telling how far it is."""
     total, done = path.stat().st_size, start
+    last = total if end is None else end
     with path.open("rb") as file:
         file.seek(start)
-        while chunk := file.read(CHUNK_BYTES):
+        while chunk := file.read(min(CHUNK_BYTES, last - done)):
             yield chunk
             done += len(chunk)
             progress(done, total)

@@ -21,7 +21,8 @@ class Workers:
     """
 
     def __init__(self, n_workers: int) -> None:
-        self._calls: SimpleQueue[tuple[Future[Any], Callable[[], Any]]] = SimpleQueue()
+        self._calls: SimpleQueue[tuple[Future[Any], Callable[[], Any]] | None] = SimpleQueue()
+        self._n_workers = n_workers
         for _ in range(n_workers):
             threading.Thread(target=self._work, daemon=True).start()
 
@@ -31,9 +32,14 @@ class Workers:
         self._calls.put((future, call))
         return future
 
+    def close(self) -> None:
+        """Let the threads end once they have done what they were handed."""
+        for _ in range(self._n_workers):
+            self._calls.put(None)
+
     def _work(self) -> None:
-        while True:
-            future, call = self._calls.get()
+        while (handed := self._calls.get()) is not None:
+            future, call = handed
             if not future.set_running_or_notify_cancel():
                 continue
             try:

@@ -11,6 +11,7 @@ import subprocess
 import sys
 from collections import Counter
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -52,6 +53,10 @@ def done_in(journal: Path) -> set[str]:
     return {entry["file"] for entry in entries if entry["state"] == "done"}
 
 
+def has_done(journal: Path, enough: int) -> bool:
+    return len(done_in(journal)) >= enough
+
+
 def check_batch_that_is_killed(url: str, folder: Path, n: int, kills: int) -> None:
     prefix = f"killed{n}"
     names = small_scans(folder / "in", n, prefix)
@@ -60,7 +65,7 @@ def check_batch_that_is_killed(url: str, folder: Path, n: int, kills: int) -> No
     environment = {**os.environ, "QUADPATCH_CLIENT_URL": url}
     for kill in range(1, kills + 1):
         with (folder / "log").open("a") as log, subprocess.Popen(command, stderr=log, env=environment) as process:
-            wait_until(lambda enough=kill * n // (kills + 1): len(done_in(out / JOURNAL)) >= enough)
+            wait_until(partial(has_done, out / JOURNAL, kill * n // (kills + 1)))
             process.send_signal(signal.SIGKILL)
     assert len(done_in(out / JOURNAL)) < n, "it was over before it could be killed"
     done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=GUARD_S, check=False)

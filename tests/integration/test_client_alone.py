@@ -142,18 +142,8 @@ def files(folder: Path) -> Iterator[Path]:
 def test_its_types_pass_mypy_from_outside(station: Path, tmp_path: Path) -> None:
     (tmp_path / "program.py").write_text(PROGRAM)
     (tmp_path / "wrong.py").write_text(WRONG)
-    options = [
-        "--strict",
-        "--python-executable",
-        station,
-        "--cache-dir",
-        tmp_path / "cache",
-        "--config-file",
-        os.devnull,
-    ]
-    done = run_apart(
-        Path(sys.executable), tmp_path, "-m", "mypy", *options, "--config-file", os.devnull, "program.py", "wrong.py"
-    )
+    options: list[str | Path] = ["--strict", "--python-executable", station, "--config-file", os.devnull]
+    done = run_apart(Path(sys.executable), tmp_path, "-m", "mypy", *options, "program.py", "wrong.py")
     assert done.stdout.startswith('wrong.py:11: error: Argument 1 to "wait" of "Client" has incompatible type "Job"')
     assert "Found 1 error in 1 file" in done.stdout, done.stdout + done.stderr
 

@@ -96,6 +96,14 @@ def test_holes_lists_every_hole_and_what_would_be_filled(
     assert [hole["selected"] for hole in plan["holes"]] == [False, True, True, True, True]
 
 
+def test_the_doctor_finds_nothing_in_the_way_of_a_healthy_service(run: Callable[..., Result]) -> None:
+    done = run("doctor", "--json")
+    assert done.exit_code == ExitCode.OK, done.stdout
+    found = {finding["subject"]: finding["verdict"] for finding in json.loads(done.stdout)}
+    assert {"address", "service", "clock", "readiness", "key", "limits"} <= found.keys()
+    assert "error" not in found.values()
+
+
 def test_jobs_and_models_are_listed(run: Callable[..., Result]) -> None:
     assert isinstance(json.loads(run("jobs", "--limit", "2", "--json").stdout), list)
     assert set(json.loads(run("models", "--json").stdout)) == {"models", "aliases", "next_cursor"}

@@ -1,4 +1,7 @@
-"""Resumable uploads through a line that is cut, to a server that is killed; `make resumption` does it at full size."""
+"""Resumable uploads through a line that is cut, to a server that is killed; `make resumption` does it at full size.
+
+Also tests `quadpatch_client.parallel_upload`.
+"""
 
 import hashlib
 import random
@@ -103,6 +106,28 @@ def test_parts_that_come_in_parallel_are_joined(service: KillableService) -> Non
     headers = {**TUS, "Upload-Concat": f"final;{' '.join(paths)}"}
     joined = httpx.post(f"{service.url}/v1/uploads", headers=headers, timeout=GUARD_S)
     assert joined.headers["quadpatch-mesh"].endswith(hashlib.sha256(data).hexdigest())
+
+
+def test_the_sdk_sends_large_files_in_parts(
+    tmp_path: Path, variables: dict[str, str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sdk, "RESUMABLE_BYTES", MIB)
+    monkeypatch.setattr(sdk, "PARALLEL_BYTES", MIB)
+    happened = run_trial(Trial(16, n_kills=1, n_cuts=2, seed=8), tmp_path, variables, send_by_sdk)
+    assert (happened["kills"], happened["cuts"]) == (1, 2)
+
+
+def test_progress_of_parts_adds_up(service: KillableService, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sdk, "RESUMABLE_BYTES", MIB)
+    monkeypatch.setattr(sdk, "PARALLEL_BYTES", MIB)
+    path, seen = tmp_path / "scan.ply", list[int]()
+    path.write_bytes(random.Random(12).randbytes(6 * MIB + 3))
+    with Client(service.url) as client:
+        assert (
+            client.upload(path, lambda done, _: seen.append(done)).id == hashlib.sha256(path.read_bytes()).hexdigest()
+        )
+    assert seen == sorted(seen)
+    assert seen[-1] == 6 * MIB + 3
 
 
 def test_memory_does_not_grow_with_the_upload(service: KillableService) -> None:
