@@ -246,6 +246,7 @@ def test_make_targets_that_are_named_exist() -> None:
 
 def test_commands_of_the_client_that_are_named_exist() -> None:
     known = {c.name or getattr(c.callback, "__name__", "") for c in client_app.registered_commands}
+    known |= {str(group.typer_instance and group.typer_instance.info.name) for group in client_app.registered_groups}
     for path in DOCUMENTS:
         named = re.findall(r"quadpatch-client ([a-z]+)\b(?! to\b)", path.read_text("utf-8"))
         assert set(named) <= known, path.name
@@ -256,7 +257,7 @@ def test_commands_that_are_named_exist() -> None:
         for module, command in re.findall(r"python -m ([\w.]+)(?: ([a-z]+)\b)?", path.read_text("utf-8")):
             file = ROOT / module.replace(".", "/")
             is_there = (file / "__main__.py").is_file() or file.with_suffix(".py").is_file()
-            assert is_there or module == "venv", f"{path.name}: {module}"
+            assert is_there or module in ("venv", "pip"), f"{path.name}: {module}"
             apps = {"quadpatch": "quadpatch.cli.app", "training": "training.__main__", "onebox": "onebox.__main__"}
             if command and module in apps:
                 app = importlib.import_module(apps[module]).app

@@ -7,6 +7,7 @@ Tested in `tests/integration/test_sdk.py`.
 
 import asyncio
 from collections.abc import AsyncIterator, Callable
+from datetime import datetime
 from functools import partial
 from pathlib import Path
 from typing import Any, ParamSpec, Self, TypeVar
@@ -14,7 +15,21 @@ from typing import Any, ParamSpec, Self, TypeVar
 from quadpatch_client.errors import WaitTimeoutError
 from quadpatch_client.handles import files_by_role
 from quadpatch_client.progress import ByteProgress, no_progress
-from quadpatch_client.schema import FileRole, Job, JobSpec, JobState, Mesh, ModelList, Plan
+from quadpatch_client.schema import (
+    FileRole,
+    Job,
+    JobSpec,
+    JobState,
+    Key,
+    KeyWithSecret,
+    Mesh,
+    ModelList,
+    NewTraining,
+    Plan,
+    Rule,
+    Scope,
+    Training,
+)
 from quadpatch_client.sdk import Client, ignore_job, with_result
 from quadpatch_client.workers import Workers
 
@@ -89,6 +104,28 @@ class AsyncClient:
     async def models(self) -> ModelList:
         """Return all models and aliases."""
         return await self._call(self._client.models)
+
+    async def rules(self) -> list[Rule]:
+        """Return all rules by name, each in its latest version."""
+        return await self._call(self._client.rules)
+
+    async def keys(self) -> list[Key]:
+        """Return the keys of the tenant, without their secrets."""
+        return await self._call(self._client.keys)
+
+    async def create_key(
+        self, name: str, scopes: list[Scope] | None = None, tenant: str | None = None, until: datetime | None = None
+    ) -> KeyWithSecret:
+        """Make a key, as `Client.create_key` does."""
+        return await self._call(self._client.create_key, name, scopes, tenant, until)
+
+    async def revoke_key(self, key_id: str) -> None:
+        """End a key. There is no way back."""
+        await self._call(self._client.revoke_key, key_id)
+
+    async def train(self, wanted: NewTraining) -> Training:
+        """Learn a model from uploaded meshes, as `Client.train` does."""
+        return await self._call(self._client.train, wanted)
 
     async def events(self, job_id: str, timeout_s: float | None = None) -> AsyncIterator[Job]:
         """Yield a job as it stands, and whenever something about it has changed, until it has ended."""

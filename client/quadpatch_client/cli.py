@@ -11,6 +11,7 @@ import typer
 from rich.console import Console
 
 from quadpatch_client.batch_command import batch
+from quadpatch_client.catalogue_commands import keys, models, rules, train
 from quadpatch_client.connection import connected, print_json
 from quadpatch_client.doctor_command import doctor
 from quadpatch_client.exit_codes import exit_codes_text
@@ -27,6 +28,7 @@ from quadpatch_client.method_options import (
     RecipeOption,
     ResolutionOption,
 )
+from quadpatch_client.moments import moment_of
 from quadpatch_client.options import (
     DEFAULT_URL,
     AgainOption,
@@ -56,16 +58,19 @@ from quadpatch_client.options import (
     QuietOption,
     ReportOption,
     RuleOption,
+    SavedRuleOption,
     SeedOption,
+    TaskName,
     TimeoutOption,
     UrlOption,
     WeldToleranceOption,
     tolerance,
 )
+from quadpatch_client.plan_command import plan
 from quadpatch_client.repairing import Task, format_of
 from quadpatch_client.running import Connection, run
 from quadpatch_client.screen import Screen
-from quadpatch_client.tables import print_holes, print_jobs, print_models
+from quadpatch_client.tables import print_holes, print_jobs
 from quadpatch_client.task_commands import decode, denoise, encode, restore
 from quadpatch_client.watch_command import watch
 
@@ -110,6 +115,7 @@ def repair(  # noqa: PLR0913 - one parameter per option of the command line
     cap: CapOption = None,
     rule: RuleOption = None,
     bridge: BridgeOption = None,
+    saved_rule: SavedRuleOption = None,
     weld_tolerance: WeldToleranceOption = None,
     patch_length: PatchLengthOption = None,
     resolution: ResolutionOption = None,
@@ -147,6 +153,7 @@ def repair(  # noqa: PLR0913 - one parameter per option of the command line
             ),
             rest={
                 "seed": seed,
+                "rule": saved_rule,
                 "weld_tolerance": tolerance(weld_tolerance),
                 "colours": colours,
                 "length_unit": length_unit,
@@ -204,22 +211,17 @@ def holes(  # noqa: PLR0913 - one parameter per option of the command line
 
 
 @app.command()
-def models(url: UrlOption = DEFAULT_URL, api_key: KeyOption = None, as_json: JsonOption = False) -> None:
-    """List the models that the service knows."""
-    with connected(Screen(as_json=as_json), url, api_key) as client:
-        known = client.models()
-    if as_json:
-        print_json(known)
-    else:
-        print_models(_stdout(), known)
-
-
-@app.command()
 def jobs(  # noqa: PLR0913, PLR0917 - one parameter per option of the command line
     limit: Annotated[int, typer.Option(min=1, help="Most jobs to list.")] = 20,
     state: Annotated[JobStateName | None, typer.Option(help="Only jobs in this state.")] = None,
     label: Annotated[str | None, typer.Option(help="Only jobs with this label; * stands for any characters.")] = None,
     filename: Annotated[str | None, typer.Option(help="Only jobs on files of this name; * as for --label.")] = None,
+    task: Annotated[TaskName | None, typer.Option(help="Only jobs of this task.")] = None,
+    since: Annotated[
+        str | None,
+        typer.Option(metavar="AGE|TIME", help="Only jobs made since then: 90m, 12h, 7d, or 2026-11-30T08:00Z."),
+    ] = None,
+    batch_id: Annotated[str | None, typer.Option("--batch", help="Only jobs of this batch of the service.")] = None,
     url: UrlOption = DEFAULT_URL,
     api_key: KeyOption = None,
     as_json: JsonOption = False,
@@ -228,7 +230,9 @@ def jobs(  # noqa: PLR0913, PLR0917 - one parameter per option of the command li
     from quadpatch_client.schema import JobState  # noqa: PLC0415  see holes
 
     with connected(Screen(as_json=as_json), url, api_key) as client:
-        search = {name: text for name, text in (("label", label), ("filename", filename)) if text is not None}
+        given = {"label": label, "filename": filename, "task": task, "batch_id": batch_id}
+        given["created_since"] = None if since is None else moment_of(since).isoformat()
+        search = {name: text for name, text in given.items() if text is not None}
         listed = list(client.jobs(limit, JobState(state) if state else None, **search))
     if as_json:
         typer.echo(json.dumps([job.model_dump(mode="json") for job in listed], indent=2))
@@ -238,11 +242,13 @@ def jobs(  # noqa: PLR0913, PLR0917 - one parameter per option of the command li
 
 for task_command in (restore, denoise, encode, decode):
     app.command(epilog=f"Exit codes:\n\n{exit_codes_text()}")(task_command)
+app.command()(plan)
 app.command()(doctor)
-for folder_command in (batch, watch):
+for folder_command in (batch, watch, train):
     app.command(epilog=f"Exit codes:\n\n{exit_codes_text()}")(folder_command)
-for command in (wait, fetch, cancel, delete, pin):
+for command in (wait, fetch, cancel, delete, pin, models, rules):
     app.command()(command)
+app.add_typer(keys)
 
 
 def _stdout() -> Console:

@@ -10,6 +10,7 @@ from quadpatch_rules.option_words import Colours, Effort, LengthUnit, OutputForm
 
 DEFAULT_URL = "http://127.0.0.1:8000"
 MethodName = Literal["auto", "dictionary", "cnn", "smooth"]
+TaskName = Literal["fill", "restore", "denoise", "encode", "decode", "train"]
 # `JobState` of the wire schema, without loading it.
 JobStateName = Literal["queued", "running", "canceling", "canceled", "succeeded", "succeeded_with_warnings", "failed"]
 

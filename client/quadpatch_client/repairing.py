@@ -21,6 +21,7 @@ from quadpatch_client.interruption import HeldInterrupt
 from quadpatch_client.options import HoleChoice, MethodChoice
 from quadpatch_client.outputs import check_place, is_same_file, is_stream, shown
 from quadpatch_client.screen import Screen
+from quadpatch_client.wording import suggestion
 from quadpatch_rules.option_words import OutputFormat
 
 if TYPE_CHECKING:
@@ -115,10 +116,25 @@ def repair(client: "Client", screen: Screen, task: Task) -> "Job":
     rest = _rest(task, "" if task.reference is None else _upload(client, screen, task.reference))
     spec = make_spec(mesh_id, task.holes, task.method, mesh_name=sent_name(task.source) or None, **rest)
     with HeldInterrupt(screen.complain) as interrupt:
-        job = client.create_job(spec, runs_anew=True) if task.again else client.create_job_once(spec)
+        with _model_suggested(client, task.method.model):
+            job = client.create_job(spec, runs_anew=True) if task.again else client.create_job_once(spec)
         job = _wait(client, screen, job, task.timeout_s, interrupt)
     fetch(client, screen, _files(task), job)
     return job
+
+
+@contextmanager
+def _model_suggested(client: "Client", model: str | None) -> Iterator[None]:
+    """Say, where the service knows no such model, which one may be meant."""
+    try:
+        yield
+    except RefusedError as error:
+        if error.problem.code != "model_not_found" or model is None:
+            raise
+        known = client.models()
+        names = [*(m.name for m in known.models), *(a.alias for a in known.aliases), "self", "smooth"]
+        hint = "; say --method smooth" if model == "smooth" else suggestion(model.partition("@")[0], names)
+        raise RefusedError(error.problem.model_copy(update={"detail": error.problem.detail + hint})) from error
 
 
 def _upload(client: "Client", screen: Screen, path: Path) -> str:

@@ -19,41 +19,32 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, Self
 
-import httpx
-
+from quadpatch_client.catalogue import PAGE, Catalogue
 from quadpatch_client.closeups import unpack_closeups
 from quadpatch_client.errors import (
     ClientError,
-    DamagedTransferError,
     JobCanceledError,
     JobFailedError,
-    MeshRejectedError,
     RefusedError,
     WaitTimeoutError,
 )
 from quadpatch_client.handles import JobHandle
-from quadpatch_client.packing import packed
-from quadpatch_client.parallel_upload import PARALLEL_BYTES, upload_in_parts
-from quadpatch_client.polling import parse, poll
+from quadpatch_client.mesh_calls import MeshCalls
+from quadpatch_client.polling import parse
 from quadpatch_client.progress import ByteProgress, no_progress
-from quadpatch_client.resuming import RESUMABLE_BYTES, upload_resumably
 from quadpatch_client.schema import (
     FileRole,
     Job,
     JobPage,
     JobSpec,
     JobState,
-    Mesh,
-    MeshState,
-    ModelList,
     Plan,
     identity_of,
 )
-from quadpatch_client.transfers import download, file_chunks, sent_name, sha256_of
+from quadpatch_client.transfers import download, sent_name
 from quadpatch_client.transport import Transport
 from quadpatch_client.watching import watch
 
-_PAGE = 100
 # Of failed and canceled jobs with the same spec that are passed over.
 _MOST_KEYS = 20
 
@@ -76,7 +67,7 @@ def with_result(job: Job) -> Job:
     return job
 
 
-class Client:
+class Client(MeshCalls, Catalogue):
     """One service.
 
     Parameters
@@ -90,46 +81,7 @@ class Client:
     """
 
     def __init__(self, base_url: str, api_key: str | None = None, patience_s: float = 60.0) -> None:
-        self._transport = Transport(base_url, api_key, patience_s)
-        # Of the meshes that were uploaded here, by id: the service may know the same bytes under another name.
-        self._names: dict[str, str] = {}
-
-    def upload(self, path: Path, progress: ByteProgress = no_progress) -> Mesh:
-        """Send a mesh file; bytes that the service has already are not sent again.
-
-        From 32 MiB on, an upload goes on where the line broke.
-
-        A glTF file is sent with the files that it names inside.
-
-        Raises
-        ------
-        UsageError
-            If a glTF file names a file that is not there, or lies outside of its folder.
-        DamagedTransferError
-            If the service received other bytes.
-        """
-        with packed(path) as whole:
-            return self._upload(whole, progress)
-
-    def mesh(self, mesh_id: str) -> Mesh:
-        """Return a mesh as it stands."""
-        return parse(Mesh, self._transport.request("GET", f"/v1/meshes/{mesh_id}"))
-
-    def wait_for_mesh(self, mesh_id: str, timeout_s: float | None = None) -> Mesh:
-        """Wait until a mesh is analysed.
-
-        Raises
-        ------
-        MeshRejectedError
-            If the service could not read it.
-        WaitTimeoutError
-        """
-        for mesh in poll(self._transport, f"/v1/meshes/{mesh_id}", Mesh, timeout_s):
-            if mesh.state == MeshState.REJECTED and mesh.problem is not None:
-                raise MeshRejectedError(mesh.problem)
-            if mesh.state == MeshState.READY:
-                return mesh
-        raise WaitTimeoutError(f"mesh {mesh_id} was not analysed within {timeout_s:g} s")
+        super().__init__(Transport(base_url, api_key, patience_s))
 
     def create_job(self, spec: JobSpec, idempotency_key: str | None = None, *, runs_anew: bool = False) -> Job:
         """Start a job. Repeated on a broken line, it is still started once.
@@ -305,18 +257,6 @@ class Client:
             self.download(job, "closeups", archive)
             return unpack_closeups(archive, folder)
 
-    def models(self) -> ModelList:
-        """Return all models and aliases, fetched page by page; of each model its newest versions."""
-        found = ModelList(models=[], aliases=[])
-        params = {"limit": str(_PAGE)}
-        while True:
-            page = parse(ModelList, self._transport.request("GET", "/v1/models", params=params))
-            found.models += page.models
-            found.aliases += page.aliases
-            if page.next_cursor is None:
-                return found
-            params["cursor"] = page.next_cursor
-
     def jobs(self, limit: int | None = None, state: JobState | None = None, **search: str) -> Iterator[Job]:
         """Yield jobs, newest first, fetched page by page.
 
@@ -332,7 +272,7 @@ class Client:
         left = limit
         cursor: str | None = None
         while left is None or left > 0:
-            params = {"limit": str(min(left or _PAGE, _PAGE)), **search}
+            params = {"limit": str(min(left or PAGE, PAGE)), **search}
             params |= {"cursor": cursor} if cursor else {}
             params |= {"state": state.value} if state else {}
             page = parse(JobPage, self._transport.request("GET", "/v1/jobs", params=params))
@@ -353,40 +293,3 @@ class Client:
     def __exit__(self, *_: object) -> None:
         """Close."""
         self.close()
-
-    def _upload(self, path: Path, progress: ByteProgress) -> Mesh:
-        sha256 = sha256_of(path)
-        self._names[sha256] = sent_name(path)
-        known = self._find_mesh(sha256)
-        if known is not None and known.state != MeshState.REJECTED:
-            size = path.stat().st_size
-            progress(size, size)
-            return known
-        mesh = self._send(path, sha256, progress)
-        if mesh.id != sha256:
-            raise DamagedTransferError(f"{path.name} arrived damaged: the service got {mesh.id}, sent was {sha256}")
-        return mesh
-
-    def _send(self, path: Path, sha256: str, progress: ByteProgress) -> Mesh:
-        size, name = path.stat().st_size, sent_name(path)
-        if size >= RESUMABLE_BYTES:
-            upload = upload_in_parts if size >= PARALLEL_BYTES else upload_resumably
-            mesh_id = upload(self._transport, path, name, sha256, progress)
-            if mesh_id is not None:
-                return self.mesh(mesh_id)
-        response = self._transport.request(
-            "POST",
-            "/v1/meshes",
-            params={"filename": name},
-            headers={"Content-Type": "application/octet-stream", "Content-Length": str(size)},
-            content=lambda: file_chunks(path, progress),
-        )
-        return parse(Mesh, response)
-
-    def _find_mesh(self, mesh_id: str) -> Mesh | None:
-        try:
-            return self.mesh(mesh_id)
-        except RefusedError as error:
-            if error.problem.status != httpx.codes.NOT_FOUND:
-                raise
-            return None

@@ -3,7 +3,8 @@
 Tested in `tests/quadpatch_client/test_options.py`.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from typing import Any, TypeVar
 
 from pydantic import ValidationError
@@ -27,14 +28,21 @@ def make_spec(mesh_id: str, holes: HoleChoice, method: MethodChoice, **rest: Any
     """
     chosen = _given({**vars(holes), "rules": _rules(holes.rules), "bridges": _bridges(holes.bridges)})
     values = {"mesh_id": mesh_id, "holes": chosen, **_given({"method": _method(method)}), **_given(rest)}
-    try:
+    with in_words():
         spec = JobSpec.model_validate(values)
-    except ValidationError as error:
-        raise UsageError(said(error)) from error
     conflict = conflict_of(spec)
     if conflict is not None:
         raise UsageError(conflict)
     return spec
+
+
+@contextmanager
+def in_words() -> Iterator[None]:
+    """Turn what validation finds into a UsageError in the words of the command line."""
+    try:
+        yield
+    except ValidationError as error:
+        raise UsageError(said(error)) from error
 
 
 def _method(choice: MethodChoice) -> dict[str, Any]:

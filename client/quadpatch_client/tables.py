@@ -1,14 +1,26 @@
 """Tables for people, on stdout."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from datetime import UTC
 from typing import TYPE_CHECKING
 
 from rich.console import Console
 from rich.table import Table
 
+from quadpatch_rules.tasks import FILL
+
 if TYPE_CHECKING:
-    from quadpatch_client.schema import Job, MeshFacts, ModelList, ModelVersion, Plan, PlannedBridge, PlannedHole
+    from quadpatch_client.schema import (
+        Job,
+        Key,
+        MeshFacts,
+        ModelList,
+        ModelVersion,
+        Plan,
+        PlannedBridge,
+        PlannedHole,
+        Rule,
+    )
 
 
 def print_holes(console: Console, facts: "MeshFacts", plan: "Plan") -> None:
@@ -59,15 +71,14 @@ def _bridge(bridge: "PlannedBridge", unit: str) -> str:
 def print_models(console: Console, models: "ModelList") -> None:
     """Print every version of every model."""
     table = _table(None)
-    for name in ("model", "kind", "patch", "size", "aliases", "state", "description"):
+    table.add_column("model", no_wrap=True)
+    for name in ("kind", "aliases", "state", "description"):
         table.add_column(name, overflow="fold")
     for version in (version for model in models.models for version in model.versions):
         resolution = version.card.patch_resolution
         table.add_row(
             f"{version.name}@{version.version}",
-            version.kind,
-            f"{resolution} × {resolution}" if resolution else "",
-            f"{version.size_bytes / 1e6:.1f} MB",
+            f"{version.kind}, {resolution} × {resolution}" if resolution else version.kind,
             ", ".join(version.aliases),
             _standing(version),
             version.card.description,
@@ -84,22 +95,56 @@ def _standing(version: "ModelVersion") -> str:
 
 def print_jobs(console: Console, jobs: Iterable["Job"]) -> None:
     """Print jobs, one a line."""
+    from quadpatch_client.schema import JobState  # noqa: PLC0415  loaded by the time that there are jobs
+
     table = _table(None)
-    for name in ("job", "task", "state", "done", "created (UTC)"):
-        table.add_column(name, no_wrap=True)
+    table.add_column("job", no_wrap=True)
+    table.add_column("state", overflow="fold", min_width=len(JobState.SUCCEEDED_WITH_WARNINGS))
+    table.add_column("made (UTC)", no_wrap=True)
     table.add_column("label", overflow="fold")
     for job in jobs:
-        detail = job.error.code if job.error else job.stage
-        table.add_row(
-            job.id,
-            job.spec.task,
-            f"{job.state.value}: {detail}" if detail else job.state.value,
-            f"{job.percent:.0f} %",
-            f"{job.created_at.astimezone(UTC):%m-%d %H:%M:%S}",
-            job.spec.label or "",
-        )
+        task = "" if job.spec.task == FILL else f"{job.spec.task}, "
+        made = f"{job.created_at.astimezone(UTC):%m-%d %H:%M:%S}"
+        table.add_row(job.id, f"{task}{_progress(job)}", made, job.spec.label or "")
     console.print(table if table.row_count else "no jobs")
+
+
+def _progress(job: "Job") -> str:
+    if job.error is not None:
+        return f"{job.state.value}: {job.error.code}"
+    is_at_work = job.stage is not None and not job.state.is_terminal
+    return f"{job.state.value}: {job.stage} {job.percent:.0f} %" if is_at_work else job.state.value
 
 
 def _table(title: str | None) -> Table:
     return Table(title=title, title_justify="left", title_style="", box=None, header_style="bold", pad_edge=False)
+
+
+def print_rules(console: Console, rules: "Sequence[Rule]") -> None:
+    """Print every rule in its latest version."""
+    table = _table(None)
+    for name in ("rule", "method", "holes", "description"):
+        table.add_column(name, overflow="fold")
+    for rule in rules:
+        chosen = rule.content.holes.model_dump(mode="json", exclude_defaults=True)
+        holes = ", ".join(f"{name.replace('_', ' ')} {_short(value)}" for name, value in chosen.items())
+        name = f"{rule.name}@{rule.version}"
+        table.add_row(name, rule.content.method.method, holes or "the usual ones", rule.content.description)
+    console.print(table if table.row_count else "no rules")
+
+
+def print_keys(console: Console, keys: "Sequence[Key]") -> None:
+    """Print keys, without secrets."""
+    table = _table(None)
+    for name in ("key", "name", "tenant", "scopes", "last used (UTC)", "state"):
+        table.add_column(name, overflow="fold")
+    for key in keys:
+        used = "never" if key.used_at is None else f"{key.used_at.astimezone(UTC):%Y-%m-%d %H:%M}"
+        ends = "" if key.expires_at is None else f"until {key.expires_at.astimezone(UTC):%Y-%m-%d}"
+        state = "revoked" if key.revoked_at is not None else ends or "valid"
+        table.add_row(key.id, key.name, key.tenant, ", ".join(key.scopes), used, state)
+    console.print(table if table.row_count else "no keys")
+
+
+def _short(value: object) -> str:
+    return f"{len(value)} given" if isinstance(value, list) else str(value)

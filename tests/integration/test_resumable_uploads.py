@@ -12,7 +12,7 @@ from pathlib import Path
 import httpx
 import pytest
 
-from quadpatch_client import sdk
+from quadpatch_client import mesh_calls
 from quadpatch_client.errors import UnreachableError
 from quadpatch_client.sdk import Client
 from tests.resumption.campaign import MIB, Trial, memory_growth, run_trial, running_service
@@ -66,7 +66,7 @@ def test_tuspy_brings_every_byte_to_s3(tmp_path: Path, on_s3: dict[str, str]) ->
 def test_the_sdk_goes_on_where_the_line_broke(
     tmp_path: Path, variables: dict[str, str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(sdk, "RESUMABLE_BYTES", MIB)
+    monkeypatch.setattr(mesh_calls, "RESUMABLE_BYTES", MIB)
     happened = run_trial(Trial(16, n_kills=1, n_cuts=2, seed=7), tmp_path, variables, send_by_sdk)
     assert (happened["kills"], happened["cuts"]) == (1, 2)
 
@@ -74,7 +74,7 @@ def test_the_sdk_goes_on_where_the_line_broke(
 def test_a_program_that_is_started_again_sends_what_is_left(
     service: KillableService, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(sdk, "RESUMABLE_BYTES", MIB)
+    monkeypatch.setattr(mesh_calls, "RESUMABLE_BYTES", MIB)
     path = tmp_path / "scan.ply"
     path.write_bytes(random.Random(8).randbytes(30 * MIB))
     with Proxy(service.port, 60 * MIB, [lambda: None], random.Random(3)).running() as proxy:
@@ -111,15 +111,15 @@ def test_parts_that_come_in_parallel_are_joined(service: KillableService) -> Non
 def test_the_sdk_sends_large_files_in_parts(
     tmp_path: Path, variables: dict[str, str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(sdk, "RESUMABLE_BYTES", MIB)
-    monkeypatch.setattr(sdk, "PARALLEL_BYTES", MIB)
+    monkeypatch.setattr(mesh_calls, "RESUMABLE_BYTES", MIB)
+    monkeypatch.setattr(mesh_calls, "PARALLEL_BYTES", MIB)
     happened = run_trial(Trial(16, n_kills=1, n_cuts=2, seed=8), tmp_path, variables, send_by_sdk)
     assert (happened["kills"], happened["cuts"]) == (1, 2)
 
 
 def test_progress_of_parts_adds_up(service: KillableService, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(sdk, "RESUMABLE_BYTES", MIB)
-    monkeypatch.setattr(sdk, "PARALLEL_BYTES", MIB)
+    monkeypatch.setattr(mesh_calls, "RESUMABLE_BYTES", MIB)
+    monkeypatch.setattr(mesh_calls, "PARALLEL_BYTES", MIB)
     path, seen = tmp_path / "scan.ply", list[int]()
     path.write_bytes(random.Random(12).randbytes(6 * MIB + 3))
     with Client(service.url) as client:

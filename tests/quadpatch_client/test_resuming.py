@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from quadpatch_client import sdk
+from quadpatch_client import mesh_calls
 from quadpatch_client.errors import DamagedTransferError
 from quadpatch_client.sdk import Client
 from quadpatch_client.transfers import file_chunks
@@ -23,7 +23,7 @@ def problem(status: int, code: str) -> bytes:
 
 @pytest.fixture
 def path(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.setattr(sdk, "RESUMABLE_BYTES", 10)
+    monkeypatch.setattr(mesh_calls, "RESUMABLE_BYTES", 10)
     (tmp_path / "scan.ply").write_bytes(DATA)
     return tmp_path / "scan.ply"
 

@@ -66,8 +66,8 @@ def test_a_job_shows_its_error_or_else_its_stage() -> None:
     console, text = printed()
     print_jobs(console, jobs)
     _, running, failed = text.getvalue().splitlines()
-    assert running.split()[:6] == [JOB_ID, "fill", "running:", "fill", "42", "%"]
-    assert failed.split()[:4] == [JOB_ID, "fill", "failed:", "no_quads"]
+    assert running.split()[:5] == [JOB_ID, "running:", "fill", "42", "%"]
+    assert failed.split()[:3] == [JOB_ID, "failed:", "no_quads"]
     assert "11-22 09:15:02" in running
 
 

@@ -1,0 +1,110 @@
+"""What a service keeps besides meshes and jobs: models, rules, keys; and trainings, which make models.
+
+Tested in `tests/integration/test_catalogue_commands.py`.
+"""
+
+import hashlib
+from collections.abc import Iterator
+from datetime import datetime
+from typing import TypeVar
+
+from pydantic import BaseModel
+
+from quadpatch_client.polling import parse
+from quadpatch_client.schema import (
+    Key,
+    KeyList,
+    KeyWithSecret,
+    ModelList,
+    NewKey,
+    NewTraining,
+    Rule,
+    RulePage,
+    Scope,
+    Training,
+)
+from quadpatch_client.transport import Transport
+
+M = TypeVar("M", bound=BaseModel)
+
+PAGE = 100
+
+
+class Catalogue:
+    """Calls of the client that are about models, rules and keys.
+
+    Parameters
+    ----------
+    transport : Transport
+    """
+
+    def __init__(self, transport: Transport) -> None:
+        self._transport = transport
+
+    def models(self) -> ModelList:
+        """Return all models and aliases, fetched page by page; of each model its newest versions."""
+        found = ModelList(models=[], aliases=[])
+        for page in self._pages("/v1/models", ModelList):
+            found.models += page.models
+            found.aliases += page.aliases
+        return found
+
+    def rules(self) -> list[Rule]:
+        """Return all rules by name, each in its latest version."""
+        return [rule for page in self._pages("/v1/rules", RulePage) for rule in page.items]
+
+    def keys(self) -> list[Key]:
+        """Return the keys of the tenant, without their secrets; needs the scope `admin`."""
+        return parse(KeyList, self._transport.request("GET", "/v1/keys")).items
+
+    def create_key(
+        self, name: str, scopes: list[Scope] | None = None, tenant: str | None = None, until: datetime | None = None
+    ) -> KeyWithSecret:
+        """Make a key; its secret is shown this once.
+
+        Parameters
+        ----------
+        name : str
+            For people.
+        scopes : list of Scope, optional
+            None: read, upload and repair.
+        tenant : str, optional
+            None: that of the key that asks.
+        until : datetime, optional
+            When it is no longer taken, with a zone; None: never.
+        """
+        wanted = NewKey.model_validate(
+            {"name": name, "tenant": tenant, "expires_at": until, "scopes": scopes or _SCOPES}
+        )
+        response = self._transport.request("POST", "/v1/keys", json=wanted.model_dump(mode="json"))
+        return parse(KeyWithSecret, response)
+
+    def revoke_key(self, key_id: str) -> None:
+        """End a key. There is no way back."""
+        self._transport.request("DELETE", f"/v1/keys/{key_id}")
+
+    def train(self, wanted: NewTraining) -> Training:
+        """Learn a model from uploaded meshes; the same request finds its training again.
+
+        A training is a job of the same id: wait for it as for every job.
+        """
+        text = wanted.model_dump_json()
+        key = f"train-{hashlib.sha256(text.encode()).hexdigest()}"
+        headers = {"Idempotency-Key": key, "Content-Type": "application/json"}
+        response = self._transport.request(
+            "POST", "/v1/trainings", content=lambda: iter([text.encode()]), headers=headers
+        )
+        return parse(Training, response)
+
+    def _pages(self, path: str, model: type[M]) -> Iterator[M]:
+        params = {"limit": str(PAGE)}
+        while True:
+            page = parse(model, self._transport.request("GET", path, params=params))
+            yield page
+            cursor = getattr(page, "next_cursor", None)
+            if cursor is None:
+                return
+            params["cursor"] = cursor
+
+
+_SCOPES = [Scope.READ, Scope.UPLOAD, Scope.REPAIR]
