@@ -4,8 +4,6 @@ References
 ----------
 J. Rossignac, P. Borrel, "Multi-resolution 3D approximations for rendering complex scenes", Modeling in Computer
 Graphics, 1993.
-
-Tested in `tests/quadpatch/views/test_reduction.py`.
 """
 
 import numpy as np

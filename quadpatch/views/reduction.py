@@ -20,10 +20,12 @@ from quadpatch.mesh.weld import first_of_equal
 from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Triangles
 from quadpatch.views.clustering import cells_of, cluster, join
 
-# A scan with so many times the wanted triangles is clustered first, to so many times the wanted ones. A finer grid
-# leaves fewer folds; where the cells hold many vertices, their means leave few in any case.
-_CLUSTERED_FROM, _CLUSTERED_TO = 5.0, 2.0
-_LARGE, _LARGE_TO = 20.0, 1.3
+# Clusters leave so many triangles more than are wanted, as a share of these, and at most; their collapse takes seconds.
+# More of them leave fewer folds; where cells hold many vertices, their means leave few in any case.
+_SPARE, _MOST_SPARE = 1.0, 200_000
+_LARGE, _SPARE_OF_LARGE = 20.0, 0.3
+# A scan of less than so many times the triangles that clusters would leave is not clustered.
+_CLUSTERED_FROM = 1.5
 # Invented surface of at most this share of the wanted triangles stays as it is.
 _KEPT_SHARE = 0.6
 # In a clustered scan, borders of at most this share of the wanted triangles stay as they are.
@@ -79,11 +81,11 @@ def reduce_surface(
     """
     n_invented = int(is_invented.sum())
     keeps = n_invented <= _KEPT_SHARE * n_triangles and not is_bounded
-    ratio = (len(mesh.triangles) - n_invented) / max(n_triangles, 1)
+    n_measured = len(mesh.triangles) - n_invented
+    n_clustered = _n_clustered(n_measured, n_triangles)
     if not keeps:
         label = cells_of(mesh, n_triangles)
-    elif ratio > _CLUSTERED_FROM:
-        n_clustered = int((_LARGE_TO if ratio > _LARGE else _CLUSTERED_TO) * n_triangles)
+    elif n_measured > _CLUSTERED_FROM * n_clustered:
         label = cluster(mesh, n_clustered, is_invented, int(_BORDER_SHARE * n_triangles))
     else:
         label = first_of_equal(mesh.vertices)
@@ -95,6 +97,12 @@ def reduce_surface(
         measured = _collapsed(*measured, n_wanted)
     invented = _part(joined, joined_colours, triangles[is_new])
     return Reduction(measured[0], invented[0], measured[1], invented[1], source[is_new])
+
+
+def _n_clustered(n_measured: int, n_triangles: int) -> int:
+    """Say how many triangles clusters are to leave of a surface that is to have `n_triangles` in the end."""
+    spare = _SPARE_OF_LARGE if n_measured > _LARGE * n_triangles else _SPARE
+    return n_triangles + min(int(spare * n_triangles), _MOST_SPARE)
 
 
 def _part(
