@@ -15,6 +15,7 @@
     │   ├── KeyNotFoundError        key_not_found
     │   ├── TenantNotFoundError     tenant_not_found      no key names that tenant, and nothing was set for it
     │   ├── RuleNotFoundError       rule_not_found        no rule has that name or version
+    │   ├── ShadowNotFoundError     shadow_not_found      no candidate runs beside that name
     │   ├── ResultMissingError      result_missing        the job has a result, but the store has lost its file
     │   └── ObjectNotFoundError     object_not_found      the store holds nothing under that key
     ├── ConflictError
@@ -143,6 +144,12 @@ class TenantNotFoundError(NotFoundError):
     """No key names that tenant, and nothing was set for it."""
 
     code = "tenant_not_found"
+
+
+class ShadowNotFoundError(NotFoundError):
+    """No candidate runs beside that name."""
+
+    code = "shadow_not_found"
 
 
 class RuleNotFoundError(NotFoundError):

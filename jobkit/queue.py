@@ -23,6 +23,7 @@ RUN_JOB = "worker.jobs.run_job"
 INSPECT_MESH = "worker.jobs.inspect_mesh"
 PROVE_MODEL = "worker.jobs.prove_model"
 MAKE_VIEW = "worker.jobs.make_view"
+RUN_SHADOW = "worker.jobs.run_shadow"
 # The engine has limits of its own; this one only frees a worker whose supervision of the engine failed.
 _MARGIN_S = 60
 _SOCKET_TIMEOUT_S = 5.0
@@ -93,6 +94,10 @@ class TaskQueue:
         """Ask for a view, in front of all that waits; raise QueueUnavailableError."""
         self._enqueue(MAKE_VIEW, view_id, view_entry(view_id, attempt), at_front=True)
 
+    def enqueue_shadow(self, job_id: str, attempt: int) -> None:
+        """Ask for the run of a candidate on a job, at the end of the queue; raise QueueUnavailableError."""
+        self._enqueue(RUN_SHADOW, job_id, shadow_entry(job_id, attempt), at_front=False)
+
     def entries(self) -> set[str]:
         """Return the entries that wait in the queue; raise QueueUnavailableError."""
         with _translated():
@@ -151,6 +156,11 @@ def job_entry(job_id: str, attempt: int) -> str:
 def mesh_entry(mesh_id: str, attempt: int) -> str:
     """Return the name of the queue's entry for that attempt at an analysis."""
     return f"mesh_{mesh_id}-{attempt}"
+
+
+def shadow_entry(job_id: str, attempt: int) -> str:
+    """Return the name of the queue's entry for that attempt at a run of a candidate."""
+    return f"shadow_{job_id}-{attempt}"
 
 
 def model_entry(reference: str, attempt: int) -> str:

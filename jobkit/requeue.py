@@ -14,13 +14,15 @@ from sqlalchemy import Row, exists, or_, select, update
 from jobkit.database.clock import shared_now
 from jobkit.database.quotas import free_places, quotas_of
 from jobkit.database.session import Database
+from jobkit.database.shadow_tables import ShadowRunRow
 from jobkit.database.tables import JobRow, MeshRow, ModelRow
 from jobkit.database.tenancy import mesh_id_of, own_name
 from jobkit.jobs.timeouts import TimeLimits, end_overdue
 from jobkit.jobs.turns import is_startable
 from jobkit.meshes import MAX_ANALYSES
 from jobkit.models.proofs import give_up_proofs, parts_of, reference_of
-from jobkit.queue import TaskQueue, job_entry, mesh_entry, model_entry
+from jobkit.queue import TaskQueue, job_entry, mesh_entry, model_entry, shadow_entry
+from jobkit.shadows.runs import next_run, note_enqueued, take_back_runs
 from quadpatch_client.schema import JobState, MeshProblem, MeshState, ModelState
 
 # Of jobs that have not ended.
@@ -41,6 +43,7 @@ class Reconciled:
     enqueued_jobs: int
     enqueued_meshes: int
     enqueued_models: int = 0
+    enqueued_shadows: int = 0
 
 
 def reconcile(
@@ -48,8 +51,8 @@ def reconcile(
 ) -> Reconciled:
     """End what is overdue and refill the queue; without `takes_leases`, leases that ran out are not taken back.
 
-    Where no job, no analysis and no proof is open, one query says so, and no other runs: an idle dispatcher
-    does this every second.
+    Where no job, no analysis, no proof and no run of a candidate is open, one query says so, and no other runs: an
+    idle dispatcher does this every second.
 
     Raises
     ------
@@ -63,11 +66,13 @@ def reconcile(
     _give_up_analyses(database, moment)
     with database.write() as session:
         give_up_proofs(session, moment)
+        take_back_runs(session, moment)
     entries = queue.entries()
     jobs = _enqueue_jobs(database, queue, entries, moment)
     meshes = _enqueue_meshes(database, queue, entries, moment)
     models = _enqueue_models(database, queue, entries, moment)
-    return Reconciled(ended, jobs, meshes, models)
+    shadows = _enqueue_shadow(database, queue, entries, moment)
+    return Reconciled(ended, jobs, meshes, models, shadows)
 
 
 def submit_job(database: Database, queue: TaskQueue, job_id: str, attempt: int, *, at_front: bool = False) -> None:
@@ -165,8 +170,9 @@ def _is_anything_open(database: Database) -> bool:
     job = exists().where(JobRow.state.in_(_OPEN_STATES))
     mesh = exists().where(MeshRow.state == MeshState.ANALYSING.value)
     model = exists().where(ModelRow.state == ModelState.PROVING.value)
+    shadow = exists().where(ShadowRunRow.finished_at.is_(None))
     with database.read() as session:
-        return bool(session.scalar(select(or_(job, mesh, model))))
+        return bool(session.scalar(select(or_(job, mesh, model, shadow))))
 
 
 def _enqueue_jobs(database: Database, queue: TaskQueue, entries: set[str], now: datetime) -> int:
@@ -242,6 +248,21 @@ def _enqueue_models(database: Database, queue: TaskQueue, entries: set[str], now
     for reference in missing_references:
         submit_proof(database, queue, reference)
     return len(missing_references)
+
+
+def _enqueue_shadow(database: Database, queue: TaskQueue, entries: set[str], now: datetime) -> int:
+    """Put a run of a candidate into the queue where a worker has nothing else to do."""
+    with database.read() as session:
+        found = next_run(session, now)
+    if found is None:
+        return 0
+    job_id, attempt, enqueued_at = found
+    if shadow_entry(job_id, attempt + 1) in entries or not _is_overdue(enqueued_at, now):
+        return 0
+    queue.enqueue_shadow(job_id, attempt + 1)
+    with database.write() as session:
+        note_enqueued(session, job_id)
+    return 1
 
 
 def _give_up_analyses(database: Database, now: datetime) -> None:

@@ -16,6 +16,7 @@ from sqlalchemy.orm import Session
 from jobkit.database.clock import utc_now
 from jobkit.database.job_rows import names_mesh
 from jobkit.database.session import Database
+from jobkit.database.shadow_tables import ShadowRunRow
 from jobkit.database.tables import AttemptRow, EventRow, IdempotencyRow, JobRow, MeshRow
 from jobkit.database.tenancy import mesh_id_of
 from jobkit.database.training_tables import TrainingMeshRow
@@ -188,6 +189,9 @@ def delete_rows(session: Session, rows: Sequence[JobRow]) -> set[str]:
         )
     for table in (IdempotencyRow, EventRow, AttemptRow, TrainingMeshRow):
         session.execute(delete(table).where(table.job_id.in_(ids)))
+    # Of candidates, what is still to come; figures of finished runs stay.
+    is_open = ShadowRunRow.job_id.in_(ids) & ShadowRunRow.finished_at.is_(None)
+    session.execute(delete(ShadowRunRow).where(is_open))
     session.execute(delete(JobRow).where(JobRow.id.in_(ids)))
     return unnamed(session, {row.cached_from or row.id for row in rows})
 

@@ -45,6 +45,7 @@ from service.routes import (
     results,
     retention,
     rules,
+    shadows,
     tenants,
     trainings,
     uploads,
@@ -91,7 +92,7 @@ def create_app(settings: Settings, telemetry: Telemetry | None = None) -> FastAP
     app.state.telemetry = telemetry or Telemetry()
     about_access = (keys, tenants, limits, audit)
     about_jobs = (meshes, uploads, jobs, events, results, views, repairs, retention, batches, batch_results)
-    about_models = (models, model_lifetime, trainings)
+    about_models = (models, model_lifetime, trainings, shadows)
     about_messages = (webhooks, callbacks, deliveries)
     about_service = (health, page, documentation, metrics)
     modules = (*about_jobs, *about_models, rules, *about_messages, *about_access, *about_service)

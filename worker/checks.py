@@ -43,6 +43,8 @@ class Check:
         Puts it into the queue again; raises QueueUnavailableError.
     needed_mb : int
         Memory that its engine is expected to need, in MiB.
+    gives_way : callable
+        Tells whether it is to end now, and to be forgiven: something else comes first.
     """
 
     subject: str
@@ -53,6 +55,7 @@ class Check:
     forgive: Callable[[float], None]
     submit: Callable[[], object]
     needed_mb: int
+    gives_way: Callable[[], bool] = lambda: False
 
 
 def run_check(
@@ -96,11 +99,11 @@ def _work_with_heartbeat(context: Context, check: Check, work: Callable[[Observe
     def renew(memory_mb: int, _peak_mb: int) -> bool:
         check.renew(settings.lease_s)
         context.admission.renew(settings.lease_s, memory_mb)
-        return False  # no client can cancel a check
+        return check.gives_way()
 
     heartbeat_calls = HeartbeatCalls(
         renew=renew,
-        is_cancel_requested=lambda: False,
+        is_cancel_requested=check.gives_way,
         report=lambda stage, percent: None,
         heartbeat_s=settings.heartbeat_s,
     )
@@ -121,6 +124,9 @@ def _settle(check: Check, outcome: Failure | StopReason) -> None:
         return
     if isinstance(outcome, Failure) and (not outcome.retryable or check.is_last):
         check.refuse(outcome.code, outcome.message)
+        return
+    if outcome is StopReason.CANCELED:
+        check.forgive(0.0)
         return
     if outcome is StopReason.DRAINED:
         check.forgive(0.0)

@@ -25,6 +25,7 @@ from jobkit.models.proofs import Proofs
 from jobkit.models.registry import Registry
 from jobkit.queue import TaskQueue
 from jobkit.settings import Settings
+from jobkit.shadows.runs import ShadowRuns
 from jobkit.storage.base import ObjectStore
 from jobkit.telemetry import Telemetry
 from jobkit.views import Views
@@ -93,6 +94,11 @@ class Context:
     def views(self) -> Views:
         """Views of meshes, jobs and models."""
         return Views(self.database)
+
+    @property
+    def shadow_runs(self) -> ShadowRuns:
+        """Runs of candidates."""
+        return ShadowRuns(self.database)
 
     @property
     def registry(self) -> Registry:

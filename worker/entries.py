@@ -14,15 +14,16 @@ from typing import Any
 from rq.exceptions import NoSuchJobError
 from rq.job import Job
 
-from jobkit.queue import INSPECT_MESH, MAKE_VIEW, PROVE_MODEL, RUN_JOB
+from jobkit.queue import INSPECT_MESH, MAKE_VIEW, PROVE_MODEL, RUN_JOB, RUN_SHADOW
 from quadpatch_rules.ids import MODEL_NAME, TENANT
-from worker.jobs import inspect_mesh, make_view, prove_model, run_job
+from worker.jobs import inspect_mesh, make_view, prove_model, run_job, run_shadow
 
 TASKS: dict[str, Callable[[str], None]] = {
     RUN_JOB: run_job,
     INSPECT_MESH: inspect_mesh,
     PROVE_MODEL: prove_model,
     MAKE_VIEW: make_view,
+    RUN_SHADOW: run_shadow,
 }
 # Of a job, a mesh or a view, or the reference to a version of a model, of a tenant perhaps.
 _ID = re.compile(rf"[0-9A-Za-z_-]{{1,100}}|({TENANT}/)?{MODEL_NAME}@[1-9][0-9]{{0,9}}")

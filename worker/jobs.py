@@ -25,6 +25,7 @@ from worker.memory import memory_given_back, submit_fitting
 from worker.places import place_given_back
 from worker.proofs import prove
 from worker.repairs import repair
+from worker.shadows import measure, note_shadow
 
 _PAUSE_S = 0.5
 
@@ -65,6 +66,8 @@ def run_job(job_id: str) -> None:
         span.set_attribute("quadpatch.state", "taken away" if state is None else state.value)
         if state is None or not (state.has_result or state is JobState.CANCELED):
             span.set_status(StatusCode.ERROR, "the attempt ended without a result")
+    if state is not None and state.has_result:
+        note_shadow(context, attempt.job_id, started.tenant)
 
 
 def inspect_mesh(mesh_id: str) -> None:
@@ -103,6 +106,18 @@ def make_view(view_id: str) -> None:
         return
     with log_about(view=view_id, attempt=attempt.attempt), memory_given_back(context):
         views.make_view(context, attempt)
+
+
+def run_shadow(job_id: str) -> None:
+    """Run a candidate on the mesh of a job that has its result, unless something else waits for a worker."""
+    context = current_context()
+    try:
+        run = _available(context)(lambda: context.shadow_runs.start(job_id, context.name, context.settings.lease_s))
+    except (StaleAttemptError, DatabaseUnavailableError) as error:
+        _log.info("nothing to do: %s", error)
+        return
+    with log_about(job_id=job_id, model=run.candidate, attempt=run.attempt), memory_given_back(context):
+        measure(context, run)
 
 
 def _available(context: Context) -> Retrying:

@@ -126,6 +126,13 @@ class Admission:
             reservation = Reservation(needed_mb, 0, is_job=False)
             reserve(session, self._machine.name, self._worker, reservation, now + timedelta(seconds=lease_s))
 
+    def has_room(self, kind: str, size_bytes: int) -> int | None:
+        """Return what a task of that kind is expected to need, in MiB, if the machine has it to spare; else None."""
+        needed_mb = min(self._needs.expected_mb(kind, size_bytes), self._rules.attempt_mb)
+        with self._database.read() as session:
+            room = room_of(session, self._machine, self._worker, shared_now(session))
+        return needed_mb if needed_mb <= room.left_mb else None
+
     def renew(self, lease_s: float, used_mb: int) -> None:
         """Prolong the reservation of the task at work; `used_mb` is the present memory of its engine."""
         with self._database.write() as session:

@@ -2,7 +2,7 @@
 
 from alembic import context
 
-from jobkit.database import access_tables, rule_tables, training_tables, upload_tables, view_tables  # noqa: F401 - their tables join the metadata
+from jobkit.database import access_tables, rule_tables, shadow_tables, training_tables, upload_tables, view_tables  # noqa: F401 - their tables join the metadata
 from jobkit.database.tables import MeshRow
 
 connection = context.config.attributes["connection"]

@@ -93,6 +93,8 @@ def _fill_more(plants: Plants) -> None:
     rule = plants.call(OWN, "PUT", "/v1/rules/scales", json={"acceptance": {"min_confidence": 0.5}})
     assert rule.status_code == 201, rule.text
     plants.ids["reference"] = "scales"
+    shadow = plants.call(OWN, "PUT", "/v1/shadows/scales", json={"candidate": "scales@1"})
+    assert shadow.status_code == 200, shadow.text
     webhook = plants.call(OWN, "POST", "/v1/webhooks", json={"url": HOOK, "events": ["job.succeeded"]})
     assert webhook.status_code == 201, webhook.text
     plants.ids["webhook_id"] = webhook.json()["id"]
@@ -122,6 +124,7 @@ BODIES: dict[str, Any] = {
     "create_batch": {"mesh_ids": ["{mesh_id}"]},
     "create_training": {"model": "stolen", "meshes": ["{mesh_id}"]},
     "set_alias": {"model": "scales@1"},
+    "set_shadow": {"candidate": "scales@1"},
     "dry_run_rule": {"mesh_id": "{mesh_id}"},
     "deprecate_model_version": {"reason": "x"},
     "change_webhook": {"enabled": False},
@@ -139,6 +142,7 @@ LISTS = {
     "list_models": "models",
     "list_trainings": "items",
     "list_rules": "items",
+    "list_shadows": "items",
     "list_webhooks": "items",
     "list_keys": "items",
     "list_audit": "items",

@@ -79,6 +79,15 @@ from quadpatch_client.schema.models import (
 )
 from quadpatch_client.schema.problems import PROBLEM_MEDIA_TYPE, FieldError, Problem, ProblemQuota
 from quadpatch_client.schema.rules import Rule, RuleContent, RuleLinks, RulePage, RulePlan, RuleTrial
+from quadpatch_client.schema.shadows import (
+    NewShadow,
+    Shadow,
+    ShadowFigures,
+    ShadowLinks,
+    ShadowList,
+    ShadowRun,
+    ShadowRunPage,
+)
 from quadpatch_client.schema.spec import (
     Format,
     HoleRule,
@@ -238,6 +247,7 @@ __all__ = [
     "ModelVersion",
     "NewBatch",
     "NewKey",
+    "NewShadow",
     "NewTraining",
     "NewWebhook",
     "Output",
@@ -271,6 +281,12 @@ __all__ = [
     "RulePlan",
     "RuleTrial",
     "Scope",
+    "Shadow",
+    "ShadowFigures",
+    "ShadowLinks",
+    "ShadowList",
+    "ShadowRun",
+    "ShadowRunPage",
     "SmoothMethod",
     "Task",
     "Tenant",

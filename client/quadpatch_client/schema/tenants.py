@@ -19,7 +19,9 @@ _SENT = "; null: the default of the service; 0: no limit."
 class Quotas(Response):
     """What a tenant may have; 0: no limit."""
 
-    stored_bytes: int = Field(default=0, description="Bytes of meshes, results, models, views and open uploads together.")
+    stored_bytes: int = Field(
+        default=0, description="Bytes of meshes, results, models, views and open uploads together."
+    )
     jobs_waiting: int = Field(default=0, description="Jobs that wait for a worker.")
     jobs_at_once: int = Field(default=0, description="Jobs at work at the same time; others wait.")
     streams: int = Field(default=0, description="Event streams that are open at the same time.")

@@ -1,0 +1,1 @@
+"""Candidates that run beside what jobs ask for."""
