@@ -26,6 +26,7 @@
     │   ├── UnknownHoleError        unknown_hole          an explicit id names no hole of the mesh
     │   ├── NoTrainingMeshError     no_training_mesh      the filter of a training finds no mesh to learn from
     │   ├── ViewFailedError         view_failed           what a viewer asks for can't be made
+    │   ├── NoNetworkWorkerError    no_network_worker     a network is to be fitted, and no running worker can do that
     │   ├── MeshInUseError          mesh_in_use           a mesh is to be deleted while jobs name it
     │   ├── JobNotFinishedError     job_not_finished      a result is asked for, or a deletion, before the job has ended
     │   ├── JobHasNoResultError     job_has_no_result     the job ended without one
@@ -240,6 +241,12 @@ class ViewFailedError(ConflictError):
     """A view can't be made: of what is no surface, or too large, or a model without anything to draw."""
 
     code = "view_failed"
+
+
+class NoNetworkWorkerError(ConflictError):
+    """A network is to be fitted, and no running worker can do that."""
+
+    code = "no_network_worker"
 
 
 class MeshInUseError(ConflictError):

@@ -14,7 +14,7 @@ from redis import Redis
 from redis.backoff import ConstantBackoff
 from redis.exceptions import RedisError, ResponseError
 from redis.retry import Retry
-from rq import Queue
+from rq import Queue, Worker
 from rq.serializers import JSONSerializer
 
 from jobkit.errors import QueueUnavailableError
@@ -24,6 +24,10 @@ INSPECT_MESH = "worker.jobs.inspect_mesh"
 PROVE_MODEL = "worker.jobs.prove_model"
 MAKE_VIEW = "worker.jobs.make_view"
 RUN_SHADOW = "worker.jobs.run_shadow"
+# What a worker may be able to do that others are not: fit networks, which takes torch.
+NETWORKS = "networks"
+# Field of a worker's entry in Valkey; the entry expires with the worker.
+_ABILITIES = "abilities"
 # The engine has limits of its own; this one only frees a worker whose supervision of the engine failed.
 _MARGIN_S = 60
 _SOCKET_TIMEOUT_S = 5.0
@@ -102,6 +106,19 @@ class TaskQueue:
         """Return the entries that wait in the queue; raise QueueUnavailableError."""
         with _translated():
             return set(self._queue.get_job_ids())
+
+    def note_abilities(self, worker_key: str, abilities: Iterable[str]) -> None:
+        """Write down what a worker can do, into the entry by which RQ knows it; raise QueueUnavailableError."""
+        with _translated():
+            self.connection.hset(worker_key, _ABILITIES, " ".join(abilities))
+
+    def abilities(self) -> set[str]:
+        """Return what running workers can do, all together; raise QueueUnavailableError."""
+        with _translated():
+            keys = Worker.all_keys(queue=self._queue)
+            noted = [self.connection.hget(key, _ABILITIES) for key in keys]
+        texts = [words.decode() if isinstance(words, bytes) else words for words in noted if words]
+        return {word for text in texts for word in text.split()}
 
     def ping(self) -> None:
         """Raise QueueUnavailableError if Redis does not answer."""

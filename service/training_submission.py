@@ -4,11 +4,13 @@ Tested in `tests/service/routes/test_trainings.py`.
 """
 
 from jobkit.database.searching import Period
-from jobkit.errors import NoTrainingMeshError
+from jobkit.errors import NoNetworkWorkerError, NoTrainingMeshError
 from jobkit.jobs.new_jobs import NewJob
 from jobkit.jobs.trainings import check_names
+from jobkit.jobs.turns import NETWORK_KIND
 from jobkit.logs import current_request_id
 from jobkit.meshes import MeshSearch
+from jobkit.queue import NETWORKS
 from jobkit.telemetry import current_traceparent
 from quadpatch_client.schema import Job, MeshState, NewTraining, ResolvedModel, TrainingFilter
 from service.idempotency import idempotency_of
@@ -31,6 +33,10 @@ def submit_training(services: Services, new: NewTraining, principal: str, key: s
     ------
     MeshNotFoundError, MeshRejectedError, MeshEncodedError, NoTrainingMeshError
         If a mesh is not there or can't be learned from, or a filter finds none.
+    NoNetworkWorkerError
+        If a network is to be fitted, and no running worker can do that.
+    QueueUnavailableError
+        If a network is to be fitted, and the queue does not answer which workers run.
     NameTakenError
         If the model can't have that name.
     OverLimitError
@@ -43,11 +49,15 @@ def submit_training(services: Services, new: NewTraining, principal: str, key: s
     if idempotency is not None and (earlier := services.jobs.earlier(idempotency)) is not None:
         return earlier, False
     check_limits(new.limits, services.settings)
+    if new.kind == "network" and NETWORKS not in services.queue.abilities():
+        raise NoNetworkWorkerError(
+            "no worker that runs can fit networks: they need the extra 'networks' (torch); dictionaries need none"
+        )
     sizes = _listed(services, new.meshes) if new.filter is None else _found(services, new.filter)
     spec = new.job_spec(list(sizes), max(sizes, key=lambda mesh_id: sizes[mesh_id]))
     if spec.train is not None:
         check_names(services.database, spec.train)
-    model = ResolvedModel(requested=new.model, kind="none")
+    model = ResolvedModel(requested=new.model, kind=NETWORK_KIND if new.kind == "network" else "none")
     job = NewJob(
         spec,
         model,

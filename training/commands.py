@@ -11,6 +11,7 @@ import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
+from quadpatch_rules.extras import OF_NETWORKS
 from training.build_corpus import EDGES, RESOLUTIONS, CorpusOptions, build_corpus
 from training.errors import MissingExtraError
 from training.normalise import normalise_dataset
@@ -18,7 +19,6 @@ from training.sources import find_sources, split_holdout
 from training.typed import command_line, refusals
 
 INTERRUPTED = 130
-EXTRA = ("torch", "onnx", "onnxscript")
 
 
 def corpus(  # noqa: PLR0913 - one parameter for each option of the command line
@@ -160,6 +160,6 @@ def network(  # noqa: PLR0913 - one parameter for each option of the command lin
 
 def _check_extra() -> None:
     """Look for what training and export need, before minutes are spent on training."""
-    for package in EXTRA:
+    for package in OF_NETWORKS:
         if find_spec(package) is None:
             raise MissingExtraError(f"training networks needs {package}: pip install '.[networks]' in the repository")

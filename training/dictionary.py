@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from quadpatch.errors import StageError
+from quadpatch.errors import OptionError
 from quadpatch.inpainters import paper_dictionary
 from quadpatch.patches.normalisation import HEIGHTS, NORMALISATION, to_signals
 from quadpatch.progress import Progress, no_progress
@@ -109,7 +109,7 @@ def learn_dictionary(
 
     Raises
     ------
-    StageError
+    OptionError
         If the meshes give fewer patches than atoms.
     MeshError
         If a mesh can't be read.
@@ -117,7 +117,10 @@ def learn_dictionary(
     ksvd = options.ksvd
     patches = _gather(sources, options, (options.n_procedural, options.seed), _named(progress, "training patches"))
     if len(patches) < ksvd.n_atoms:
-        raise StageError(f"the meshes give {len(patches)} patches; {ksvd.n_atoms} atoms need at least as many")
+        raise OptionError(
+            f"the meshes give {len(patches)} patches, and {ksvd.n_atoms} atoms need at least as many: "
+            "take fewer atoms, or more meshes"
+        )
     patches = turn_at_random(patches, np.random.default_rng([options.seed, 1]))
     rng = np.random.default_rng([options.seed, 2])
     atoms, errors, n_patches = LEARNERS[options.recipe.normalisation](patches, ksvd, rng, on_iteration)
@@ -144,7 +147,7 @@ def _learn_heights(
     """Learn the atoms of heights as a repair by the paper's recipe does from one mesh."""
     learned = paper_dictionary.learn_atoms(patches.detail, patches.known, ksvd, rng, on_iteration)
     if learned is None or learned.dictionary.n_atoms < ksvd.n_atoms:
-        raise StageError(f"too few of the patches show relief for {ksvd.n_atoms} atoms")
+        raise OptionError(f"too few of the patches show relief for {ksvd.n_atoms} atoms: take fewer, or more meshes")
     return learned.dictionary.atoms, learned.errors, learned.n_patches
 
 

@@ -24,6 +24,7 @@ from jobkit.storage.base import ObjectStore
 from jobkit.storage.open import open_store
 from jobkit.telemetry import open_telemetry
 from quadpatch.processes import usable_threads
+from worker.abilities import abilities
 from worker.context import Context, use_context, worker_name
 from worker.engine.client import ForkServer, ForkServerLostError
 from worker.engine.confinement import weaknesses
@@ -65,6 +66,7 @@ def _run(settings: Settings, store: ObjectStore) -> int:
             n_threads=n_threads,
             n_processes=settings.job_processes or n_threads,
             telemetry=stack.enter_context(open_telemetry("worker")),
+            abilities=abilities(),
         )
         stack.enter_context(log_about(worker=context.name))
         stack.enter_context(worker_folder(context.work_folder))
@@ -77,7 +79,8 @@ def _run(settings: Settings, store: ObjectStore) -> int:
             return _EXIT_BROKEN
         context.admission.refresh()
         stack.enter_context(ready_file())
-        execute(context.queue, settings.queue_name, context.name, context.draining, settings.log_level.upper())
+        level = settings.log_level.upper()
+        execute(context.queue, settings.queue_name, context.name, context.draining, level, context.abilities)
     return 0
 
 

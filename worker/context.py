@@ -23,7 +23,7 @@ from jobkit.jobs.reservations import Machine
 from jobkit.meshes import Meshes
 from jobkit.models.proofs import Proofs
 from jobkit.models.registry import Registry
-from jobkit.queue import TaskQueue
+from jobkit.queue import NETWORKS, TaskQueue
 from jobkit.settings import Settings
 from jobkit.shadows.runs import ShadowRuns
 from jobkit.storage.base import ObjectStore
@@ -49,6 +49,8 @@ class Context:
         Set once the worker is asked to stop.
     telemetry : Telemetry
         Takes the spans of attempts and stages.
+    abilities : frozenset of str
+        What it can do that others may not, see `jobkit.queue`.
     """
 
     name: str
@@ -61,11 +63,12 @@ class Context:
     n_processes: int = 1
     draining: threading.Event = field(default_factory=threading.Event)
     telemetry: Telemetry = field(default_factory=Telemetry)
+    abilities: frozenset[str] = frozenset({NETWORKS})
 
     @property
     def attempts(self) -> Attempts:
         """Attempts at jobs."""
-        return Attempts(self.database)
+        return Attempts(self.database, fits_networks=NETWORKS in self.abilities)
 
     @cached_property
     def admission(self) -> Admission:

@@ -12,6 +12,7 @@ import logging
 import secrets
 import threading
 import time
+from collections.abc import Iterable
 
 from redis.exceptions import RedisError
 from rq import Queue, SimpleWorker
@@ -28,7 +29,14 @@ _PAUSE_S = 1.0
 _log = logging.getLogger("quadpatch.worker.executor")
 
 
-def execute(queue: TaskQueue, queue_name: str, name: str, draining: threading.Event, logging_level: str) -> None:
+def execute(
+    queue: TaskQueue,
+    queue_name: str,
+    name: str,
+    draining: threading.Event,
+    logging_level: str,
+    abilities: Iterable[str] = (),
+) -> None:
     """Take tasks until the process is asked to stop.
 
     Parameters
@@ -41,11 +49,13 @@ def execute(queue: TaskQueue, queue_name: str, name: str, draining: threading.Ev
         Set by SIGTERM or SIGINT once tasks have been taken.
     logging_level : str
         Of RQ's own log lines.
+    abilities : iterable of str
+        What this worker can do that others may not, see `jobkit.queue`.
     """
     with contextlib.suppress(StopRequested):
         while not draining.is_set():
             try:
-                Executor(queue, queue_name, name, draining).work(logging_level=logging_level)
+                Executor(queue, queue_name, name, draining, abilities).work(logging_level=logging_level)
             except RedisError as error:
                 _log.warning("the queue does not answer: %s", error)
             if not draining.is_set():
@@ -59,7 +69,14 @@ class Executor(SimpleWorker):  # type: ignore[misc]
     max_connection_wait_time = 2.0
     log_result_lifespan = False
 
-    def __init__(self, queue: TaskQueue, queue_name: str, name: str, draining: threading.Event) -> None:
+    def __init__(
+        self,
+        queue: TaskQueue,
+        queue_name: str,
+        name: str,
+        draining: threading.Event,
+        abilities: Iterable[str] = (),
+    ) -> None:
         super().__init__(
             [Queue(queue_name, connection=queue.connection, serializer=JSONSerializer, job_class=Entry)],
             # RQ refuses a name that is still registered, as that of a killed worker is for a while.
@@ -71,6 +88,12 @@ class Executor(SimpleWorker):  # type: ignore[misc]
             worker_ttl=_TTL_S,
         )
         self._draining = draining
+        self._task_queue, self._abilities = queue, abilities
+
+    def register_birth(self) -> None:
+        """Say in the entry of this worker what it can do, too."""
+        super().register_birth()
+        self._task_queue.note_abilities(self.key, self._abilities)
 
     def handle_warm_shutdown_request(self) -> None:
         """Pass the request on: the first SIGTERM or SIGINT drains, RQ itself obeys a second one at once."""

@@ -34,7 +34,7 @@ def facts_of_task(report: Mapping[str, Any]) -> dict[str, Any]:
 
 def facts_of_training(report: Mapping[str, Any], model: str, sha256: str) -> dict[str, Any]:
     """Return the same of a training, before its version has a number."""
-    names = ("learned_from", "patches", "judged", "is_better", "verdict")
+    names = ("kind", "learned_from", "patches", "judged", "is_better", "verdict")
     unnumbered = {"model": model, "version": 1, "is_new": True, "sha256": sha256}
     learned = {**unnumbered, **{name: report[name] for name in names}}
     return {"training": learned, "warnings": [str(text) for text in report["warnings"]]}

@@ -3,7 +3,7 @@
 Tested in `tests/integration/test_trainings_over_http.py`.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from functools import partial
 from pathlib import Path
@@ -16,7 +16,7 @@ from jobkit.jobs.trainings import register_learned
 from jobkit.meshes import Meshes, MeshSource
 from jobkit.models.registry import MODEL_PREFIX, MOST_CONFLICTS, Registry
 from jobkit.storage.base import CHUNK_BYTES, StoredObject
-from quadpatch_client.schema import JobError, JobResult, JobState, TrainingSpec
+from quadpatch_client.schema import JobError, JobResult, JobState, TrainedKind, TrainingSpec
 from quadpatch_rules.tasks import DONE, TRAIN
 from worker.context import Context
 from worker.engine.limits import EngineLimits
@@ -26,7 +26,7 @@ from worker.folders import request_folder
 from worker.outcomes import linked
 from worker.spec import source_name, tighter_limits
 
-LEARNED_NAME = f"{DONE[TRAIN]}.safetensors"
+_SUFFIXES: Mapping[TrainedKind, str] = {"dictionary": "safetensors", "network": "onnx"}
 _SUBFOLDER = "mesh-"
 
 
@@ -42,12 +42,13 @@ def meshes_of(context: Context, started_attempt: StartedAttempt) -> list[MeshSou
 def training_request(started_attempt: StartedAttempt, meshes: list[MeshSource], limits: EngineLimits) -> EngineRequest:
     """Translate a training; `limits` are those of the worker, which the spec may only lower."""
     spec, training = started_attempt.job.spec, _training(started_attempt)
+    options = training.network if training.kind == "network" else training.options
     files = {source.mesh_id: source_name(source, f"{_SUBFOLDER}{i}") for i, source in enumerate(meshes)}
     return EngineRequest(
         task="train",
         source=next(iter(files.values())),
-        output=LEARNED_NAME,
-        options={"name": training.model, "seed": spec.seed, **training.options.model_dump()},
+        output=_learned_name(training),
+        options={"name": training.model, "seed": spec.seed, **options.model_dump()},
         limits=tighter_limits(limits, spec),
         meshes=files,
     )
@@ -65,10 +66,11 @@ def folder_with_meshes(context: Context, meshes: list[MeshSource]) -> Iterator[P
 def prepared_version(context: Context, started_attempt: StartedAttempt, folder: Path) -> ModelRow:
     """Store the learned file, and return the version that the training is to publish; no row names the file yet.
 
-    It needs no proof: the engine has repaired meshes with it. Raises UnusableModelError where the engine wrote no
-    dictionary.
+    It needs no proof: the engine has proven a network, and repaired meshes with a dictionary. Raises UnusableModelError
+    where the engine wrote no model.
     """
-    with (folder / LEARNED_NAME).open("rb") as source, context.store.writer(MODEL_PREFIX) as writer:
+    learned = folder / _learned_name(_training(started_attempt))
+    with learned.open("rb") as source, context.store.writer(MODEL_PREFIX) as writer:
         while chunk := source.read(CHUNK_BYTES):
             writer.write(chunk)
         stored: StoredObject = writer.commit()
@@ -93,6 +95,10 @@ def publish_training(
         except NameTakenError as error:
             return attempts.fail(started_attempt.attempt, JobError(code="model_name_taken", message=str(error)))
     return attempts.publish(started_attempt.attempt, result, stages, complete)
+
+
+def _learned_name(training: TrainingSpec) -> str:
+    return f"{DONE[TRAIN]}.{_SUFFIXES[training.kind]}"
 
 
 def _training(started_attempt: StartedAttempt) -> TrainingSpec:

@@ -37,8 +37,9 @@ from jobkit.jobs.events import append_event
 from jobkit.jobs.reuse import reuse_result
 from jobkit.jobs.stage_seconds import StageSeconds, add_stages
 from jobkit.jobs.transitions import Transition, make_transition, update_job
-from jobkit.jobs.turns import next_in_turn, note_turn
+from jobkit.jobs.turns import NETWORK_KIND, next_in_turn, note_turn
 from quadpatch_client.schema import Job, JobError, JobResult, JobState
+from quadpatch_rules.tasks import TRAIN
 
 AT_WORK = (JobState.RUNNING.value, JobState.CANCELING.value)
 # Jobs that a worker tries at one turn: each of them may have to wait for memory.
@@ -62,10 +63,18 @@ class StartedAttempt:
 
 
 class Attempts:
-    """All attempts of a database."""
+    """All attempts of a database.
 
-    def __init__(self, database: Database) -> None:
+    Parameters
+    ----------
+    database : Database
+    fits_networks : bool
+        Whether the worker that starts them can fit networks: else it starts no training of one.
+    """
+
+    def __init__(self, database: Database, *, fits_networks: bool = True) -> None:
         self._database = database
+        self._fits_networks = fits_networks
 
     def start_next(self, job_id: str, worker: str, lease_s: float, admission: Admission) -> StartedAttempt:
         """Start the job whose turn it is.
@@ -87,7 +96,7 @@ class Attempts:
         most = 0 if self._has_waited(job_id) else _MOST_TRIED
         while len(tried) < most:
             with self._database.read() as session:
-                chosen = next_in_turn(session, shared_now(session))
+                chosen = next_in_turn(session, shared_now(session), fits_networks=self._fits_networks)
             if chosen is None or chosen in tried:
                 break
             tried.add(chosen)
@@ -126,6 +135,8 @@ class Attempts:
             row = existing_job(session, job_id)
             if row.state != JobState.QUEUED or (row.not_before is not None and row.not_before > now):
                 raise _not_startable(row)
+            if row.task == TRAIN and row.model["kind"] == NETWORK_KIND and not self._fits_networks:
+                raise StaleAttemptError(f"job {job_id} is for a worker that fits networks")
             has_ended = row.may_reuse and reuse_result(session, row, now)
             if not has_ended:
                 check_places(session, row.tenant)

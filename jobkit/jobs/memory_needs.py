@@ -17,7 +17,7 @@ from quadpatch_rules.tasks import FILL, TRAIN
 # A fill by geometry alone, and kinds that are as frugal, or that fit a network.
 BY_GEOMETRY = kind_of(FILL, "none")
 _BY_GEOMETRY = (BY_GEOMETRY, kind_of(FILL, "auto", "fast"))
-_FITTING = (kind_of(FILL, "self_network"), kind_of(FILL, "auto", "best"))
+_FITTING = (kind_of(FILL, "self_network"), kind_of(FILL, "auto", "best"), kind_of(TRAIN, "self_network"))
 # Of an engine that has read nothing.
 BASE_MB = 80
 _MIB = 1 << 20

@@ -11,7 +11,7 @@ import heapq
 from collections import defaultdict, deque
 from collections.abc import Iterable, Mapping
 from datetime import UTC, datetime
-from typing import Protocol, TypeVar
+from typing import Literal, Protocol, TypeVar
 
 from sqlalchemy import ColumnElement, func, or_, select
 from sqlalchemy.dialects import postgresql, sqlite
@@ -20,11 +20,16 @@ from sqlalchemy.orm import Session
 from jobkit.database.quotas import free_places
 from jobkit.database.tables import JobRow, TurnRow
 from quadpatch_client.schema import JobState, Priority
+from quadpatch_rules.tasks import TRAIN
 
+# Kind of the model that a training of a network is pinned to.
+NETWORK_KIND: Literal["self_network"] = "self_network"
 # By their rank; rows hold that number.
 PRIORITIES: tuple[Priority, ...] = ("interactive", "normal", "bulk")
 _LONG_AGO = datetime.min.replace(tzinfo=UTC)
 _NEVER = (0, _LONG_AGO)
+# Trainings of networks: a repair that fits one says itself that it can't.
+NEEDS_NETWORKS = (JobRow.task == TRAIN) & (JobRow.model["kind"].as_string() == NETWORK_KIND)
 
 
 class Waiting(Protocol):
@@ -47,12 +52,15 @@ def rank_of(priority: Priority) -> int:
     return PRIORITIES.index(priority)
 
 
-def next_in_turn(session: Session, now: datetime) -> str | None:
+def next_in_turn(session: Session, now: datetime, *, fits_networks: bool = True) -> str | None:
     """Return the job whose turn it is, of those that may start and don't wait for memory; None where there is none.
 
-    A tenant that runs as many jobs as it may has no turn.
+    A tenant that runs as many jobs as it may has no turn, and a training of a network none with a worker that can't fit
+    one.
     """
     is_waiting = is_startable(now) & JobRow.tenant.not_in(busy_tenants(session))
+    if not fits_networks:
+        is_waiting &= ~NEEDS_NETWORKS
     urgent = select(func.min(JobRow.priority)).where(is_waiting).scalar_subquery()
     first = select(JobRow.tenant, func.min(JobRow.id).label("id")).where(is_waiting, JobRow.priority == urgent)
     rows = session.execute(first.group_by(JobRow.tenant)).all()

@@ -14,7 +14,7 @@ TAGS: Mapping[str, str] = {
     "views": "What a viewer shows of meshes, results and models; made when they are first asked for.",
     "retention": "Keep jobs and meshes that would expire.",
     "models": "Dictionaries and networks: versions, aliases, deprecation.",
-    "trainings": "Learn dictionaries from uploaded meshes, judge them, and publish them as models.",
+    "trainings": "Learn dictionaries and fit networks from uploaded meshes, judge them, and publish them as models.",
     "shadows": "Candidates that run beside what jobs ask for, on a share of them: compared, never delivered.",
     "rules": "What is done with holes and what results have to meet, saved under names.",
     "webhooks": "Subscriptions to what happens to jobs, and the log of deliveries.",

@@ -9,6 +9,8 @@ from typing import get_args
 from fastapi import APIRouter
 
 from jobkit.access.tenants import Tenants
+from jobkit.errors import QueueUnavailableError
+from jobkit.queue import NETWORKS
 from jobkit.settings import Settings
 from jobkit.version import VERSION
 from quadpatch_client.schema import (
@@ -18,11 +20,12 @@ from quadpatch_client.schema import (
     JobLimits,
     OutputFormat,
     RatePolicy,
+    TrainedKind,
     Version,
 )
 from service.rate_limits import WINDOW_S
 from service.routes.common import problems
-from service.services import AllServicesDep, PrincipalDep
+from service.services import AllServicesDep, PrincipalDep, Services
 from service.strict_validation import StrictRoute
 
 router = APIRouter(tags=["service"], route_class=StrictRoute)
@@ -43,6 +46,7 @@ def get_limits(services: AllServicesDep, principal: PrincipalDep) -> CallerLimit
         wait_s=settings.max_wait_s,
         formats_read=list(get_args(Format)),
         formats_written=list(get_args(OutputFormat)),
+        trainings=_trainings(services),
     )
 
 
@@ -50,6 +54,14 @@ def get_limits(services: AllServicesDep, principal: PrincipalDep) -> CallerLimit
 async def get_version() -> Version:
     """Show what runs here."""
     return Version(version=VERSION, api="v1", python=platform.python_version())
+
+
+def _trainings(services: Services) -> list[TrainedKind]:
+    """Say what running workers can learn; while the queue is away, of networks it is not known."""
+    try:
+        return ["dictionary", "network"] if NETWORKS in services.queue.abilities() else ["dictionary"]
+    except QueueUnavailableError:
+        return ["dictionary"]
 
 
 def _job_limits(settings: Settings) -> JobLimits:

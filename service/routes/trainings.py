@@ -10,6 +10,7 @@ from starlette.responses import Response
 from jobkit.errors import JobNotFoundError
 from jobkit.jobs.search import JobSearch
 from quadpatch_client.schema import Job, JobState, NewTraining, Training, TrainingPage
+from quadpatch_client.schema.base import EXAMPLE_SHA256
 from quadpatch_rules.tasks import TRAIN
 from service.finding import Limit
 from service.idempotency import note_replayed
@@ -40,7 +41,16 @@ _EXAMPLES: dict[str, Any] = {
                             "filter": {"filename": "casting-*.ply", "most": 50},
                             "make_default": "if_better",
                         },
-                    }
+                    },
+                    "network": {
+                        "summary": "A network, fitted to two scans",
+                        "value": {
+                            "model": "casting-network",
+                            "kind": "network",
+                            "meshes": [EXAMPLE_SHA256, "4" + EXAMPLE_SHA256[1:]],
+                            "network": {"steps": 500},
+                        },
+                    },
                 }
             }
         }
@@ -67,7 +77,7 @@ States = Annotated[list[JobState] | None, Query(description="Only trainings in t
 def create_training(
     services: ServicesDep, principal: PrincipalDep, new: NewTraining, key: IdempotencyKey = None
 ) -> Response:
-    """Learn a dictionary from uploaded meshes, and publish it as a version of a model of yours.
+    """Learn a dictionary, or fit a network, from uploaded meshes, and publish it as a version of a model of yours.
 
     A training is a job of the task `train`: it waits in the same queue, and webhooks tell of it. Meshes that are kept
     from learning are repaired by what was learned and by the plain fill; the verdict says which of them did better.

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from quadpatch.errors import StageError
+from quadpatch.errors import OptionError
 from quadpatch.sparse.ksvd import KsvdOptions
 from training.corpus import PatchRecipe
 from training.dictionary import LearningOptions, learn_dictionary
@@ -37,5 +37,5 @@ def test_reliefs_alone_teach_a_dictionary_that_codes_unseen_reliefs() -> None:
 
 
 def test_no_mesh_and_no_relief_give_nothing_to_learn() -> None:
-    with pytest.raises(StageError, match="0 patches"):
+    with pytest.raises(OptionError, match="0 patches"):
         learn_dictionary([], [], LearningOptions())

@@ -6,13 +6,14 @@ import pytest
 from benchmarks.quality.bench import Bench, Shape
 from benchmarks.quality.measurement import Method, measure
 from benchmarks.quality.results import Results
-from quadpatch.errors import StageError
+from quadpatch.errors import OptionError, StageError
 from quadpatch.inpainters.model_file import model_card
 from quadpatch.model_choice import SMOOTH
 from quadpatch.types import TriangleMesh
 from tests.quadpatch.shapes import bumpy_plate, write_ply
 from tests.training.walls import wall
-from training.requested import MOST_JUDGED, TrainingOptions, train_dictionary
+from training.held_out import MOST_JUDGED
+from training.requested import TrainingOptions, train_dictionary
 from training.sources import Source
 
 SHARED_BENCH = Path(__file__).resolve().parents[3] / "shared" / "bench"
@@ -68,7 +69,7 @@ def test_what_cannot_be_read_is_left_out_with_its_code(tmp_path: Path) -> None:
 
 def test_a_training_without_enough_patches_says_so(tmp_path: Path) -> None:
     few = TrainingOptions("few", atoms=1024, patch_resolution=8, steps=1)
-    with pytest.raises(StageError, match="1024 atoms need at least as many"):
+    with pytest.raises(OptionError, match="1024 atoms need at least as many"):
         train_dictionary([source(tmp_path, "small", bumpy_plate(20, 1.0))], tmp_path / "learned.safetensors", few)
 
 

@@ -1,9 +1,12 @@
+"""Also tests `worker.abilities`."""
+
 import threading
 
 import pytest
 
-from jobkit.queue import TaskQueue
+from jobkit.queue import NETWORKS, TaskQueue
 from jobkit.settings import Settings
+from worker.abilities import abilities
 from worker.context import worker_name
 from worker.executor import Executor
 
@@ -32,3 +35,24 @@ def test_a_worker_whose_executor_is_replaced_registers_again(queue: TaskQueue, s
     second.name = first.name
     with pytest.raises(ValueError, match="active worker"):
         second.register_birth()
+
+
+def test_the_service_knows_what_workers_can_do_as_long_as_they_run(queue: TaskQueue, settings: Settings) -> None:
+    def start(*able: str) -> str:
+        executor = Executor(queue, settings.queue_name, worker_name(1), threading.Event(), able)
+        executor.register_birth()
+        return str(executor.key)
+
+    assert queue.abilities() == set()
+    start()
+    assert queue.abilities() == set()
+    key = start(NETWORKS)
+    assert queue.abilities() == {NETWORKS}
+    queue.connection.delete(key)  # as when the entry of a killed worker expires
+    assert queue.abilities() == set()
+    start(NETWORKS)
+    assert queue.abilities() == {NETWORKS}
+
+
+def test_this_machine_has_the_extra_that_the_tests_install() -> None:
+    assert abilities() == {NETWORKS}

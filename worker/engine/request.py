@@ -8,7 +8,8 @@
     reference/source.ply  the clean scan that denoising learns from, likewise
     missing.json     numbers of the vertices to restore, where a list names them
     repaired.ply     the repaired mesh; restored.ply, denoised.ply, encoded.qpz, decoded.ply of other tasks
-    learned.safetensors   the dictionary of a training
+    learned.safetensors   the dictionary of a training; learned.onnx, the network of one
+    corpus/          training pairs that the network learns from
     report.json      what was done to every hole, or what else was done
     preview.png      the before/after picture
     closeups.zip     a picture of each chosen hole

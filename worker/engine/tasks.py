@@ -7,6 +7,7 @@ from typing import Any
 
 from quadpatch.compression.encode import EncodeOptions
 from quadpatch.denoising.denoise import DenoiseOptions
+from quadpatch.errors import TorchMissingError
 from quadpatch.model_choice import SELF
 from quadpatch.progress import Progress
 from quadpatch.restoration.restore import RestoreOptions
@@ -64,12 +65,19 @@ def _decode(folder: Path, request: EngineRequest, progress: Progress) -> TaskRes
 
 
 def train(folder: Path, request: EngineRequest, progress: Progress) -> dict[str, Any]:
-    """Learn a dictionary from the meshes of a request; return the report."""
-    from training.requested import TrainingOptions, train_dictionary  # noqa: PLC0415  few engines need it
-    from training.sources import Source  # noqa: PLC0415
+    """Learn what the output is to hold, a dictionary or a network, from the meshes of a request; return the report."""
+    from training.sources import Source  # noqa: PLC0415  few engines need it
 
-    meshes = [Source(mesh_id, folder / name, mesh_id) for mesh_id, name in request.meshes.items()]
-    return train_dictionary(meshes, folder / request.output, TrainingOptions(**request.options), progress)
+    meshes, output = [Source(id_, folder / name, id_) for id_, name in request.meshes.items()], folder / request.output
+    if output.suffix == ".onnx":
+        try:
+            from training.requested_network import NetworkTrainingOptions, train_network  # noqa: PLC0415  an extra
+        except ModuleNotFoundError as error:
+            raise TorchMissingError(f"fitting a network needs {error.name}, which this worker does not have") from error
+        return train_network(meshes, output, NetworkTrainingOptions(**request.options), progress)
+    from training.requested import TrainingOptions, train_dictionary  # noqa: PLC0415
+
+    return train_dictionary(meshes, output, TrainingOptions(**request.options), progress)
 
 
 MESH_TASKS: Mapping[EngineTask, Callable[[Path, EngineRequest, Progress], TaskResult]] = {

@@ -36,7 +36,14 @@ from quadpatch_client.schema.jobs import (
     ResultFormat,
 )
 from quadpatch_client.schema.keys import AuditEntry, AuditPage, Key, KeyList, KeyWithSecret, NewKey, Scope
-from quadpatch_client.schema.learning import JudgedMesh, TrainingOptions, TrainingResult, TrainingSpec
+from quadpatch_client.schema.learning import (
+    JudgedMesh,
+    NetworkTrainingOptions,
+    TrainedKind,
+    TrainingOptions,
+    TrainingResult,
+    TrainingSpec,
+)
 from quadpatch_client.schema.meshes import (
     BoundingBox,
     EncodedFacts,
@@ -245,6 +252,7 @@ __all__ = [
     "ModelProblem",
     "ModelState",
     "ModelVersion",
+    "NetworkTrainingOptions",
     "NewBatch",
     "NewKey",
     "NewShadow",
@@ -293,6 +301,7 @@ __all__ = [
     "TenantChanges",
     "TenantList",
     "TenantWithUse",
+    "TrainedKind",
     "Training",
     "TrainingFilter",
     "TrainingLinks",

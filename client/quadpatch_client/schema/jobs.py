@@ -21,7 +21,7 @@ from quadpatch_rules.option_words import OutputFormat
 from quadpatch_rules.tasks import FILL, Task
 
 # What a job hands back: a mesh in a format of its own choice, an encoded surface, or a model.
-ResultFormat = OutputFormat | Literal["qpz", "safetensors"]
+ResultFormat = OutputFormat | Literal["qpz", "safetensors", "onnx"]
 FileRole = Literal["result", "report", "preview", "closeups", "html_report"]
 
 
@@ -58,7 +58,8 @@ class JobResult(Response):
     """Facts of a finished job. Lengths are in mesh units; what a task does not count is null."""
 
     format: ResultFormat = Field(
-        description="Format of what came back; `qpz` from `encode`, `safetensors` from `train`.", examples=["ply"]
+        description="Format of what came back; `qpz` from `encode`, `safetensors` or `onnx` from `train`.",
+        examples=["ply"],
     )
     holes: HoleCounts = Field(default_factory=HoleCounts, description="Verdicts over all holes.")
     new_vertices: int = Field(default=0, ge=0, description="Vertices that were added.", examples=[2110])

@@ -13,7 +13,21 @@ MOST_MESHES = 200
 Atoms = Annotated[int, Field(ge=8, le=1024), WHOLE]
 PatchResolution = Annotated[int, Field(ge=8, le=32), WHOLE]
 Steps = Annotated[int, Field(ge=1, le=100), WHOLE]
+FittingSteps = Annotated[int, Field(ge=1, le=20_000), WHOLE]
+TrainedKind = Literal["dictionary", "network"]
 MakeDefault = Literal["never", "if_better"]
+
+
+HeldOut = Annotated[
+    float,
+    Field(
+        gt=0,
+        le=0.5,
+        description="Share of the meshes that are kept from learning and judged on: at least one, at most eight. Of a "
+        "single mesh, holes that are cut into it are kept instead.",
+        examples=[0.25],
+    ),
+]
 
 
 class TrainingOptions(Request):
@@ -22,24 +36,38 @@ class TrainingOptions(Request):
     atoms: Atoms = Field(default=256, description="Atoms of the dictionary.", examples=[256])
     patch_resolution: PatchResolution = Field(default=24, description="Bins along one side of a patch.", examples=[24])
     steps: Steps = Field(default=15, description="Rounds of K-SVD.", examples=[15])
-    held_out: float = Field(
-        default=0.25,
-        gt=0,
-        le=0.5,
-        description="Share of the meshes that are kept from learning and judged on: at least one, at most eight. Of a "
-        "single mesh, holes that are cut into it are kept instead.",
-        examples=[0.25],
+    held_out: HeldOut = 0.25
+
+
+class NetworkTrainingOptions(Request):
+    """How a network is fitted."""
+
+    steps: FittingSteps = Field(
+        default=500,
+        description="At most so many steps, of 64 training pairs each; fewer where nothing is gained any more.",
+        examples=[500],
     )
+    start: Literal["shipped", "random"] = Field(
+        default="shipped",
+        description="Weights to begin with: those of the network that ships, `general-residual@1`, or random ones, "
+        "which need thousands of steps.",
+        examples=["shipped"],
+    )
+    held_out: HeldOut = 0.25
 
 
 class TrainingSpec(Request):
     """Options of the task `train`."""
 
     model: ModelName
+    kind: TrainedKind = Field(default="dictionary", description="What is learned.", examples=["network"])
     meshes: list[MeshId] = Field(
         min_length=1, max_length=MOST_MESHES, description="Ids of the meshes that it learns from and is judged on."
     )
-    options: TrainingOptions = Field(default_factory=TrainingOptions, description="How it is learned.")
+    options: TrainingOptions = Field(default_factory=TrainingOptions, description="Of a dictionary: how it is learned.")
+    network: NetworkTrainingOptions = Field(
+        default_factory=NetworkTrainingOptions, description="Of a network: how it is fitted."
+    )
     make_default: MakeDefault = Field(
         default="never",
         description="`if_better`: the alias is pointed to the new version where held-out meshes say that it is better "
@@ -70,7 +98,10 @@ class TrainingResult(Response):
     is_new: bool = Field(description="False: an earlier training has learned the very same bytes.")
     sha256: Sha256
     learned_from: list[MeshId] = Field(description="Meshes that it was learned from.")
-    patches: int = Field(ge=0, description="Patches that it was learned from.", examples=[12_000])
+    kind: TrainedKind = Field(default="dictionary", description="What it is.", examples=["dictionary"])
+    patches: int = Field(
+        ge=0, description="Patches, or training pairs of a network, that it was learned from.", examples=[12_000]
+    )
     judged: list[JudgedMesh] = Field(description="Errors beside the plain fill, for each mesh that was held out.")
     is_better: bool = Field(description="Whether it is better than the plain fill, all in all.")
     verdict: str = Field(

@@ -9,6 +9,7 @@ from pydantic import Field
 
 from quadpatch_client.schema.base import WHOLE, Moment, Request, Response
 from quadpatch_client.schema.keys import Tenant as TenantName
+from quadpatch_client.schema.learning import TrainedKind
 
 _LARGEST = 2**53 - 1
 # Of what a client sends: the description of a quota is that of `Quotas`.
@@ -111,6 +112,11 @@ class CallerLimits(Response):
     wait_s: float = Field(description="Longest that `Prefer: wait` lets a request wait, in seconds.", examples=[30.0])
     formats_read: list[str] = Field(description="Formats of meshes that are read.", examples=[["ply", "stl"]])
     formats_written: list[str] = Field(description="Formats of results.", examples=[["ply", "stl"]])
+    trainings: list[TrainedKind] = Field(
+        default_factory=list,
+        description="What `POST /v1/trainings` can learn now; `network` where a worker runs that has torch.",
+        examples=[["dictionary", "network"]],
+    )
 
 
 class Version(Response):

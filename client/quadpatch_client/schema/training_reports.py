@@ -8,7 +8,7 @@ from typing import Literal
 from pydantic import Field
 
 from quadpatch_client.schema.base import Response
-from quadpatch_client.schema.learning import JudgedMesh
+from quadpatch_client.schema.learning import JudgedMesh, TrainedKind
 from quadpatch_client.schema.report_parts import ReportSchema, StageTime
 
 
@@ -19,9 +19,13 @@ class TrainReport(Response):
     task: Literal["train"] = Field(description="What was done.", examples=["train"])
     stages: list[StageTime] = Field(description="Seconds of each stage, in order.")
     learned_from: list[str] = Field(description="Ids of the meshes that it was learned from.")
-    patches: int = Field(ge=0, description="Patches that it was learned from.", examples=[12_000])
+    kind: TrainedKind = Field(default="dictionary", description="What was learned.", examples=["dictionary"])
+    patches: int = Field(
+        ge=0, description="Patches, or training pairs of a network, that it was learned from.", examples=[12_000]
+    )
     learning_errors: list[float] = Field(
-        description="Root mean square error on the patches after each round of K-SVD; 1 is their own.",
+        description="Of a dictionary: root mean square error on the patches after each round of K-SVD; 1 is their own. "
+        "Of a network: its loss on training pairs that it does not learn from, five times over its steps.",
         examples=[[0.16, 0.11, 0.09]],
     )
     judged: list[JudgedMesh] = Field(description="Errors beside the plain fill, for each mesh that was held out.")

@@ -19,7 +19,16 @@ from quadpatch_client.schema.base import (
     SentMoment,
 )
 from quadpatch_client.schema.jobs import Job, JobError
-from quadpatch_client.schema.learning import MOST_MESHES, MakeDefault, TrainingOptions, TrainingResult, TrainingSpec
+from quadpatch_client.schema.learning import (
+    MOST_MESHES,
+    MakeDefault,
+    NetworkTrainingOptions,
+    TrainedKind,
+    TrainingOptions,
+    TrainingResult,
+    TrainingSpec,
+)
+from quadpatch_client.schema.methods import DEFAULT_MODEL, DEFAULT_NETWORK
 from quadpatch_client.schema.spec import Format, JobSpec, Limits, Metadata, Priority, Seed, Text
 from quadpatch_client.schema.states import JobState
 from quadpatch_rules.tasks import TRAIN
@@ -49,18 +58,34 @@ class NewTraining(Request):
     """What is to be learned from which meshes: a list of them, or a filter."""
 
     model: ModelName
+    kind: TrainedKind = Field(
+        default="dictionary",
+        description="`dictionary`, or `network`: it needs workers with torch, which `GET /v1/limits` tells "
+        "(`trainings`).",
+        examples=["network"],
+    )
     meshes: MeshIds | None = Field(default=None, description="Ids of uploaded meshes.")
     filter: TrainingFilter | None = Field(
         default=None, description="In place of a list: the meshes that it finds when the training is accepted."
     )
-    options: TrainingOptions = Field(default_factory=TrainingOptions, description="How it is learned.")
+    options: TrainingOptions = Field(
+        default_factory=TrainingOptions, description="How a dictionary is learned; refused with the kind `network`."
+    )
+    network: NetworkTrainingOptions = Field(
+        default_factory=NetworkTrainingOptions,
+        description="How a network is fitted; refused with the kind `dictionary`.",
+    )
     make_default: MakeDefault = Field(
         default="never",
         description="`if_better`: point the alias to the new version if held-out meshes say that it is better than the "
         "plain fill.",
         examples=["if_better"],
     )
-    alias: AliasName = Field(default="default")
+    alias: AliasName | None = Field(
+        default=None,
+        description="The alias that `make_default` moves; null: `default`, and `default-network` for networks.",
+        examples=["default"],
+    )
     limits: Limits = Field(default_factory=Limits, description="Ceilings of one attempt.")
     seed: Seed = Field(default=0, description="Starts every random choice; it chooses the held-out meshes.")
     priority: Priority = Field(default="normal", description="As of a job.", examples=["bulk"])
@@ -75,6 +100,9 @@ class NewTraining(Request):
             raise ValueError("give meshes or a filter, one of the two")
         if self.meshes is not None and len(set(self.meshes)) < len(self.meshes):
             raise ValueError("meshes names a mesh twice")
+        other = "options" if self.kind == "network" else "network"
+        if other in self.model_fields_set:
+            raise ValueError(f"{other} does not go with the kind {self.kind}")
         return self
 
     def job_spec(self, mesh_ids: list[str], first: str) -> JobSpec:
@@ -82,10 +110,12 @@ class NewTraining(Request):
         copied = ("limits", "seed", "priority", "label", "metadata")
         train = TrainingSpec(
             model=self.model,
+            kind=self.kind,
             meshes=mesh_ids,
             options=self.options,
+            network=self.network,
             make_default=self.make_default,
-            alias=self.alias,
+            alias=self.alias or (DEFAULT_NETWORK if self.kind == "network" else DEFAULT_MODEL),
         )
         return JobSpec(mesh_id=first, task=TRAIN, train=train, **{name: getattr(self, name) for name in copied})
 

@@ -7,10 +7,14 @@ from typing import Any
 import pytest
 from starlette.testclient import TestClient
 
+from jobkit.database.clock import utc_now
+from jobkit.errors import StaleAttemptError
 from jobkit.jobs.attempts import Attempts
 from jobkit.jobs.trainings import register_learned
+from jobkit.jobs.turns import next_in_turn
 from jobkit.meshes import Meshes
 from jobkit.models.registry import MODEL_PREFIX, Registry
+from jobkit.queue import NETWORKS
 from quadpatch_client.schema import JobResult, MeshProblem, ModelVersion, TrainingResult
 from service.services import Services
 
@@ -104,6 +108,47 @@ def test_trainings_are_listed_apart_from_other_jobs(client: TestClient, job_id: 
     assert client.get(f"/v1/jobs/{job_id}").json()["state"] == "queued"
 
 
+@pytest.fixture
+def able(services: Services) -> None:
+    """Let a worker that fits networks be known to the queue."""
+    key = "rq:worker:able"
+    services.queue.connection.sadd(f"rq:workers:{services.settings.queue_name}", key)
+    services.queue.note_abilities(key, [NETWORKS])
+
+
+def test_no_network_is_promised_that_no_worker_can_fit(client: TestClient, mesh_ids: list[str]) -> None:
+    body = {"model": "nets", "kind": "network", "meshes": mesh_ids}
+    answer = client.post("/v1/trainings", json=body)
+    assert (answer.status_code, answer.json()["code"]) == (409, "no_network_worker")
+    assert client.get("/v1/trainings").json()["items"] == []
+    assert client.get("/v1/limits").json()["trainings"] == ["dictionary"]
+
+
+@pytest.mark.usefixtures("able")
+def test_a_network_is_a_training_like_others(client: TestClient, train: Callable[..., Any]) -> None:
+    assert client.get("/v1/limits").json()["trainings"] == ["dictionary", "network"]
+    training = train(kind="network", network={"steps": 7})
+    said = training["train"]
+    assert (said["kind"], said["network"]["steps"], said["alias"]) == ("network", 7, "default-network")
+    job = client.get(f"/v1/jobs/{training['id']}").json()
+    assert job["model"]["kind"] == "self_network"
+    assert train(model="fences", kind="network", alias="mine")["train"]["alias"] == "mine"
+
+
+def test_a_worker_without_torch_leaves_networks_to_others(
+    services: Services, able: None, train: Callable[..., Any]
+) -> None:
+    network, dictionary = train(kind="network"), train(model="fences")
+    unable = Attempts(services.database, fits_networks=False)
+    with services.database.read() as session:
+        assert next_in_turn(session, utc_now()) == network["id"]
+        assert next_in_turn(session, utc_now(), fits_networks=False) == dictionary["id"]
+    with pytest.raises(StaleAttemptError, match="for a worker that fits networks"):
+        unable.start(network["id"], "w", 30)
+    assert unable.start(dictionary["id"], "w", 30).job.id == dictionary["id"]
+    assert services.attempts.start(network["id"], "w", 30).job.id == network["id"]
+
+
 def test_a_training_is_canceled_once(client: TestClient, train: Callable[..., Any]) -> None:
     path = train()["links"]["cancel"]
     assert [client.post(path).json()["state"] for _ in range(2)] == ["canceled", "canceled"]
@@ -145,6 +190,10 @@ def test_a_repeated_request_is_the_same_training_whatever_the_filter_finds_now(
         ({"model": "walls", "meshes": ["0" * 64], "options": {"atoms": 4}}, "/options/atoms"),
         ({"model": "walls", "meshes": ["0" * 64], "options": {"held_out": 0.9}}, "/options/held_out"),
         ({"model": "No Name", "meshes": ["0" * 64]}, "/model"),
+        ({"model": "nets", "kind": "network", "meshes": ["0" * 64], "options": {}}, ""),
+        ({"model": "nets", "meshes": ["0" * 64], "network": {"steps": 5}}, ""),
+        ({"model": "nets", "kind": "network", "meshes": ["0" * 64], "network": {"steps": 0}}, "/network/steps"),
+        ({"model": "nets", "kind": "tree", "meshes": ["0" * 64]}, "/kind"),
     ],
 )
 def test_what_makes_no_sense_is_refused_with_its_place(client: TestClient, body: Any, place: str) -> None:
