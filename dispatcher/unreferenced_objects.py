@@ -135,7 +135,7 @@ def _sweep_parts(database: Database, store: ObjectStore, batch: list[ListedObjec
 
 
 def _sweep_contents(database: Database, store: ObjectStore, batch: list[ListedObject], before: datetime) -> SweepResult:
-    """Delete meshes, models and views that no row names; `jobkit.storage.removals` handles uploads of the same bytes."""
+    """Delete meshes, models, views that no row names; `jobkit.storage.removals` handles uploads of the same bytes."""
     keys = {listed.key for listed in batch}
     with database.read() as session:
         keys -= named_keys(session, keys)

@@ -78,7 +78,8 @@ class Settings(BaseSettings):
         ge=0,
         le=2**32,
         description="Most MiB that a tenant stores, meshes, results, models, views and open uploads together; 0: no "
-        "limit. This and the next four hold for tenants for which nothing else was set, and never for the tenant `default`.",
+        "limit. This and the next four hold for tenants for which nothing else was set, and never for the tenant "
+        "`default`.",
     )
     tenant_jobs_waiting: int = Field(
         default=10_000, ge=0, le=2**31, description="Most jobs of a tenant that wait for a worker; 0: no limit."

@@ -45,7 +45,7 @@ def middle(picture: NDArray[np.uint8]) -> Colour:
     """The median colour of a small square in the middle."""
     height, width, _ = picture.shape
     square = picture[height // 2 - 6 : height // 2 + 6, width // 2 + 14 : width // 2 + 26]
-    return np.median(square.reshape(-1, 3), axis=0).astype(np.int64)
+    return np.asarray(np.median(square.reshape(-1, 3), axis=0), np.int64)
 
 
 def covered(picture: NDArray[np.uint8]) -> float:
