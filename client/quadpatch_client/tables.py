@@ -95,16 +95,14 @@ def _standing(version: "ModelVersion") -> str:
 
 def print_jobs(console: Console, jobs: Iterable["Job"]) -> None:
     """Print jobs, one a line."""
-    from quadpatch_client.schema import JobState  # noqa: PLC0415  loaded by the time that there are jobs
-
     table = _table(None)
     table.add_column("job", no_wrap=True)
-    table.add_column("state", overflow="fold", min_width=len(JobState.SUCCEEDED_WITH_WARNINGS))
+    table.add_column("state", no_wrap=True)
     table.add_column("made (UTC)", no_wrap=True)
     table.add_column("label", overflow="fold")
     for job in jobs:
         task = "" if job.spec.task == FILL else f"{job.spec.task}, "
-        made = f"{job.created_at.astimezone(UTC):%m-%d %H:%M:%S}"
+        made = f"{job.created_at.astimezone(UTC):%m-%d %H:%M}"
         table.add_row(job.id, f"{task}{_progress(job)}", made, job.spec.label or "")
     console.print(table if table.row_count else "no jobs")
 

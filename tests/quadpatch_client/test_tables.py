@@ -68,7 +68,18 @@ def test_a_job_shows_its_error_or_else_its_stage() -> None:
     _, running, failed = text.getvalue().splitlines()
     assert running.split()[:5] == [JOB_ID, "running:", "fill", "42", "%"]
     assert failed.split()[:3] == [JOB_ID, "failed:", "no_quads"]
-    assert "11-22 09:15:02" in running
+    assert "11-22 09:15 " in running
+
+
+def test_jobs_fit_80_columns_with_their_whole_ids_states_and_labels() -> None:
+    job = json.loads(body("succeeded_with_warnings", 3)) | {
+        "spec": {"mesh_id": "0" * 64, "label": "station 4, part 1187"}
+    }
+    text = io.StringIO()
+    print_jobs(Console(file=text, width=80), [Job.model_validate(job)])
+    _, first, second = text.getvalue().splitlines()
+    assert first.split() == [JOB_ID, "succeeded_with_warnings", "11-22", "09:15", "station", "4,"]
+    assert second.split() == ["part", "1187"]
 
 
 def test_empty_lists_are_said_to_be_empty() -> None:
