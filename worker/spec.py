@@ -97,6 +97,7 @@ def who_asked(started: StartedAttempt) -> dict[str, Any] | None:
         "label": job.spec.label,
         "metadata": job.spec.metadata,
         "rule": job.spec.rule,
+        "acceptance": None if job.spec.acceptance is None else job.spec.acceptance.model_dump(),
         "mesh_name": job.mesh_name,
     }
 

@@ -21,6 +21,13 @@ FILLS = {
     "thin_plate": "thin plate",
     "constrained": "constrained fairing",
 }
+FAULTS = {
+    "refused": "it stays open",
+    "unknown": "it has no figure that a limit asks for",
+    "expected_error": "the expected error is over the limit",
+    "error_share": "the expected error is over the limit for a hole of its diameter",
+    "confidence": "the confidence is below the limit",
+}
 NONE = "–"
 # Names of models that stand for none where no shares are given: what competed has lost, or nothing was to compete.
 _WITHOUT_MODEL = ("auto", "smooth")

@@ -14,6 +14,7 @@ from quadpatch.preview.sheet import before_after_png
 from quadpatch.progress import Progress, no_progress
 from quadpatch.repair import RepairedFile
 from quadpatch.stages import failure_of, peak_memory_mib
+from quadpatch_rules.acceptance import judge
 
 # Close-ups in a page: with their base64 at most 5.4 MiB of it.
 MOST_PICTURES = 24
@@ -48,7 +49,8 @@ def add_html_report(repaired: RepairedFile, order: PageOrder, page: Path, progre
     Parameters
     ----------
     repaired : RepairedFile
-        Its report gets the `provenance`, the seconds of the stage `html_report`, and a warning where there is no page.
+        Its report gets the `provenance`, `acceptance` where the request has limits, the seconds of the stage
+        `html_report`, and a warning where there is no page.
     order : PageOrder
     page : Path
     progress : callable
@@ -64,6 +66,9 @@ def add_html_report(repaired: RepairedFile, order: PageOrder, page: Path, progre
 
 def _write(repaired: RepairedFile, order: PageOrder, page: Path, progress: Progress) -> None:
     repaired.report["provenance"] = provenance(order.start, repaired, order.output, order.request)
+    limits = (order.request or {}).get("acceptance")
+    if limits is not None:
+        repaired.report["acceptance"] = judge(repaired.report["holes"], limits)
     close_ups = draw_widest(
         repaired, MOST_PICTURES, MOST_PICTURE_BYTES, lambda _stage, fraction: progress(STAGE, fraction)
     )

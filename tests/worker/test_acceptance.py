@@ -6,8 +6,8 @@ from typing import Any
 
 import pytest
 
-from quadpatch_client.schema import Acceptance, JobSpec
-from worker.acceptance import check_acceptance, judge
+from quadpatch_client.schema import JobSpec
+from worker.acceptance import check_acceptance
 from worker.engine.request import REPORT_NAME
 from worker.failures import EngineFailedError
 
@@ -23,39 +23,6 @@ HOLES = [
     hole(1, error=None, confidence=None, verdict="skipped"),
     hole(0),
 ]
-
-
-@pytest.mark.parametrize(
-    ("limits", "faults"),
-    [
-        ({}, {2: ["refused"]}),
-        ({"max_expected_error": 0.1}, {2: ["refused"], 4: ["expected_error"]}),
-        ({"max_expected_error": 0.3}, {2: ["refused"]}),
-        ({"max_error_share": 0.1}, {2: ["refused"], 4: ["error_share"]}),
-        ({"max_error_share": 0.15}, {2: ["refused"]}),
-        ({"min_confidence": 0.8}, {2: ["refused"], 3: ["confidence"]}),
-        (
-            {"min_confidence": 0.9, "max_expected_error": 0.2, "max_error_share": 0.04},
-            {
-                0: ["error_share", "confidence"],
-                2: ["refused"],
-                3: ["error_share", "confidence"],
-                4: ["expected_error", "error_share", "confidence"],
-            },
-        ),
-    ],
-)
-def test_every_chosen_hole_is_held_to_every_limit(limits: dict[str, float], faults: dict[int, list[str]]) -> None:
-    accepted = judge(HOLES, Acceptance.model_validate(limits))
-    assert {unmet.id: unmet.faults for unmet in accepted.unmet} == faults
-    assert [unmet.id for unmet in accepted.unmet] == sorted(faults)
-    assert (accepted.is_met, accepted.holes) == (False, 4)
-
-
-@pytest.mark.parametrize("limits", [{"max_expected_error": 1.0}, {"max_error_share": 1.0}, {"min_confidence": 0.1}])
-def test_a_hole_without_the_figure_does_not_meet_its_limit(limits: dict[str, float]) -> None:
-    (unmet,) = judge([hole(0, None, None)], Acceptance.model_validate(limits)).unmet
-    assert unmet.faults == ["unknown"]
 
 
 def spec(**acceptance: Any) -> JobSpec:

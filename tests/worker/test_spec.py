@@ -276,6 +276,7 @@ def test_who_asked_is_told_where_a_page_is_asked_for() -> None:
         "label": "part 7",
         "metadata": {"order": "A-17"},
         "rule": None,
+        "acceptance": None,
         "mesh_name": "bust.ply",
     }
     plain = Job.model_validate_json(body("queued", 1, spec=spec().model_dump()))

@@ -9,6 +9,7 @@ from typing import Any, Literal
 
 from pydantic import Field
 
+from quadpatch_client.schema.acceptance import Acceptance
 from quadpatch_client.schema.base import EXAMPLE_JOB_ID, Response, Sha256
 
 Vector = list[float]
@@ -106,6 +107,7 @@ class Asked(Response):
     label: str | None = Field(description="Name of the job for people.", examples=["station 4, part 1187"])
     metadata: dict[str, str] = Field(description="Facts of the sender's own.", examples=[{"order": "A-17"}])
     rule: str | None = Field(description="The saved rule that the job went by.", examples=["castings@2"])
+    acceptance: Acceptance | None = Field(default=None, description="Limits that the job had; null where it had none.")
 
 
 class Provenance(Response):

@@ -69,6 +69,11 @@ class Page(HTMLParser):
         for element in self._open:
             element.parts.append(data)
 
+    @property
+    def text(self) -> str:
+        """All of it that a reader sees, without line breaks."""
+        return " ".join(self.all("main")[0].text.split())
+
     def all(self, *tags: str) -> list[Element]:
         return [element for element in self.elements if element.tag in tags]
 

@@ -7,6 +7,7 @@ import base64
 import html
 import json
 from itertools import pairwise
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -14,6 +15,7 @@ import pytest
 from quadpatch.html_report import page as page_module
 from quadpatch.html_report import words
 from quadpatch.html_report.page import Pictures, render_page
+from quadpatch_rules.acceptance import judge
 from tests.quadpatch.html_report.pages import HOSTILE, Element, Page, ball, repaired_with_page
 
 ASKED = {
@@ -129,6 +131,27 @@ def test_close_ups_stand_in_the_page_the_widest_hole_first(written: tuple[dict[s
     assert shown == [f"Hole {hole['id']}" for hole in report["holes"]]
     one = Page(render_page(report, Pictures(close_ups={1: PNG})))
     assert [base64.b64decode(image.attributes["src"].partition(",")[2]) for image in one.all("img")] == [PNG]
+
+
+def test_the_page_says_whether_the_limits_are_met_and_by_which_holes_not(tmp_path: Path) -> None:
+    asked = {**ASKED, "rule": "castings@3", "acceptance": {"min_confidence": 1.0, "max_expected_error": 1e-9}}
+    report = repaired_with_page(ball(tmp_path), tmp_path / "report.html", asked).report
+    page = Page((tmp_path / "report.html").read_text("utf-8"))
+    unmet = report["acceptance"]["unmet"]
+    assert [hole["id"] for hole in unmet] == [hole["id"] for hole in report["holes"]] == [0, 1]
+    rows = page.rows("table-of-unmet")
+    for cells, hole in zip(rows, unmet, strict=True):
+        assert numbers(cells) == [hole["id"], hole["expected_error"], hole["confidence"]]
+        assert ", ".join(words.FAULTS[fault] for fault in hole["faults"]) in [cell.text for cell in cells]
+    assert "Not accepted: 2 of 2 chosen holes do not meet the limits of the rule castings@3." in page.text
+    assert "1e-09" in [cell.text for cell in page.all("td")]
+
+
+def test_the_page_says_that_limits_are_met(written: tuple[dict[str, Any], str]) -> None:
+    report, text = written
+    met = {**report, "acceptance": judge(report["holes"], {"min_confidence": 0.0})}
+    assert "Accepted: each of the 2 chosen holes meets the limits." in Page(render_page(met)).text
+    assert "Accepted" not in Page(text).text
 
 
 def test_a_page_without_pictures_says_the_same(written: tuple[dict[str, Any], str]) -> None:
