@@ -16,6 +16,7 @@ from sqlalchemy import select, update
 from sqlalchemy.orm import Session
 
 from jobkit.database.clock import shared_now
+from jobkit.database.quotas import check_bytes
 from jobkit.database.session import Database
 from jobkit.database.tables import JobRow, MeshRow, ModelRow
 from jobkit.database.tenancy import DEFAULT_TENANT, mesh_id_of, names_of, tenant_of
@@ -33,6 +34,8 @@ from jobkit.storage.base import StoredObject
 ViewKind = Literal["mesh", "outlines", "job", "model"]
 MAKING, MADE, FAILED = "making", "made", "failed"
 VIEW_PREFIX = "views"
+# Of one view, about.
+MOST_BYTES = 20_000_000
 # Attempts before a view is given up.
 MAX_TRIES = 3
 # Raised where views of earlier versions are no longer what viewers expect: they are made again.
@@ -102,6 +105,8 @@ class Views:
         ------
         MeshNotFoundError, JobNotFoundError, ModelNotFoundError
             If what it shows is not there.
+        StorageQuotaError
+            If it is a new comparison with a reference, of which there may be any number, and the tenant has no room.
         """
         try:
             return self._order(order)
@@ -184,6 +189,8 @@ class Views:
             now = shared_now(session)
             row = ViewRow(id=view_id, **values, state=MAKING, attempt=0, forgiven=0, size_bytes=0, created_at=now)
             session.add(row)
+            if order.reference_id is not None:
+                check_bytes(session, MOST_BYTES)
             session.flush()
             return _shown(row, now)
 

@@ -57,7 +57,7 @@ def _documented(media_type: str, **whole: Any) -> dict[int | str, dict[str, Any]
         },
         206: {"description": "The range.", "content": content},
         **not_modified(),
-        **problems(404, 409, 410, 412, 416),
+        **problems(404, 409, 410, 412, 416, 507),
     }
 
 

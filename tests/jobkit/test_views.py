@@ -9,14 +9,14 @@ from jobkit.database.clock import shared_now
 from jobkit.database.quotas import stored_bytes
 from jobkit.database.session import Database
 from jobkit.database.view_tables import ViewRow
-from jobkit.errors import JobNotFoundError, MeshNotFoundError, ModelNotFoundError, StaleAttemptError
+from jobkit.errors import JobNotFoundError, MeshNotFoundError, ModelNotFoundError, StaleAttemptError, StorageQuotaError
 from jobkit.jobs.jobs import Jobs
 from jobkit.queue import TaskQueue, view_entry
 from jobkit.retention import delete_job, delete_mesh
 from jobkit.settings import Settings
 from jobkit.storage.base import ObjectStore
-from jobkit.views import FAILED, MADE, MAKING, MAX_TRIES, View, ViewOrder, Views
-from quadpatch_client.schema import Mesh
+from jobkit.views import FAILED, MADE, MAKING, MAX_TRIES, MOST_BYTES, View, ViewOrder, Views
+from quadpatch_client.schema import Mesh, Quotas
 from tests.jobkit.fixtures import finish, new_job, put, upload
 
 
@@ -192,3 +192,15 @@ def test_a_view_of_a_mesh_goes_with_it(views: Views, mesh: Mesh, database: Datab
     views.order(ViewOrder("outlines", mesh_id=mesh.id))
     delete_mesh(database, mesh.id)
     assert n_views(database) == 0
+
+
+def test_comparisons_end_where_the_quota_of_the_tenant_does(
+    views: Views, mesh: Mesh, store: ObjectStore, database: Database
+) -> None:
+    limited = database.of("small").limited(Quotas(stored_bytes=MOST_BYTES))
+    scan, reference = upload(limited, store, b"ply"), upload(limited, store, b"ply, another one")
+    Views(limited).order(ViewOrder("mesh", mesh_id=scan.id, level="fine"))
+    with pytest.raises(StorageQuotaError):
+        Views(limited).order(ViewOrder("job", mesh_id=scan.id, reference_id=reference.id))
+    views.order(ViewOrder("job", mesh_id=mesh.id, reference_id=mesh.id))
+    assert n_views(database) == 2
