@@ -16,7 +16,7 @@ from quadpatch.mesh.boundary import boundary_loops
 from quadpatch.mesh.raycast import RayScene
 from quadpatch.mesh.weld import weld
 from quadpatch.preview.camera import Camera, view_of
-from quadpatch.preview.pair import TINT
+from quadpatch.preview.invented import TINT, Invented
 from quadpatch.preview.parts import Part, part_of
 from quadpatch.preview.shading import CLAY, Clay
 from quadpatch.preview.sheet import render_before_after
@@ -56,7 +56,7 @@ def draw_scan(source: Path, repaired: Path, holes: Sequence[dict[str, Any]], fol
     folder.mkdir(parents=True, exist_ok=True)
     before, after = _read(source), _read(repaired)
     is_new = np.arange(len(after.triangles)) >= len(before.triangles)
-    render_before_after(after, is_new, folder / f"{name}.png")
+    render_before_after(after, Invented.of_mask(is_new), folder / f"{name}.png")
     scene = RayScene(after)
     tinted = np.where(is_new[:, None], CLAY + _STRENGTH * (TINT - CLAY), CLAY)
     grey = np.tile(CLAY, (len(before.triangles), 1))

@@ -14,7 +14,7 @@ from PIL import Image, ImageDraw, ImageFont
 from quadpatch.mesh.distance import distance_to_mesh
 from quadpatch.mesh.raycast import RayScene
 from quadpatch.preview.camera import view_of
-from quadpatch.preview.pair import TINT
+from quadpatch.preview.invented import TINT
 from quadpatch.preview.parts import part_of
 from quadpatch.preview.png import to_pixels, write_png
 from quadpatch.preview.shading import CLAY, Clay

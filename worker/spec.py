@@ -78,6 +78,7 @@ def job_request(
         options=method_options(spec, tighter.time_s) if spec.task == "fill" else task_options(spec),
         limits=tighter,
         with_preview=spec.output.preview,
+        tint=spec.output.tint,
         with_close_ups=spec.output.closeups,
         reference="" if reference is None else source_name(reference, REFERENCE_FOLDER),
         missing=None if spec.restore is None else spec.restore.missing.model_dump(),

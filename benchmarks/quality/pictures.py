@@ -14,7 +14,7 @@ from benchmarks.quality.sheets import TILE, Row, compose
 from quadpatch.formats.reading import read_scan
 from quadpatch.mesh.raycast import RayScene
 from quadpatch.preview.camera import Camera, view_of
-from quadpatch.preview.pair import TINT
+from quadpatch.preview.invented import TINT
 from quadpatch.preview.parts import main_pieces, part_of
 from quadpatch.preview.shading import CLAY, Clay
 from quadpatch.preview.viewpoints import close_ups, is_inside_out

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 import typer
 
-from quadpatch_rules.option_words import Colours, Effort, LengthUnit, OutputFormat, Preset, Recipe
+from quadpatch_rules.option_words import Colours, Effort, LengthUnit, OutputFormat, Preset, Recipe, Tint
 
 DEFAULT_URL = "http://127.0.0.1:8000"
 MethodName = Literal["auto", "dictionary", "cnn", "smooth"]
@@ -95,6 +95,13 @@ OutputOption = Annotated[
 ]
 ReportOption = Annotated[
     Path | None, typer.Option(help="Where to put the JSON report; -: standard output.", rich_help_panel=OUTPUT)
+]
+TintOption = Annotated[
+    Tint,
+    typer.Option(
+        help="What the colours of invented surface say in pictures: that it is invented, or its confidence.",
+        rich_help_panel=OUTPUT,
+    ),
 ]
 HtmlOption = Annotated[
     Path | None,

@@ -19,3 +19,5 @@ Colours = Literal["auto", "harmonic"]
 LengthUnit = Literal["micron", "millimeter", "centimeter", "meter", "inch", "foot"]
 # What a mesh carries besides its shape, where it is written in another format than its own.
 CarriedAttribute = Literal["colours", "normals", "texture_coordinates"]
+# What the colours of invented surface say in pictures: that it is invented, or how sure it is.
+Tint = Literal["invented", "confidence"]

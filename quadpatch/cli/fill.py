@@ -32,7 +32,7 @@ from quadpatch.formats.output_files import check_folder, check_outputs, is_strea
 from quadpatch.options import DictionaryOptions, HoleOptions, HoleRule, NetworkOptions, PatchOptions, RepairOptions
 from quadpatch_rules.competition import outcome
 from quadpatch_rules.hole_selection import Cap
-from quadpatch_rules.option_words import CarriedAttribute, Colours, Effort, Recipe
+from quadpatch_rules.option_words import CarriedAttribute, Colours, Effort, Recipe, Tint
 from quadpatch_rules.rule_text import RuleTextError, read_bridge, read_rule
 
 if TYPE_CHECKING:
@@ -73,6 +73,12 @@ def fill(  # noqa: PLR0913, PLR0917  one argument per flag
         Path | None,
         typer.Option(metavar="FILE", help="Write the report as an HTML page that stands alone; -: standard output."),
     ] = None,
+    tint: Annotated[
+        Tint,
+        typer.Option(
+            help="What the colours of invented surface say in pictures: that it is invented, or its confidence."
+        ),
+    ] = "invented",
     overwrite: Overwrite = False,
     calibration: Annotated[
         Path | None,
@@ -191,9 +197,9 @@ def fill(  # noqa: PLR0913, PLR0917  one argument per flag
         logging.getLogger("quadpatch").addHandler(logging.NullHandler())  # what people read is in the warnings
         if report and (preview or closeups or html) and not is_stream(report):  # drawing may take the process down
             write_report(repaired.report, report)
-        _draw(repaired, preview, closeups)
+        _draw(repaired, preview, closeups, tint)
         if html and start:
-            _write_page(repaired, html, start, output, preview)
+            _write_page(repaired, html, start, output, preview, tint)
         write_report(repaired.report, report)
         write_calibrations(calibration, kept)
     if not quiet:
@@ -236,16 +242,16 @@ def _reasons(report: dict[str, Any], *verdicts: str) -> str:
     return " (" + "; ".join(f"{count} × {reason}" for reason, count in counts.items()) + ")" if counts else ""
 
 
-def _draw(repaired: "RepairedFile", preview: Path | None, closeups: Path | None) -> None:
+def _draw(repaired: "RepairedFile", preview: Path | None, closeups: Path | None, tint: Tint) -> None:
     """Draw what was asked for; what fails is a warning in the report."""
     if not (preview or closeups):
         return
     from quadpatch.preview.drawing import add_close_ups, add_picture  # noqa: PLC0415  see fill
 
     if preview:
-        add_picture(repaired, preview)
+        add_picture(repaired, preview, tint)
     if closeups:
-        add_close_ups(repaired, closeups)
+        add_close_ups(repaired, closeups, tint)
 
 
 def _note_start(source: Path) -> "Start":
@@ -255,8 +261,10 @@ def _note_start(source: Path) -> "Start":
     return note_start(source)
 
 
-def _write_page(repaired: "RepairedFile", page: Path, start: "Start", output: Path, preview: Path | None) -> None:
+def _write_page(
+    repaired: "RepairedFile", page: Path, start: "Start", output: Path, preview: Path | None, tint: Tint
+) -> None:
     """Write the HTML report; what fails is a warning in the report."""
     from quadpatch.html_report.writing import PageOrder, add_html_report  # noqa: PLC0415  see fill
 
-    add_html_report(repaired, PageOrder(start, output, overview=preview), page)
+    add_html_report(repaired, PageOrder(start, output, overview=preview, tint=tint), page)

@@ -9,12 +9,13 @@ from typing import Any
 from quadpatch.formats.output_files import write_whole
 from quadpatch.html_report.page import Pictures, render_page
 from quadpatch.html_report.provenance import Start, provenance
-from quadpatch.preview.drawing import draw_widest
+from quadpatch.preview.drawing import draw_widest, invented_in
 from quadpatch.preview.sheet import before_after_png
 from quadpatch.progress import Progress, no_progress
 from quadpatch.repair import RepairedFile
 from quadpatch.stages import failure_of, peak_memory_mib
 from quadpatch_rules.acceptance import judge
+from quadpatch_rules.option_words import Tint
 
 # Close-ups in a page: with their base64 at most 5.4 MiB of it.
 MOST_PICTURES = 24
@@ -35,12 +36,15 @@ class PageOrder:
         Who asked, see `quadpatch.html_report.provenance.provenance`.
     overview : Path or None
         A picture of the whole that is drawn already; another one is drawn where it is missing.
+    tint : str
+        See `quadpatch.preview.drawing.add_picture`.
     """
 
     start: Start
     output: Path
     request: Mapping[str, Any] | None = None
     overview: Path | None = None
+    tint: Tint = "invented"
 
 
 def add_html_report(repaired: RepairedFile, order: PageOrder, page: Path, progress: Progress = no_progress) -> None:
@@ -70,18 +74,18 @@ def _write(repaired: RepairedFile, order: PageOrder, page: Path, progress: Progr
     if limits is not None:
         repaired.report["acceptance"] = judge(repaired.report["holes"], limits)
     close_ups = draw_widest(
-        repaired, MOST_PICTURES, MOST_PICTURE_BYTES, lambda _stage, fraction: progress(STAGE, fraction)
+        repaired, MOST_PICTURES, MOST_PICTURE_BYTES, lambda _stage, fraction: progress(STAGE, fraction), order.tint
     )
-    pictures = Pictures(_overview(repaired, order.overview), close_ups)
+    pictures = Pictures(_overview(repaired, order), close_ups)
     write_whole(page, render_page(repaired.report, pictures).encode("utf-8"))
 
 
-def _overview(repaired: RepairedFile, drawn: Path | None) -> bytes | None:
+def _overview(repaired: RepairedFile, order: PageOrder) -> bytes | None:
     """Read the picture of the whole, or draw it; a page does without one."""
-    if drawn is not None and drawn.is_file():
-        return drawn.read_bytes()
-    filled, found = repaired.repair.filled, list[bytes]()
-    failure = failure_of(lambda: found.append(before_after_png(filled.mesh, filled.invented_triangles)))
+    if order.overview is not None and order.overview.is_file():
+        return order.overview.read_bytes()
+    repair, found = repaired.repair, list[bytes]()
+    failure = failure_of(lambda: found.append(before_after_png(repair.filled.mesh, invented_in(repair, order.tint))))
     if failure is not None:
         repaired.report["warnings"].append(f"the HTML report has no picture of the whole: {failure}")
     return found[0] if found else None

@@ -7,7 +7,8 @@ from scipy.spatial import cKDTree
 
 from quadpatch.mesh.measures import diagonal
 from quadpatch.mesh.normals import area_vectors
-from quadpatch.preview.pair import TINT, moved_pair
+from quadpatch.preview.invented import TINT
+from quadpatch.preview.pair import moved_pair
 from quadpatch.preview.parts import part_of
 from quadpatch.preview.png import write_png
 from quadpatch.preview.shading import CLAY
@@ -62,7 +63,7 @@ def render_comparison(before: TriangleMesh, after: TriangleMesh, change: BoolArr
     sheet = blank_sheet(has_close_ups=bool(cameras))
     draw_overview(sheet, pair, camera)
     if cameras:
-        draw_close_ups(sheet, pair, cameras)
+        draw_close_ups(sheet, pair, cameras, {})
     if change.dtype == np.bool_:
         draw_legend(sheet, "changed", "as before", np.tile(TINT, (SWATCH[0], 1)))
     else:

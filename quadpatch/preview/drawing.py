@@ -14,11 +14,11 @@ from typing import Any
 
 import numpy as np
 
-from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.formats.output_files import write_whole
 from quadpatch.mesh.holes import Hole
 from quadpatch.preview.comparison import render_comparison
 from quadpatch.preview.hole_pictures import NumberedHole, draw_hole
+from quadpatch.preview.invented import Invented
 from quadpatch.preview.pair import Pair, filled_pair
 from quadpatch.preview.parts import part_of
 from quadpatch.preview.sheet import render_before_after
@@ -29,6 +29,7 @@ from quadpatch.recipes.result import Repair
 from quadpatch.repair import RepairedFile
 from quadpatch.stages import failure_of, peak_memory_mib
 from quadpatch.tasks.result import TaskResult
+from quadpatch_rules.option_words import Tint
 
 # Of an archive of close-ups. One takes about a tenth of a second of a core and a hundred kilobytes.
 MOST_CLOSE_UPS = 100
@@ -40,7 +41,7 @@ _UNIX = 3
 _READABLE_FILE = 0o100644 << 16
 
 
-def add_picture(repaired: RepairedFile, picture: Path) -> None:
+def add_picture(repaired: RepairedFile, picture: Path, tint: Tint = "invented") -> None:
     """Draw the mesh before and after its repair, side by side, as a PNG file.
 
     Parameters
@@ -48,10 +49,13 @@ def add_picture(repaired: RepairedFile, picture: Path) -> None:
     repaired : RepairedFile
         Its report gets the seconds of the stage `preview`, and a warning where there is no picture.
     picture : Path
+    tint : str
+        What the colours of invented surface say: that it is invented, or its confidence.
     """
-    filled = repaired.repair.filled
     with _stage(repaired.report, "preview"):
-        failure = failure_of(lambda: render_before_after(filled.mesh, filled.invented_triangles, picture))
+        failure = failure_of(
+            lambda: render_before_after(repaired.repair.filled.mesh, invented_in(repaired.repair, tint), picture)
+        )
     if failure is not None:
         repaired.report["warnings"].append(f"there is no picture: {failure}")
 
@@ -72,7 +76,21 @@ def add_comparison(result: TaskResult, picture: Path) -> None:
         result.report["warnings"].append(f"there is no picture: {failure}")
 
 
-def add_close_ups(repaired: RepairedFile, folder: Path) -> None:
+def invented_in(repair: Repair, tint: Tint) -> Invented:
+    """Take what a repair invented, with its confidence where the tint shows that."""
+    filled, chosen = repair.filled, repair.chosen
+    hole = np.full(len(filled.mesh.triangles), -1)
+    hole[filled.n_measured_triangles :] = np.array([hole.id for hole in chosen], np.int64)[filled.triangle_hole]
+    if tint == "invented":
+        return Invented(hole)
+    known = [repair.results[hole.id].confidence for hole in chosen]
+    confidence = np.full(len(hole), np.nan)
+    of_hole = np.array([np.nan if value is None else value for value in known], np.float64)
+    confidence[filled.n_measured_triangles :] = of_hole[filled.triangle_hole]
+    return Invented(hole, confidence)
+
+
+def add_close_ups(repaired: RepairedFile, folder: Path, tint: Tint = "invented") -> None:
     """Draw every chosen hole before and after, as `hole_<id>.png`.
 
     Parameters
@@ -81,6 +99,8 @@ def add_close_ups(repaired: RepairedFile, folder: Path) -> None:
         Its report gets the seconds of the stage `closeups`, and a warning for each hole that could not be drawn.
     folder : Path
         Made where it is missing.
+    tint : str
+        As for `add_picture`.
     """
 
     def save(id_: int, picture: bytes) -> None:
@@ -89,13 +109,17 @@ def add_close_ups(repaired: RepairedFile, folder: Path) -> None:
     with _stage(repaired.report, "closeups"):
         failure = failure_of(lambda: folder.resolve().mkdir(parents=True, exist_ok=True))
         if failure is None:
-            _draw_each(repaired, repaired.repair.chosen, save, no_progress)
+            _draw_each(repaired, repaired.repair.chosen, save, tint, no_progress)
         else:
             repaired.report["warnings"].append(f"there are no close-ups: {failure}")
 
 
 def add_close_up_archive(
-    repaired: RepairedFile, archive: Path, progress: Progress = no_progress, most: int = MOST_CLOSE_UPS
+    repaired: RepairedFile,
+    archive: Path,
+    progress: Progress = no_progress,
+    most: int = MOST_CLOSE_UPS,
+    tint: Tint = "invented",
 ) -> None:
     """Draw the widest chosen holes before and after, as `hole_<id>.png` in one ZIP file.
 
@@ -108,15 +132,17 @@ def add_close_up_archive(
     progress : callable
     most : int
         At most so many holes, in at most `MOST_CLOSE_UP_BYTES`.
+    tint : str
+        As for `add_picture`.
     """
     with _stage(repaired.report, "closeups"):
-        failure = failure_of(lambda: _write_archive(repaired, archive, progress, most))
+        failure = failure_of(lambda: _write_archive(repaired, archive, progress, most, tint))
     if failure is not None:
         repaired.report["warnings"].append(f"there are no close-ups: {failure}")
 
 
 def draw_widest(
-    repaired: RepairedFile, most: int, most_bytes: int, progress: Progress = no_progress
+    repaired: RepairedFile, most: int, most_bytes: int, progress: Progress = no_progress, tint: Tint = "invented"
 ) -> dict[int, bytes]:
     """Draw the widest chosen holes before and after, at most so many in so many bytes.
 
@@ -126,6 +152,8 @@ def draw_widest(
         Its report gets a warning for each hole that could not be drawn.
     most, most_bytes : int
     progress : callable
+    tint : str
+        As for `add_picture`.
 
     Returns
     -------
@@ -137,7 +165,7 @@ def draw_widest(
     def is_full() -> bool:
         return sum(map(len, pictures.values())) > most_bytes
 
-    _draw_each(repaired, _widest_first(repaired)[:most], pictures.__setitem__, progress, is_full)
+    _draw_each(repaired, _widest_first(repaired)[:most], pictures.__setitem__, tint, progress, is_full)
     if is_full():
         pictures.popitem()
     return pictures
@@ -147,7 +175,7 @@ def _widest_first(repaired: RepairedFile) -> list[Hole]:
     return sorted(repaired.repair.chosen, key=lambda hole: (-hole.diameter, hole.id))
 
 
-def _write_archive(repaired: RepairedFile, archive: Path, progress: Progress, most: int) -> None:
+def _write_archive(repaired: RepairedFile, archive: Path, progress: Progress, most: int, tint: Tint) -> None:
     chosen = _widest_first(repaired)
     packed, n_packed, is_full = io.BytesIO(), 0, False
     with zipfile.ZipFile(packed, "w", zipfile.ZIP_STORED) as pack:
@@ -159,7 +187,7 @@ def _write_archive(repaired: RepairedFile, archive: Path, progress: Progress, mo
                 pack.writestr(_entry(_name(id_)), picture)
                 n_packed += 1
 
-        _draw_each(repaired, chosen[:most], save, progress, lambda: is_full)
+        _draw_each(repaired, chosen[:most], save, tint, progress, lambda: is_full)
     if is_full or len(chosen) > most:
         repaired.report["warnings"].append(f"close-ups show {n_packed} of {len(chosen)} holes, the widest")
     if n_packed or not chosen:
@@ -180,15 +208,16 @@ def _draw_each(
     repaired: RepairedFile,
     holes: list[Hole],
     save: Callable[[int, bytes], None],
+    tint: Tint,
     progress: Progress,
     is_full: Callable[[], bool] = lambda: False,
 ) -> None:
     """Draw holes one by one until it is enough, and add a warning for each that could not be drawn."""
-    filled, pairs = repaired.repair.filled, list[Pair]()
+    pairs = list[Pair]()
     warnings = repaired.report["warnings"]
     if not holes:
         return
-    failure = failure_of(lambda: pairs.append(_pair_around(filled, holes)))
+    failure = failure_of(lambda: pairs.append(_pair_around(repaired.repair, holes, tint)))
     if failure is not None:
         warnings.append(f"there are no close-ups: {failure}")
         return
@@ -199,12 +228,12 @@ def _draw_each(
         warnings += _close_up(pairs[0], repaired, hole, save)
 
 
-def _pair_around(filled: FilledMesh, holes: list[Hole]) -> Pair:
+def _pair_around(repair: Repair, holes: list[Hole], tint: Tint) -> Pair:
     """Make a repair ready for pictures of some of its holes."""
-    mesh, invented = filled.mesh, filled.invented_triangles
+    mesh, invented = repair.filled.mesh, invented_in(repair, tint)
     if len(mesh.triangles) > MOST_TRIANGLES:
         mesh, kept = thinned(mesh, [mesh.vertices[hole.loop] for hole in holes])
-        invented = invented[kept]
+        invented = invented.of(kept)
     return filled_pair(mesh, invented)
 
 

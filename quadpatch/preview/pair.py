@@ -8,14 +8,12 @@ from quadpatch.errors import EmptyMeshError
 from quadpatch.mesh.normals import area_vectors
 from quadpatch.mesh.raycast import Places, RayScene
 from quadpatch.preview.camera import Camera, View
+from quadpatch.preview.invented import TINT, Invented
 from quadpatch.preview.parts import Part, main_pieces, part_of, touching
 from quadpatch.preview.sampling import Colours, sampled
 from quadpatch.preview.shading import CLAY, Clay
 from quadpatch.preview.viewpoints import is_inside_out
 from quadpatch.types import BoolArray, FloatArray, TriangleMesh
-
-# Of invented surface.
-TINT = np.array([0.98, 0.74, 0.42])
 
 
 @dataclass(frozen=True)
@@ -62,14 +60,14 @@ class Pair:
         return both
 
 
-def filled_pair(after: TriangleMesh, invented: BoolArray) -> Pair:
+def filled_pair(after: TriangleMesh, invented: Invented) -> Pair:
     """Make a repaired mesh ready to be drawn, beside what was measured of it.
 
     Parameters
     ----------
     after : TriangleMesh
         Triangles that touch share their vertices.
-    invented : (n_triangles,) bool
+    invented : Invented
         What the mesh before is without, and what is tinted afterwards.
 
     Raises
@@ -79,10 +77,10 @@ def filled_pair(after: TriangleMesh, invented: BoolArray) -> Pair:
     """
     scene, whole, is_flipped = _surveyed(after)
     after = _flipped(after) if is_flipped else after
-    new = Clay(after, scene, np.where(invented[:, None], TINT, CLAY), is_joined=True)
+    new = Clay(after, scene, invented.colours(), is_joined=True)
     # Along the rim of a hole, the normals of measured triangles are others.
-    differs = np.append(touching(after, invented), False)
-    return Pair(scene, after, whole, is_flipped, new.without(invented), new, differs)
+    differs = np.append(touching(after, invented.mask), False)
+    return Pair(scene, after, whole, is_flipped, new.without(invented.mask), new, differs)
 
 
 def moved_pair(

@@ -7,9 +7,11 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 from quadpatch.formats.output_files import write_whole
+from quadpatch.mesh.raycast import RayScene
 from quadpatch.preview.camera import Camera
-from quadpatch.preview.pair import TINT, Pair, filled_pair
-from quadpatch.preview.parts import filled_holes, part_of
+from quadpatch.preview.invented import TINT, Invented, confidence_colours, spanned_rims
+from quadpatch.preview.pair import Pair, filled_pair
+from quadpatch.preview.parts import filled_holes, main_pieces, part_of
 from quadpatch.preview.png import png_bytes, to_pixels
 from quadpatch.preview.sampling import Colours
 from quadpatch.preview.shading import BACK, CLAY
@@ -54,20 +56,20 @@ class Sheet:
         self.image.paste(Image.fromarray(to_pixels(picture)), (left, self.top))
 
 
-def render_before_after(mesh: TriangleMesh, invented: BoolArray, path: Path) -> None:
+def render_before_after(mesh: TriangleMesh, invented: Invented, path: Path) -> None:
     """Write the picture of `before_after_png` as a file that appears whole or not at all."""
     write_whole(path, before_after_png(mesh, invented))
 
 
-def before_after_png(mesh: TriangleMesh, invented: BoolArray) -> bytes:
+def before_after_png(mesh: TriangleMesh, invented: Invented) -> bytes:
     """Draw a mesh before and after its repair, and its largest holes in close-up.
 
     Parameters
     ----------
     mesh : TriangleMesh
         Repaired; triangles that touch share their vertices.
-    invented : (n_triangles,) bool
-        True for the triangles that were not measured: the mesh before is without them, afterwards they are tinted.
+    invented : Invented
+        What was not measured: the mesh before is without it, afterwards it is tinted.
 
     Returns
     -------
@@ -80,19 +82,33 @@ def before_after_png(mesh: TriangleMesh, invented: BoolArray) -> bytes:
         If the mesh has no triangle of any area.
     """
     if len(mesh.triangles) > MOST_TRIANGLES:
-        largest = [part_of(mesh, hole).corners for hole in filled_holes(mesh, invented, N_CANDIDATES)]
+        largest = [part_of(mesh, hole).corners for hole in filled_holes(mesh, invented.mask, N_CANDIDATES)]
         mesh, kept = thinned(mesh, largest)
-        invented = invented[kept]
+        invented = invented.of(kept)
     pair = filled_pair(mesh, invented)
-    holes = [part_of(pair.after, hole) for hole in filled_holes(pair.after, invented, N_CANDIDATES)]
-    camera = overview_camera(pair, invented)
-    cameras = close_ups(pair.scene, holes, camera, N_CLOSE_UPS)
-    sheet = blank_sheet(has_close_ups=bool(cameras))
+    holes = filled_holes(pair.after, invented.mask, N_CANDIDATES)
+    camera = _camera_of_rims(pair, invented)
+    shown = close_ups(pair.scene, [part_of(pair.after, hole) for hole in holes], camera, N_CLOSE_UPS)
+    sheet = blank_sheet(has_close_ups=bool(shown))
     draw_overview(sheet, pair, camera)
-    if cameras:
-        draw_close_ups(sheet, pair, cameras)
-    draw_legend(sheet, "invented surface", "measured surface", np.tile(TINT, (SWATCH[0], 1)))
+    if shown:
+        names = {i: f"hole {invented.hole[holes[i][0]]}" for i in shown} if invented.is_numbered else {}
+        draw_close_ups(sheet, pair, shown, names)
+    if invented.confidence is None:
+        draw_legend(sheet, "invented surface", "measured surface", np.tile(TINT, (SWATCH[0], 1)))
+    else:
+        swatch = confidence_colours(np.linspace(0.0, 1.0, SWATCH[0]))
+        draw_legend(sheet, "invented surface, confidence 0 to 1", "measured surface", swatch)
     return png_bytes(sheet.image)
+
+
+def _camera_of_rims(pair: Pair, invented: Invented) -> Camera:
+    """Look at the whole mesh from where most of its holes shows: the same place for all repairs of these holes."""
+    measured = TriangleMesh(pair.after.vertices, pair.after.triangles[~invented.mask])
+    if not invented.mask.any() or not len(measured.triangles):
+        return overview_camera(pair, invented.mask)
+    whole, rims = part_of(measured, main_pieces(measured)), spanned_rims(pair.after, invented.mask)
+    return overview(RayScene(measured), whole, rims, _PANEL[0] / _PANEL[1])
 
 
 def blank_sheet(*, has_close_ups: bool) -> Sheet:
@@ -121,13 +137,14 @@ def draw_overview(sheet: Sheet, pair: Pair, camera: Camera) -> None:
     sheet.top += _PANEL[1] + _GAP
 
 
-def draw_close_ups(sheet: Sheet, pair: Pair, cameras: list[Camera]) -> None:
-    """Draw a row of close-ups, each before and after."""
+def draw_close_ups(sheet: Sheet, pair: Pair, cameras: dict[int, Camera], names: dict[int, str]) -> None:
+    """Draw a row of close-ups, each before and after, under its name or its number in the row."""
     group_width = 2 * _TILE[0] + _PAIR_GAP + _GROUP_GAP
-    for k, _ in enumerate(cameras):
-        sheet.write(f"close-up {k + 1}: before, after", _MARGIN + k * group_width, 15, _GREY)
+    for k, i in enumerate(cameras):
+        name = names.get(i, f"close-up {k + 1}")
+        sheet.write(f"{name}: before, after", _MARGIN + k * group_width, 15, _GREY)
     sheet.top += _CAPTION_HEIGHT
-    for k, camera in enumerate(cameras):
+    for k, camera in enumerate(cameras.values()):
         left = _MARGIN + k * group_width
         before, after = pair.draw(camera, _TILE)
         sheet.paste(before, left)

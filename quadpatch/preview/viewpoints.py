@@ -33,15 +33,15 @@ def overview(scene: RayScene, whole: Part, invented: Part | None, aspect: float)
     return view_of(whole.corners, directions[np.argmax(score)], aspect)
 
 
-def close_ups(scene: RayScene, holes: list[Part], like: Camera, most: int) -> list[Camera]:
+def close_ups(scene: RayScene, holes: list[Part], like: Camera, most: int) -> dict[int, Camera]:
     """Look at the first few filled holes in square pictures, those that can hardly be seen from anywhere last.
 
-    Each is held like the overview, turned to the hole.
+    Each is held like the overview, turned to the hole. The keys are positions in the list of holes.
     """
     views = [_close_up(scene, hole, like) for hole in holes]
     # Sorting is stable: among the visible ones the order stays.
-    views.sort(key=lambda view: view[1] < _WELL_SEEN)
-    return [camera for camera, _ in views[:most]]
+    order = sorted(range(len(views)), key=lambda i: views[i][1] < _WELL_SEEN)
+    return {i: views[i][0] for i in order[:most]}
 
 
 def most_seen_from(scene: RayScene, part: Part) -> FloatArray:

@@ -108,7 +108,14 @@ def test_restore_says_which_vertices_are_missing(run: Callable[..., Result], ser
     spec = sent_spec(server)
     assert (spec["task"], spec["seed"], spec["method"]["model"]) == ("restore", 4, "self")
     assert spec["restore"] == {"missing": {"kind": "property", "name": "lost"}, "base": "mesh"}
-    output = {"format": "ply", "attributes": None, "preview": False, "closeups": False, "html_report": False}
+    output = {
+        "format": "ply",
+        "attributes": None,
+        "preview": False,
+        "closeups": False,
+        "html_report": False,
+        "tint": "invented",
+    }
     assert spec["output"] == output
     assert "scan.ply: 12 missing vertices got a position; all others kept their bits." in done.stderr
 

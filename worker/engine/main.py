@@ -61,14 +61,14 @@ def _repair(folder: Path, request: EngineRequest, reporter: Reporter, pool: Proc
     reporter.delivered()
     if request.with_preview:
         reporter.progress("preview", 0.0)
-        add_picture(repaired, folder / PREVIEW_NAME)
+        add_picture(repaired, folder / PREVIEW_NAME, request.tint)
         _write_json(folder / REPORT_NAME, repaired.report)
     if request.with_close_ups:
         reporter.progress("closeups", 0.0)
-        add_close_up_archive(repaired, folder / CLOSE_UPS_NAME, reporter.progress)
+        add_close_up_archive(repaired, folder / CLOSE_UPS_NAME, reporter.progress, tint=request.tint)
         _write_json(folder / REPORT_NAME, repaired.report)
     if start is not None:
-        order = PageOrder(start, output, request.html_report, folder / PREVIEW_NAME)
+        order = PageOrder(start, output, request.html_report, folder / PREVIEW_NAME, request.tint)
         add_html_report(repaired, order, folder / PAGE_NAME, reporter.progress)
         _write_json(folder / REPORT_NAME, repaired.report)
 

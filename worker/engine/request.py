@@ -28,6 +28,7 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any, Literal, Self
 
+from quadpatch_rules.option_words import Tint
 from worker.engine.limits import EngineLimits
 
 REQUEST_NAME = "request.json"
@@ -70,6 +71,8 @@ class EngineRequest:
         Whether to draw a before/after picture.
     with_close_ups : bool
         Whether to draw each chosen hole.
+    tint : str
+        What the colours of invented surface say in pictures.
     html_report : dict or None
         Who asked, for the report as a page; None where none is wanted.
     reference : str
@@ -91,6 +94,7 @@ class EngineRequest:
     options: dict[str, Any] = field(default_factory=dict)
     with_preview: bool = False
     with_close_ups: bool = False
+    tint: Tint = "invented"
     html_report: dict[str, Any] | None = None
     model_card: dict[str, Any] | None = None
     reference: str = ""

@@ -111,6 +111,7 @@ def _options_of_fill(spec: RepairSpec) -> str | None:
         "colours": spec.colours != "auto",
         "output.closeups": spec.output.closeups,
         "output.html_report": spec.output.html_report,
+        "output.tint": spec.output.tint != "invented",
         "output.attributes": spec.output.attributes is not None,
         "rule": spec.rule is not None,
         "acceptance": spec.acceptance is not None,

@@ -11,7 +11,7 @@ from quadpatch_client.schema.methods import SELF, AutoMethod, DictionaryMethod, 
 from quadpatch_client.schema.tasks import Denoising, Encoding, Restoring
 from quadpatch_client.schema.webhook_url import WebhookUrl
 from quadpatch_rules.hole_selection import Cap, HoleKind, RuleAction, repeated_loop
-from quadpatch_rules.option_words import CarriedAttribute, Colours, LengthUnit, OutputFormat
+from quadpatch_rules.option_words import CarriedAttribute, Colours, LengthUnit, OutputFormat, Tint
 from quadpatch_rules.tasks import FILL, Task
 
 # `qpz` is what the task `encode` hands back and `decode` reads; it is a mesh that is no list of triangles.
@@ -149,6 +149,11 @@ class Output(Request):
         default=False,
         description="Whether to write the report as a page for people and auditors as well, an HTML file that stands "
         "alone; the JSON report then has a `provenance`.",
+    )
+    tint: Tint = Field(
+        default="invented",
+        description="What the colours of invented surface say in pictures: `invented`, one colour; `confidence`, how "
+        "sure it is.",
     )
 
 
@@ -293,7 +298,11 @@ def identity_of(spec: JobSpec) -> str:
     left_out: dict[str, Any] = {name: True for group in unused for name in group}
     if not spec.holes.bridges:
         left_out["holes"] = {"bridges"}
-    outputs = {"attributes": spec.output.attributes is None, "html_report": not spec.output.html_report}
+    outputs = {
+        "attributes": spec.output.attributes is None,
+        "html_report": not spec.output.html_report,
+        "tint": spec.output.tint == "invented",
+    }
     left_out["output"] = {name for name, is_unused in outputs.items() if is_unused}
     if isinstance(spec.method, DictionaryMethod):
         later = {"learn_from": spec.method.learn_from is None, "dictionary": spec.method.dictionary == DictionarySize()}

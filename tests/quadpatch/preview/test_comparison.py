@@ -7,7 +7,7 @@ import pytest
 
 from quadpatch.preview.comparison import changed_places, render_comparison
 from quadpatch.preview.drawing import add_comparison
-from quadpatch.preview.pair import TINT
+from quadpatch.preview.invented import TINT
 from quadpatch.tasks.result import TaskResult
 from quadpatch.types import FloatArray, TriangleMesh
 from tests.quadpatch.preview.test_sheet import pixels, share_of_hue

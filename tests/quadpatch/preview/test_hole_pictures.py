@@ -7,7 +7,8 @@ from PIL import Image
 from quadpatch.mesh.holes import find_holes
 from quadpatch.options import HoleOptions, RepairOptions
 from quadpatch.preview.hole_pictures import NumberedHole, draw_hole, mean_normal
-from quadpatch.preview.pair import TINT, Pair, filled_pair
+from quadpatch.preview.invented import TINT, Invented
+from quadpatch.preview.pair import Pair, filled_pair
 from quadpatch.preview.shading import BACK
 from quadpatch.recipes.default import inpaint
 from quadpatch.types import FloatArray, TriangleMesh
@@ -31,7 +32,7 @@ def ball_with_a_hole() -> tuple[TriangleMesh, Pair, NumberedHole]:
     is_new = closed.vertices[closed.triangles].mean(axis=1) @ DIRECTION > 0.95
     order = np.argsort(is_new, kind="stable")
     after = TriangleMesh(closed.vertices, closed.triangles[order])
-    return before, filled_pair(after, is_new[order]), NumberedHole(7, before.vertices[hole.loop])
+    return before, filled_pair(after, Invented.of_mask(is_new[order])), NumberedHole(7, before.vertices[hole.loop])
 
 
 def picture(path: Path) -> FloatArray:
@@ -97,7 +98,7 @@ def test_a_surface_turned_inside_out_is_seen_from_outside(tmp_path: Path) -> Non
     before, pair, hole = ball_with_a_hole()
     after = TriangleMesh(pair.after.vertices, pair.after.triangles[:, ::-1])
     invented = np.arange(len(after.triangles)) >= len(before.triangles)
-    inside_out = filled_pair(after, invented)
+    inside_out = filled_pair(after, Invented.of_mask(invented))
     assert inside_out.is_flipped
     (tmp_path / "turned.png").write_bytes(draw_hole(inside_out, NumberedHole(7, hole.rim[::-1])))
     assert share_of_hue(picture(tmp_path / "turned.png"), TINT) > 0.04
@@ -116,7 +117,7 @@ def test_a_bridge_shows_both_its_numbers_and_rims_and_its_strip(tmp_path: Path) 
     gap = halves(0.4, 4)
     repair = inpaint(gap.mesh, None, RepairOptions(HoleOptions(bridges=((0, 1),))))
     filled, holes = repair.filled, find_holes(gap.mesh)
-    pair = filled_pair(filled.mesh, filled.invented_triangles)
+    pair = filled_pair(filled.mesh, Invented.of_mask(filled.invented_triangles))
     rims = [gap.mesh.vertices[hole.loop] for hole in holes]
     joined = NumberedHole(0, rims[0], NumberedHole(1, rims[1]), np.array([1.0, 0.0, 0.0]))
     assert (joined.title, joined.number) == ("bridge 0:1", "0:1")

@@ -3,7 +3,8 @@ import pytest
 
 from quadpatch.mesh.raycast import RayScene
 from quadpatch.preview.camera import Camera, view_of
-from quadpatch.preview.pair import TINT, filled_pair, moved_pair
+from quadpatch.preview.invented import TINT, Invented
+from quadpatch.preview.pair import filled_pair, moved_pair
 from quadpatch.preview.sampling import Colours
 from quadpatch.preview.shading import CLAY, Clay
 from quadpatch.types import BoolArray, FloatArray, TriangleMesh
@@ -38,7 +39,7 @@ def share_that_differs(one: Colours | FloatArray, other: Colours | FloatArray) -
 def test_a_pair_is_drawn_like_each_of_its_meshes_alone() -> None:
     after, invented = balls()
     before = TriangleMesh(after.vertices, after.triangles[~invented])
-    old, new = filled_pair(after, invented).draw(camera(after), SIZE)
+    old, new = filled_pair(after, Invented.of_mask(invented)).draw(camera(after), SIZE)
     expected = alone(before, np.tile(CLAY, (len(before.triangles), 1)))
     # A pixel gets more samples where either picture changes, so a few pixels are smoother.
     assert share_that_differs(old, expected) < 0.01
@@ -58,7 +59,7 @@ def test_a_mesh_that_moved_is_drawn_where_it_was() -> None:
 def test_a_pair_is_turned_to_the_outside(is_turned: bool) -> None:
     mesh = sphere(3)
     mesh = TriangleMesh(mesh.vertices, mesh.triangles[:, ::-1]) if is_turned else mesh
-    pair = filled_pair(mesh, np.zeros(len(mesh.triangles), dtype=bool))
+    pair = filled_pair(mesh, Invented.of_mask(np.zeros(len(mesh.triangles), dtype=bool)))
     assert pair.is_flipped == is_turned
     outwards = np.einsum("ij,ij->i", pair.whole.centres, pair.whole.area_vectors)
     assert (outwards > 0).all()

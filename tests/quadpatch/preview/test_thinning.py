@@ -8,11 +8,12 @@ from quadpatch.mesh.measures import diagonal
 from quadpatch.preview import comparison, drawing, sheet, thinning
 from quadpatch.preview.comparison import render_comparison
 from quadpatch.preview.drawing import add_close_ups
+from quadpatch.preview.invented import Invented
 from quadpatch.preview.pair import Pair, filled_pair
 from quadpatch.preview.sheet import render_before_after
 from quadpatch.preview.thinning import thinned
 from quadpatch.repair import repair_and_keep
-from quadpatch.types import BoolArray, TriangleMesh
+from quadpatch.types import TriangleMesh
 from tests.quadpatch.shapes import bumpy_plate, on_surface, punched, write_ply
 
 WHOLE = bumpy_plate(400, 2.0)
@@ -56,7 +57,7 @@ def test_the_picture_of_a_large_scan_is_about_that_of_all_its_triangles(
     for most in (10_000_000, 100_000):
         monkeypatch.setattr(sheet, "MOST_TRIANGLES", most)
         path = tmp_path / f"{most}.png"
-        render_before_after(WHOLE, IS_FILL, path)
+        render_before_after(WHOLE, Invented.of_mask(IS_FILL), path)
         pictures.append(np.asarray(Image.open(path).convert("RGB"), np.float64))
     whole, thin = pictures
     assert whole.shape == thin.shape
@@ -89,7 +90,7 @@ def test_close_ups_of_a_large_scan_keep_the_surroundings_of_the_holes(
     done = repair_and_keep(write_ply(tmp_path / "in.ply", scan), tmp_path / "out.ply", "smooth")
     drawn: list[int] = []
 
-    def counted(mesh: TriangleMesh, invented: BoolArray) -> Pair:
+    def counted(mesh: TriangleMesh, invented: Invented) -> Pair:
         drawn.append(len(mesh.triangles))
         return filled_pair(mesh, invented)
 

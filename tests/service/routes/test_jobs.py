@@ -23,7 +23,7 @@ def test_a_job_is_promised_with_its_place_and_its_defaults(
     assert answer.status_code == 202
     assert answer.headers["location"] == f"/v1/jobs/{job['id']}"
     assert answer.headers["retry-after"] == "2"
-    pictures = {"preview": True, "closeups": False, "html_report": False}
+    pictures = {"preview": True, "closeups": False, "html_report": False, "tint": "invented"}
     assert job["spec"]["output"] == {"format": None, "attributes": None, **pictures}
     assert client.get(answer.headers["location"]).json() == job
     assert f"{job['id']}-1" in services.queue.entries()
