@@ -97,6 +97,44 @@ def test_an_upload_that_breaks_goes_on_where_it_was(visit: Visit, api: Service) 
     assert api.bytes_of(f"/v1/meshes/{page.url.rpartition('/')[2]}/content") == content
 
 
+def test_an_upload_goes_on_after_the_page_was_closed(visit: Visit, tmp_path: Path) -> None:
+    page = visit.page
+    (tmp_path / "closed.ply").write_bytes(relief(100))
+    chooser = page.locator("input[type=file]")
+    page.route("**/v1/uploads/*", lambda route: route.abort())
+    visit.go("scans")
+    with page.expect_request_finished(lambda request: request.url.endswith("/v1/uploads")):
+        chooser.set_input_files(tmp_path / "closed.ply")
+    expect(page.get_by_role("progressbar", name="Upload of closed.ply")).to_be_visible()
+    page.goto("about:blank")
+    page.unroute("**/v1/uploads/*")
+    visit.go("scans")
+    chooser.set_input_files(tmp_path / "closed.ply")
+    expect(page.get_by_role("heading", level=1)).to_have_text("closed.ply")
+    # One upload was begun, and the second time it was found again.
+    assert sum(url.endswith("/v1/uploads") for url in visit.asked) == 1
+
+
+def test_choices_of_a_job_are_taken_up_and_what_is_done_can_be_deleted(visit: Visit, api: Service) -> None:
+    page = visit.page
+    mesh = api.upload(relief(23), "again.ply")
+    job = api.repair(mesh, label="first", holes={"rules": [{"ids": [3], "action": "skip"}]})
+    page.on("dialog", lambda dialog: dialog.accept())
+    visit.go(f"jobs/{job}")
+    page.get_by_role("link", name="choose anew").click()
+    expect(page.get_by_label("What to do with hole 3")).to_have_value("skip")
+    expect(page.get_by_role("radio", name="Fast")).to_be_checked()
+    page.get_by_role("button", name="Delete the scan").click()
+    expect(page.get_by_role("alert")).to_contain_text("Jobs name this scan: delete those first.")
+    visit.go(f"jobs/{job}")
+    page.get_by_role("button", name="Delete the job").click()
+    expect(page).to_have_url(re.compile("#/jobs$"))
+    visit.go(f"meshes/{mesh}")
+    page.get_by_role("button", name="Delete the scan").click()
+    expect(page).to_have_url(re.compile("#/scans$"))
+    assert api.http.get(f"/v1/meshes/{mesh}").status_code == 404
+
+
 def test_errors_are_told_in_words(visit: Visit) -> None:
     page = visit.page
     visit.go("scans")

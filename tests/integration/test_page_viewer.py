@@ -7,7 +7,7 @@ import pytest
 from numpy.typing import NDArray
 from playwright.sync_api import Page, expect
 
-from tests.integration.browser import Service, Visit
+from tests.integration.browser import AXE, Service, Visit
 from tests.integration.conftest import ply_bytes, punched_relief
 
 Colour = NDArray[np.int64]
@@ -225,3 +225,15 @@ def test_the_atoms_of_a_dictionary_are_drawn(visit: Visit) -> None:
     picture = visit.page.get_by_role("img", name="The atoms of general-dictionary")
     expect(picture).to_be_visible()
     assert picture.evaluate("(picture) => picture.decode().then(() => picture.naturalWidth)") > 100
+
+
+def test_axe_finds_no_violation_while_the_view_is_used(visit: Visit, job: str) -> None:
+    if not AXE.is_file():
+        pytest.skip("the Node.js packages of web/ are not installed; `make test` does")
+    page = visit.page
+    open_job(visit, job)
+    fly_to(page, 3)
+    page.get_by_label("Colours show").select_option("expected error")
+    page.get_by_label("Section across").select_option("Z")
+    page.get_by_role("button", name="Measure", exact=True).click()
+    assert visit.violations() == []

@@ -22,6 +22,11 @@ export function rulesOf(choices: Choices): HoleRule[] {
   }));
 }
 
+/** What was chosen for single holes, out of the rules of a job. */
+export function choicesOf(rules: readonly HoleRule[]): Choices {
+  return new Map(rules.flatMap((rule) => (rule.ids ?? []).map((id): [number, Action] => [id, rule.action])));
+}
+
 /** What is known of a hole before a repair, in a plan, or after it. */
 export interface HoleRow {
   id: number;

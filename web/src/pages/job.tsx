@@ -1,6 +1,6 @@
 /** One job: its stages while it works, then before and after in 3D, each hole with its verdict, and the files. */
 import { useMemo, useState } from "preact/hooks";
-import { post } from "../api/client";
+import { post, send } from "../api/client";
 import { hasEnded, hasResult, useJob } from "../api/following";
 import type { FillReport, HoleReport, Job } from "../api/types";
 import { useAnswer, useTitle } from "../hooks";
@@ -100,6 +100,10 @@ function row(hole: HoleReport): HoleRow {
 
 function JobFacts({ job }: { job: Job }) {
   const { method } = job.spec;
+  const remove = async () => {
+    await send("DELETE", `/v1/jobs/${job.id}`);
+    go("/jobs");
+  };
   const effort = method?.method === "auto" ? t(`effort_${method.effort ?? "standard"}`) : null;
   return (
     <section>
@@ -116,13 +120,14 @@ function JobFacts({ job }: { job: Job }) {
         ]}
       />
       <div class="actions">
-        <a href={`#/meshes/${job.mesh_id}`}>{t("to_scan")}</a>
+        <a href={`#/meshes/${job.mesh_id}?job=${job.id}`}>{t("to_scan")}</a>
         {hasEnded(job) && (
           <ActionButton
             label={t("rerun")}
             work={async () => go(`/jobs/${(await post<Job>(`/v1/jobs/${job.id}/rerun`)).id}`)}
           />
         )}
+        {hasEnded(job) && <ActionButton label={t("delete_job")} work={remove} confirm={t("delete_job_sure")} />}
       </div>
     </section>
   );

@@ -4,7 +4,7 @@ import type { Job, JobPage } from "../api/types";
 import { useAnswer, useTitle } from "../hooks";
 import { Choice, Field, Pager, Table } from "../parts/forms";
 import { Loading, ProblemNote } from "../parts/notes";
-import { go, useRoute } from "../route";
+import { currentRoute, go, type Route, useRoute } from "../route";
 import { percent, time } from "../text/format";
 import { t, tCode } from "../text/text";
 import { State } from "./scans";
@@ -16,10 +16,11 @@ const TASKS = ["fill", "restore", "denoise", "encode", "decode", "train"] as con
 const FILTERS = ["state", "task", "label", "filename", "mesh_id", "batch_id", "cursor"] as const;
 
 export function JobsPage() {
-  const { query } = useRoute();
-  const chosen = Object.fromEntries(FILTERS.map((name) => [name, query.get(name) ?? ""]));
+  const chosen = filtersOf(useRoute());
   useTitle(t("section_jobs"));
-  const change = (changes: Record<string, string>) => go(withQuery("/jobs", { ...chosen, cursor: "", ...changes }));
+  // The address of now: it may have changed since this was drawn.
+  const change = (changes: Record<string, string>) =>
+    go(withQuery("/jobs", { ...filtersOf(currentRoute()), cursor: "", ...changes }));
   const path = withQuery("/v1/jobs", { ...chosen, label: pattern(chosen.label), filename: pattern(chosen.filename) });
   const jobs = useAnswer<JobPage>(path);
   return (
@@ -28,18 +29,18 @@ export function JobsPage() {
       <div class="filters" role="search">
         <Choice
           label={t("state")}
-          value={chosen.state ?? ""}
+          value={chosen.state}
           options={[["", t("all")], ...STATES.map((state) => [state, tCode("job_state", state)] as const)]}
           onChange={(state) => change({ state })}
         />
         <Choice
           label={t("task")}
-          value={chosen.task ?? ""}
+          value={chosen.task}
           options={[["", t("all")], ...TASKS.map((task) => [task, tCode("task", task)] as const)]}
           onChange={(task) => change({ task })}
         />
-        <Field label={t("label")} value={chosen.label ?? ""} onInput={(label) => change({ label })} />
-        <Field label={t("file_name")} value={chosen.filename ?? ""} onInput={(filename) => change({ filename })} />
+        <Field label={t("label")} value={chosen.label} onInput={(label) => change({ label })} />
+        <Field label={t("file_name")} value={chosen.filename} onInput={(filename) => change({ filename })} />
       </div>
       {(chosen.batch_id || chosen.mesh_id) && (
         <p>
@@ -61,6 +62,10 @@ export function JobsPage() {
   );
 }
 
+function filtersOf({ query }: Route): Record<(typeof FILTERS)[number], string> {
+  return Object.fromEntries(FILTERS.map((name) => [name, query.get(name) ?? ""])) as Record<(typeof FILTERS)[number], string>;
+}
+
 export function JobTable({ jobs }: { jobs: Job[] }) {
   return (
     <Table caption={t("section_jobs")} heads={[t("job"), t("state"), t("progress"), t("task"), t("label"), t("created_at")]}>
@@ -78,6 +83,6 @@ export function JobTable({ jobs }: { jobs: Job[] }) {
   );
 }
 
-function pattern(text: string | undefined): string {
-  return text && !text.includes("*") ? `*${text}*` : (text ?? "");
+function pattern(text: string): string {
+  return text && !text.includes("*") ? `*${text}*` : text;
 }

@@ -1,15 +1,16 @@
 /** One scan: its holes in 3D and as a list, what is to be done with each, and the start of a repair. */
 import { useEffect, useMemo, useState } from "preact/hooks";
-import { post } from "../api/client";
+import { post, send } from "../api/client";
 import { useMesh } from "../api/following";
 import { asProblem, type Problem } from "../api/problem";
-import type { Hole, JobSpec, Mesh, Plan } from "../api/types";
-import { useTitle } from "../hooks";
-import { type Action, type Choices, type HoleRow, withChoice } from "../holes";
-import { DownloadButton, Facts } from "../parts/forms";
+import type { Hole, Job, JobSpec, Mesh, Plan } from "../api/types";
+import { useAnswer, useTitle } from "../hooks";
+import { type Action, type Choices, choicesOf, type HoleRow, withChoice } from "../holes";
+import { ActionButton, DownloadButton, Facts } from "../parts/forms";
 import { HoleList } from "../parts/hole_list";
 import { FailureNote, Loading, Note, ProblemNote } from "../parts/notes";
-import { draftSpec, type Draft, EMPTY_DRAFT, RepairForm } from "../parts/repair_form";
+import { draftOf, draftSpec, type Draft, EMPTY_DRAFT, RepairForm } from "../parts/repair_form";
+import { go, useRoute } from "../route";
 import { bytes, count, length, unitName } from "../text/format";
 import { t, tCode } from "../text/text";
 import { Workspace } from "../viewer/workspace";
@@ -20,6 +21,13 @@ export function MeshPage({ id }: { id: string }) {
   const { mesh, problem } = useMesh(id);
   const [choices, setChoices] = useState<Choices>(new Map());
   const [draft, setDraft] = useState<Draft>(EMPTY_DRAFT);
+  const { query } = useRoute();
+  const former = useAnswer<Job>(query.has("job") ? `/v1/jobs/${query.get("job")}` : null).value;
+  useEffect(() => {
+    if (!former) return;
+    setDraft(draftOf(former.spec));
+    if (!former.spec.rule) setChoices(choicesOf(former.spec.holes?.rules ?? []));
+  }, [former]);
   const unit = mesh?.facts?.unit ?? draft.unit ?? null;
   const spec = useMemo(() => draftSpec(id, draft, choices), [id, draft, choices]);
   const { plan, planProblem } = usePlan(spec, mesh);
@@ -62,6 +70,10 @@ export function MeshPage({ id }: { id: string }) {
 function MeshFacts({ mesh, unit }: { mesh: Mesh; unit: string | null }) {
   const { facts } = mesh;
   const lines: [string, string][] = [[t("size"), bytes(mesh.size_bytes)]];
+  const remove = async () => {
+    await send("DELETE", `/v1/meshes/${mesh.id}`);
+    go("/scans");
+  };
   if (facts?.format) lines.push([t("format"), facts.format]);
   if (facts?.triangles != null) lines.push([t("triangles"), count(facts.triangles)]);
   if (facts?.vertices != null) lines.push([t("vertices"), count(facts.vertices)]);
@@ -74,6 +86,7 @@ function MeshFacts({ mesh, unit }: { mesh: Mesh; unit: string | null }) {
       <p class="actions">
         <DownloadButton path={`/v1/meshes/${mesh.id}/content`} label={t("download_scan")} />
         <a href={`#/jobs?mesh_id=${mesh.id}`}>{t("jobs_of_scan")}</a>
+        <ActionButton label={t("delete_scan")} work={remove} confirm={t("delete_scan_sure")} />
       </p>
     </section>
   );

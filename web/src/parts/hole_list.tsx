@@ -23,7 +23,7 @@ export function HoleList(props: Props) {
   const at = holes.findIndex((hole) => hole.id === selected);
   useEffect(() => {
     if (at >= nShown) setShown(at + STEP);
-    body.current?.querySelector("tr.selected")?.scrollIntoView({ block: "nearest" });
+    if (body.current) showRow(body.current);
   }, [at, nShown]);
   if (holes.length === 0) return <p>{t("no_holes")}</p>;
   const isReport = holes.some((hole) => hole.confidence !== undefined);
@@ -54,6 +54,15 @@ export function HoleList(props: Props) {
       )}
     </div>
   );
+}
+
+/** Scroll the list, and not the page, until the selected row is seen. */
+function showRow(body: HTMLElement): void {
+  const [row, list] = [body.querySelector<HTMLElement>("tr.selected"), body.closest<HTMLElement>(".holes")];
+  if (!row || !list) return;
+  const head = list.querySelector("thead")?.offsetHeight ?? 0;
+  const below = row.offsetTop + row.offsetHeight - list.clientHeight;
+  list.scrollTop = Math.min(Math.max(list.scrollTop, below), row.offsetTop - head);
 }
 
 function Row({ hole, selected, onSelect, choices, onChoose, isReport }: Props & { hole: HoleRow; isReport: boolean }) {

@@ -25,6 +25,18 @@ export interface Draft {
 
 export const EMPTY_DRAFT: Draft = { effort: "standard", rule: "", widest: "", label: "", unit: null, hasReport: true };
 
+/** What a job was asked for, as far as the form can say it. */
+export function draftOf({ method, holes, rule, label, length_unit }: JobSpec): Draft {
+  return {
+    ...EMPTY_DRAFT,
+    effort: method?.method === "auto" ? (method.effort ?? "standard") : method?.method === "smooth" ? "fast" : "standard",
+    rule: rule?.split("@")[0] ?? "",
+    widest: holes?.max_diameter ? String(holes.max_diameter) : "",
+    label: label ?? "",
+    unit: length_unit ?? null,
+  };
+}
+
 export function draftSpec(mesh_id: string, draft: Draft, choices: Choices): JobSpec {
   const spec: JobSpec = { mesh_id, priority: "interactive", output: { html_report: draft.hasReport } };
   if (draft.label) spec.label = draft.label;

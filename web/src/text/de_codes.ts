@@ -107,6 +107,8 @@ export const deCodes: Record<keyof typeof enCodes, string> = {
   problem_invalid_request: "Ein Wert ist nicht möglich.",
   problem_invalid_token: "Das Token ist nicht gültig.",
   problem_job_not_found: "Diesen Auftrag gibt es nicht, oder nicht mehr.",
+  problem_job_not_finished: "Die Reparatur ist noch in Arbeit: brechen Sie sie zuerst ab.",
+  problem_mesh_in_use: "Aufträge nennen diesen Scan: löschen Sie diese zuerst.",
   problem_mesh_not_found: "Diesen Scan gibt es nicht, oder nicht mehr.",
   problem_mesh_rejected: "Die Datei ist kein brauchbares Netz.",
   problem_no_webgl: "Dieser Browser kann kein 3D zeigen (WebGL). Die Liste der Löcher geht auch so.",

@@ -105,6 +105,8 @@ export const enCodes = {
   problem_invalid_request: "A value is not possible.",
   problem_invalid_token: "The token is not valid.",
   problem_job_not_found: "There is no such job, or no longer.",
+  problem_job_not_finished: "The repair is still at work: cancel it first.",
+  problem_mesh_in_use: "Jobs name this scan: delete those first.",
   problem_mesh_not_found: "There is no such scan, or no longer.",
   problem_mesh_rejected: "The file is no usable mesh.",
   problem_no_webgl: "This browser can't show 3D (WebGL). The list of holes works without it.",
