@@ -93,7 +93,7 @@ def test_commands_for_stations_run(line: str, local_stack: Any, folder: Path) ->
     assert program == "quadpatch-client"
     if "--saved-rule" in words:
         rule = {"acceptance": {"max_error_share": 0.5}}
-        httpx.put(f"{local_stack.url}/v1/rules/castings", json=rule).raise_for_status()
+        httpx.put(f"{local_stack.url}/v1/rules/castings", json=rule, timeout=GUARD_S).raise_for_status()
     if words[0] == "watch":
         words.append("--once")
     done = CliRunner().invoke(app, words, env={"QUADPATCH_CLIENT_URL": local_stack.url})

@@ -27,7 +27,7 @@ def test_the_demo_repairs_a_real_scan_and_a_relief_and_leaves_what_they_became(t
     log = tmp_path / "log"
     with log.open("wb") as out, subprocess.Popen(command, stdout=out, stderr=out, env=environment) as demo:
         url = wait_until(lambda: opened.read_text() if opened.exists() else None, demo, log)
-        page = httpx.get(url)
+        page = httpx.get(url, timeout=GUARD_S)
         demo.send_signal(signal.SIGINT)
         demo.wait(GUARD_S)
     output = log.read_text()

@@ -5,7 +5,7 @@ import ctypes
 from worker.engine import main
 
 
-def _crash(*_: object) -> None:
+def _crash(*_: object, **__: object) -> None:
     ctypes.string_at(0)
 
 
