@@ -72,7 +72,7 @@ test-lowest:              ## the tests with the lowest versions that pyproject.t
 		--editable ./client --editable '.[service,dev]'
 	@touch $(LOWEST)/.ready
 	@$(MAKE) --no-print-directory test VENV=$(LOWEST) ARGS="-W default --ignore tests/deploy \
-		--deselect tests/service/test_document.py::test_openapi_yaml_is_what_the_app_says $(ARGS)"
+		--deselect tests/service/contract/test_document.py::test_openapi_yaml_is_what_the_app_says $(ARGS)"
 
 explore: $(READY)         ## the property tests with other examples than `make test` has: make explore ARGS="tests/quadpatch"
 	@TEST_EXAMPLES=explore $(TEST) -m hypothesis $(ARGS)

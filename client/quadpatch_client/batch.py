@@ -68,6 +68,7 @@ class Batch:
         rows = self.finished()
         workers = Workers(self._n_parallel)
         left = {workers.submit(partial(self._repair, plan)) for plan in self.plans if plan.name not in rows}
+        workers.close()
         while left:
             ended, left = wait(left, return_when=FIRST_COMPLETED)
             for future in ended:

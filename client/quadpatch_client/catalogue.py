@@ -76,7 +76,7 @@ class Catalogue:
         wanted = NewKey.model_validate(
             {"name": name, "tenant": tenant, "expires_at": until, "scopes": scopes or _SCOPES}
         )
-        response = self._transport.request("POST", "/v1/keys", json=wanted.model_dump(mode="json"))
+        response = self._transport.request("POST", "/v1/keys", json=wanted.model_dump(mode="json", exclude_none=True))
         return parse(KeyWithSecret, response)
 
     def revoke_key(self, key_id: str) -> None:
@@ -88,7 +88,8 @@ class Catalogue:
 
         A training is a job of the same id: wait for it as for every job.
         """
-        text = wanted.model_dump_json()
+        # Fields that are left out are left to the service: it may know others.
+        text = wanted.model_dump_json(exclude_unset=True)
         key = f"train-{hashlib.sha256(text.encode()).hexdigest()}"
         headers = {"Idempotency-Key": key, "Content-Type": "application/json"}
         response = self._transport.request(

@@ -6,6 +6,8 @@ Tested in `tests/quadpatch_client/test_transport.py`.
 import random
 import time
 from collections.abc import Callable
+from datetime import UTC, datetime
+from email.utils import parsedate_to_datetime
 
 import httpx
 
@@ -97,7 +99,13 @@ class Patience:
 def retry_after_s(response: httpx.Response) -> float | None:
     """Seconds that the service asks to wait, None where it does not say."""
     text = response.headers.get("Retry-After", "")
-    return float(text) if text.isdecimal() else None
+    if text.isdecimal():
+        return float(text)
+    try:
+        # A gateway in between may name a moment instead.
+        return max((parsedate_to_datetime(text) - datetime.now(UTC)).total_seconds(), 0.0)
+    except (ValueError, TypeError):
+        return None
 
 
 def _pause_s(error: Exception, n_failures: int) -> float:

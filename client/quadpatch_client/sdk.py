@@ -186,6 +186,11 @@ class Client(MeshCalls, Catalogue):
         **options
             Fields of the job spec, such as `holes={"max_diameter": 20.0}` or `output={"preview": True}`.
 
+        Raises
+        ------
+        ClientError, pydantic.ValidationError
+            The latter, a ValueError, where there is no such field, or it may not be so.
+
         Examples
         --------
         >>> with Client(URL) as client:

@@ -96,6 +96,7 @@ def _standing(version: "ModelVersion") -> str:
 def print_jobs(console: Console, jobs: Iterable["Job"]) -> None:
     """Print jobs, one a line."""
     table = _table(None)
+    table.collapse_padding = True  # ids and states are long
     table.add_column("job", no_wrap=True)
     table.add_column("state", no_wrap=True)
     table.add_column("made (UTC)", no_wrap=True)

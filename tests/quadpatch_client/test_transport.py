@@ -4,9 +4,11 @@ import json
 import socket
 from typing import Any
 
+import httpx
 import pytest
 
 from quadpatch_client.errors import AnswerError, RefusedError, UnreachableError
+from quadpatch_client.patience import Line, Patience, retry_after_s
 from quadpatch_client.schema import PROBLEM_MEDIA_TYPE
 from quadpatch_client.transport import Transport
 from tests.waiting import GUARD_S
@@ -96,3 +98,39 @@ def test_the_key_travels_as_a_bearer_token(server: Any, answers: Any) -> None:
     with Transport(server.url, api_key="0123456789abcdef") as transport:
         transport.request("GET", "/")
     assert server.requests[0][2]["Authorization"] == "Bearer 0123456789abcdef"
+
+
+def test_pauses_grow_until_patience_ends_and_begin_anew_with_bytes() -> None:
+    now = 0.0
+    line = Line("http://x", patience_s=60.0, first_contact_s=5.0)
+    patience = Patience(line, lambda: now)
+    error = httpx.ReadError("broken")
+    pauses = [patience.pause_s(error) for _ in range(6)]
+    assert all(
+        0.75 * least <= pause <= 1.25 * least for pause, least in zip(pauses, (0.25, 0.5, 1, 2, 4, 5), strict=True)
+    )
+    now = 59.9
+    assert patience.pause_s(error, done=1) < 0.5
+    now = 120.0
+    with pytest.raises(UnreachableError, match="no answer from http://x within 60 s: broken"):
+        patience.pause_s(error, done=1)
+
+
+def test_a_service_that_was_never_reached_is_given_up_sooner() -> None:
+    now = 0.0
+    patience = Patience(Line("http://x", patience_s=60.0, first_contact_s=5.0), lambda: now)
+    patience.pause_s(httpx.ConnectError("refused"))
+    now = 5.0
+    with pytest.raises(UnreachableError, match="within 5 s: refused"):
+        patience.pause_s(httpx.ConnectError("refused"))
+
+
+@pytest.mark.parametrize(
+    ("text", "least", "most"),
+    [("7", 7.0, 7.0), ("Fri, 31 Dec 2100 23:59:59 GMT", 1e9, 1e11), ("Mon, 30 Nov 2020 12:00:00 GMT", 0.0, 0.0)],
+)
+def test_retry_after_is_seconds_or_a_moment(text: str, least: float, most: float) -> None:
+    seconds = retry_after_s(httpx.Response(503, headers={"Retry-After": text}))
+    assert seconds is not None
+    assert least <= seconds <= most
+    assert retry_after_s(httpx.Response(503, headers={"Retry-After": "soon"})) is None
