@@ -159,7 +159,7 @@ def repair(  # noqa: PLR0913 - one parameter per option of the command line
                 "weld_tolerance": tolerance(weld_tolerance),
                 "colours": colours,
                 "length_unit": length_unit,
-                "label": label or mesh.name,
+                "label": label,
                 "priority": priority or "normal",
                 "output": {
                     "format": format_ or format_of(output),

@@ -105,7 +105,7 @@ def repair_file(client: "Client", plan: FilePlan, options: JobOptions, on_job: C
     ClientError
     """
     from quadpatch_client.spec import make_spec  # noqa: PLC0415  loads the wire schema, which --help does without
-    from quadpatch_client.transfers import sent_name  # noqa: PLC0415  loads HTTP
+    from quadpatch_client.transfers import label_of, sent_name  # noqa: PLC0415  loads HTTP
 
     size_mb = plan.source.stat().st_size / 1e6
     fault = first_fault(options.conditions, {"name": plan.source.name, "size_mb": size_mb})
@@ -117,8 +117,8 @@ def repair_file(client: "Client", plan: FilePlan, options: JobOptions, on_job: C
         fault = None if facts is None else first_fault(options.conditions, quantities_of(facts))
         if fault:
             return Row(plan.name, "skipped", reason=fault)
-    name = sent_name(plan.source)
-    rest = {**options.rest, "label": options.rest.get("label") or name, "mesh_name": name or None}
+    label = options.rest.get("label") or label_of(plan.source)
+    rest = {**options.rest, "label": label, "mesh_name": sent_name(plan.source) or None}
     job = client.create_job_once(make_spec(mesh.id, options.holes, options.method, **rest))
     on_job(job.id)
     job = client.wait(job.id)

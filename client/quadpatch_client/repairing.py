@@ -107,14 +107,15 @@ def repair(client: "Client", screen: Screen, task: Task) -> "Job":
         After the job has been canceled.
     """
     from quadpatch_client.spec import make_spec  # noqa: PLC0415  loads the wire schema, which --help does without
-    from quadpatch_client.transfers import sent_name  # noqa: PLC0415  loads HTTP
+    from quadpatch_client.transfers import label_of, sent_name  # noqa: PLC0415  loads HTTP
 
     # A wrong option or path should show before a large file has been sent and an hour been spent on it.
     make_spec("0" * 64, task.holes, task.method, **_rest(task, "0" * 64))
     check_outputs(task)
     mesh_id = _upload(client, screen, task.source)
     rest = _rest(task, "" if task.reference is None else _upload(client, screen, task.reference))
-    spec = make_spec(mesh_id, task.holes, task.method, mesh_name=sent_name(task.source) or None, **rest)
+    named = {"mesh_name": sent_name(task.source) or None, **rest, "label": rest.get("label") or label_of(task.source)}
+    spec = make_spec(mesh_id, task.holes, task.method, **named)
     with HeldInterrupt(screen.complain) as interrupt:
         with _model_suggested(client, task.method.model):
             job = client.create_job(spec, runs_anew=True) if task.again else client.create_job_once(spec)

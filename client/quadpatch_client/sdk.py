@@ -41,7 +41,7 @@ from quadpatch_client.schema import (
     Plan,
     identity_of,
 )
-from quadpatch_client.transfers import download, sent_name
+from quadpatch_client.transfers import download, label_of, sent_name
 from quadpatch_client.transport import Transport
 from quadpatch_client.watching import watch
 
@@ -201,7 +201,7 @@ class Client(MeshCalls, Catalogue):
         succeeded
         """
         mesh = self.upload(path)
-        named = {"label": path.name, "mesh_name": sent_name(path) or None, **options}
+        named = {"label": label_of(path), "mesh_name": sent_name(path) or None, **options}
         return JobHandle(self, self.create_job_once(JobSpec.model_validate({"mesh_id": mesh.id, **named})))
 
     def handle(self, job_id: str) -> "JobHandle":

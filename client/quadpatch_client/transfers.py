@@ -17,6 +17,7 @@ from quadpatch_client.transport import Transport
 CHUNK_BYTES = 1 << 18
 _CONTROL = re.compile(r"[\x00-\x1f\x7f]")
 _LONGEST_NAME = 255
+_LONGEST_LABEL = 200
 
 
 def sha256_of(path: Path) -> str:
@@ -28,6 +29,11 @@ def sha256_of(path: Path) -> str:
 def sent_name(path: Path) -> str:
     """Return the name of a file as it is sent: without control characters, `?` for bytes that are no text."""
     return _CONTROL.sub("", path.name).encode("utf-8", "replace").decode("utf-8")[-_LONGEST_NAME:]
+
+
+def label_of(path: Path) -> str | None:
+    """Return what a job on a file is called where nothing else is said: its name, without its beginning if too long."""
+    return sent_name(path)[-_LONGEST_LABEL:] or None
 
 
 def file_chunks(path: Path, progress: ByteProgress, start: int = 0, end: int | None = None) -> Iterator[bytes]:

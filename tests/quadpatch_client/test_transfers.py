@@ -7,7 +7,8 @@ import pytest
 
 from quadpatch_client.errors import DamagedTransferError, UnreachableError
 from quadpatch_client.progress import no_progress
-from quadpatch_client.transfers import download
+from quadpatch_client.schema import JobSpec
+from quadpatch_client.transfers import download, label_of
 from quadpatch_client.transport import Transport
 
 BODY = bytes(range(256)) * 4000
@@ -65,3 +66,13 @@ def test_a_file_gets_the_rights_that_the_user_gives_new_files(server: Any, answe
     finally:
         os.umask(mask)
     assert (tmp_path / "file").stat().st_mode & 0o777 == 0o640
+
+
+def test_a_job_is_called_after_its_file_as_far_as_labels_go() -> None:
+    assert label_of(Path("scans/part 7.ply")) == "part 7.ply"
+    assert label_of(Path("a\nb\udcff.ply")) == "ab?.ply"
+    name = "é" * 240 + ".ply"
+    label = label_of(Path(name))
+    assert label == name[-200:]
+    assert JobSpec(mesh_id="0" * 64, label=label).label == label
+    assert label_of(Path("\n")) is None
