@@ -1,5 +1,5 @@
 /** Rims of holes as lines, and their numbers over them. */
-import { type Camera, Color, type Raycaster, Vector3 } from "three";
+import { Color, type PerspectiveCamera, type Raycaster, Vector3 } from "three";
 import { LineMaterial } from "three/examples/jsm/lines/LineMaterial.js";
 import { LineSegments2 } from "three/examples/jsm/lines/LineSegments2.js";
 import { LineSegmentsGeometry } from "three/examples/jsm/lines/LineSegmentsGeometry.js";
@@ -101,7 +101,7 @@ export class Rims {
   }
 
   /** Move the numbers over their holes. Those on the far side are hidden, and those that would cover a wider hole's. */
-  placeNumbers(camera: Camera, width: number, height: number): void {
+  placeNumbers(camera: PerspectiveCamera, width: number, height: number): void {
     const placed: [number, number][] = [];
     const [selected, others] = [this.numbered.filter(this.isSelected), this.numbered.filter((hole) => !this.isSelected(hole))];
     for (const hole of [...selected, ...others]) {
@@ -115,13 +115,18 @@ export class Rims {
     }
   }
 
-  /** Where a hole is seen; null where its surface is turned away, or it is out of the picture. */
-  private pixelOf(hole: Outline, camera: Camera, width: number, height: number): [number, number] | null {
+  /** Where the number of a hole goes; null where its surface is turned away, or it is out of the picture. */
+  private pixelOf(hole: Outline, camera: PerspectiveCamera, width: number, height: number): [number, number] | null {
     const centre = this.centres.get(hole.id)!;
-    const view = camera.position.clone().sub(centre).normalize();
-    if (hole.kind !== "border" && hole.normal && view.dot(new Vector3().fromArray(hole.normal)) < FACING) return null;
+    const view = camera.position.clone().sub(centre);
+    const distance = view.length();
+    if (hole.kind !== "border" && hole.normal && view.dot(new Vector3().fromArray(hole.normal)) < FACING * distance) return null;
     const { x, y, z } = centre.clone().project(camera);
-    return Math.abs(x) <= 1 && Math.abs(y) <= 1 && z < 1 ? [((x + 1) / 2) * width, ((1 - y) / 2) * height] : null;
+    if (Math.abs(x) > 1 || Math.abs(y) > 1 || z >= 1) return null;
+    const radius = (hole.diameter * height) / (4 * distance * Math.tan((camera.fov * Math.PI) / 360));
+    // A number would cover a small hole: it goes above it.
+    const above = hole.kind !== "border" && radius < 0.7 * WIDTH ? radius + 0.7 * HEIGHT : 0;
+    return [((x + 1) / 2) * width, ((1 - y) / 2) * height - above];
   }
 
   setVisible(isVisible: boolean): void {

@@ -83,7 +83,7 @@ export class MeshScene {
       this.box.set(new Vector3().fromArray(min).sub(this.origin), new Vector3().fromArray(max).sub(this.origin));
       this.placeCamera();
     }
-    this.canvas.dataset[role] = surface.about.is_reduced ? "reduced" : "whole";
+    this.canvas.dataset[role] = surface.about.level;
     this.draw();
   }
 

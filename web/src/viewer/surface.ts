@@ -21,6 +21,7 @@ const UNKNOWN = new Color("#8a6f9c");
 interface About {
   origin: [number, number, number];
   length_unit: string;
+  level: string;
   triangles: number;
   is_reduced: boolean;
   bounding_box: { min: number[]; max: number[] };
