@@ -56,13 +56,14 @@ class AuditTrail:
     @asynccontextmanager
     async def running(self) -> AsyncIterator[None]:
         """Write entries for the length of a with block, and those that are left at its end."""
-        task = asyncio.create_task(self._write_forever())
+        ended = asyncio.Event()
+        task = asyncio.create_task(self._write_until(ended))
         try:
             yield
         finally:
-            task.cancel()
-            with contextlib.suppress(asyncio.CancelledError):
-                await task
+            # Not canceled: a write that is under way in its thread would go on, and its entries be written twice.
+            ended.set()
+            await task
             await self.flush()
 
     async def flush(self) -> None:
@@ -77,9 +78,10 @@ class AuditTrail:
             for _ in range(min(len(batch), len(self._waiting))):
                 self._waiting.popleft()
 
-    async def _write_forever(self) -> None:
-        while True:
-            await asyncio.sleep(_WRITE_EVERY_S)
+    async def _write_until(self, ended: asyncio.Event) -> None:
+        while not ended.is_set():
+            with contextlib.suppress(TimeoutError):
+                await asyncio.wait_for(ended.wait(), _WRITE_EVERY_S)
             await self.flush()
 
 

@@ -136,8 +136,12 @@ class Database:
                 self._migrate_postgresql(revision)
 
     def close(self) -> None:
-        """Close all connections."""
+        """Close all connections, those of sessions that a thread still has when these end."""
+        pool = self._engine.pool
         self._engine.dispose()
+        # A pool that is disposed of keeps what comes back to it, open, for the garbage collector to complain about. The
+        # engine has a new one by now.
+        event.listen(pool, "checkin", _close_returned)
 
     def _migrate_postgresql(self, revision: str) -> None:
         with self._engine.begin() as connection:
@@ -237,6 +241,11 @@ def _make_engine(url: str) -> Engine:
     event.listen(engine, "connect", _set_up_sqlite)
     event.listen(engine, "begin", _begin_sqlite)
     return engine
+
+
+def _close_returned(connection: Any, _record: object) -> None:
+    if connection is not None:
+        connection.close()
 
 
 def _set_up_sqlite(connection: Any, _record: object) -> None:

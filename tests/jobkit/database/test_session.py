@@ -6,10 +6,12 @@
 import json
 import multiprocessing
 import signal
+import sqlite3
 import threading
 from collections.abc import Callable, Iterator
 from datetime import UTC, datetime, timedelta, timezone
 from pathlib import Path
+from typing import Any
 
 import pytest
 from alembic.autogenerate import compare_metadata
@@ -365,3 +367,17 @@ def test_a_refused_statement_is_a_fault_and_no_outage(database: Database) -> Non
 def test_a_missing_row_is_a_fault(database: Database) -> None:
     with pytest.raises(DatabaseError), database.read() as session:
         session.get_one(MeshRow, "m")
+
+
+def test_a_connection_that_a_thread_still_has_is_closed_when_it_comes_back(any_database: Database) -> None:
+    """As when a process of the API ends while a thread reads: a connection that stays open is a leak."""
+    with any_database.read() as session:
+        session.execute(text("SELECT 1"))
+        connection: Any = session.connection().connection.dbapi_connection
+        any_database.close()
+        session.execute(text("SELECT 1"))
+    if any_database.engine.dialect.name == "postgresql":
+        assert connection.closed
+    else:
+        with pytest.raises(sqlite3.ProgrammingError, match="closed database"):
+            connection.execute("SELECT 1")
