@@ -159,7 +159,12 @@ def _make_once(
         key_row = None if idempotency is None else earlier_row(session, idempotency)
         if key_row is not None:
             return show(session, key_row.made or ""), False
+        # Before anything else: where requests with one key make different things, each of which locks rows of the
+        # tenant, all of them wait for the key first, and none for the other's lock.
+        remember(session, idempotency, made="")
+        session.flush()
         thing, made = make(session)
-        remember(session, idempotency, made=made)
+        if idempotency is not None:
+            session.get_one(IdempotencyRow, (idempotency.principal, idempotency.key)).made = made
         session.flush()
         return thing, True

@@ -17,10 +17,18 @@ from jobkit.access.stream_leases import StreamLeases
 from jobkit.access.tenants import Tenants
 from jobkit.database.access_tables import StreamRow, TenantRow
 from jobkit.database.clock import utc_now
+from jobkit.database.idempotency import Idempotency
 from jobkit.database.quotas import check_bytes, effective_quotas
 from jobkit.database.session import Database
 from jobkit.database.tables import JobRow
-from jobkit.errors import JobQuotaError, QuotaError, StorageQuotaError, StreamQuotaError, TenantBusyError
+from jobkit.errors import (
+    IdempotencyError,
+    JobQuotaError,
+    QuotaError,
+    StorageQuotaError,
+    StreamQuotaError,
+    TenantBusyError,
+)
 from jobkit.jobs.admission import Admission, AdmissionRules
 from jobkit.jobs.attempts import Attempts
 from jobkit.jobs.jobs import Jobs
@@ -229,3 +237,22 @@ def test_deletions_and_additions_of_one_tenant_at_once_all_come_through(database
     calls += [partial(add_mesh, own, 100 + i) for i in range(8)]
     assert refusals(at_once(calls)) == []
     assert used(database) == 900
+
+
+def test_one_idempotency_key_for_a_job_and_an_upload_at_once_makes_one_of_them(database: Database) -> None:
+    """Both write the key and lock their tenant: in one order, or each would wait for what the other holds."""
+    own = limited(database, stored_bytes=10**9, jobs_waiting=1000)
+    mesh_id, uploads = add_mesh(own, 1), Uploads(own, 24, 1000, 1 << 20)
+
+    def refused(call: Callable[[], Any]) -> bool:
+        try:
+            call()
+        except IdempotencyError:
+            return True
+        return False
+
+    for i in range(8):
+        of_job, of_upload = (Idempotency("key_a", f"order-{i}", digest * 64) for digest in "12")
+        job = partial(Jobs(own).create, new_job(mesh_id), of_job)
+        upload = partial(uploads.create, NewUpload(UploadKind.WHOLE, 100), of_upload)
+        assert sorted(at_once([partial(refused, job), partial(refused, upload)])) == [False, True]
