@@ -193,7 +193,17 @@ def delete_rows(session: Session, rows: Sequence[JobRow]) -> set[str]:
     is_open = ShadowRunRow.job_id.in_(ids) & ShadowRunRow.finished_at.is_(None)
     session.execute(delete(ShadowRunRow).where(is_open))
     session.execute(delete(JobRow).where(JobRow.id.in_(ids)))
+    _hand_bytes_on(session, rows)
     return unnamed(session, {row.cached_from or row.id for row in rows})
+
+
+def _hand_bytes_on(session: Session, rows: Sequence[JobRow]) -> None:
+    """Let the oldest job that has taken over the result of a deleted one count its bytes: the files are there still."""
+    for row in rows:
+        if row.result_bytes:
+            has_taken_over = JobRow.cached_from == (row.cached_from or row.id)
+            heir = select(func.min(JobRow.id)).where(has_taken_over).scalar_subquery()
+            session.execute(update(JobRow).where(JobRow.id == heir).values(result_bytes=row.result_bytes))
 
 
 def drop_files(store: ObjectStore, job_ids: Iterable[str]) -> None:

@@ -122,6 +122,27 @@ def test_retention_keeps_files_until_no_job_names_them(database: Database, store
     assert key not in keys_in(store)
 
 
+def test_the_bytes_of_a_result_are_counted_once_as_long_as_a_job_names_it(
+    database: Database, store: ObjectStore
+) -> None:
+    new = plain(reusing(database, store))
+    first = finish(database, store, Jobs(database).create(new)[0].id)
+    others = [Jobs(database).create(new)[0] for _ in range(2)]
+
+    def counted() -> dict[str, int]:
+        with database.read() as session:
+            return {row.id: row.result_bytes for row in session.scalars(select(JobRow)) if row.result_bytes}
+
+    assert list(counted()) == [first.id]
+    n_bytes = counted()[first.id]
+    delete_job(database, store, first.id)
+    assert counted() == {others[0].id: n_bytes}
+    delete_job(database, store, others[0].id)
+    assert counted() == {others[1].id: n_bytes}
+    delete_job(database, store, others[1].id)
+    assert counted() == {}
+
+
 def test_the_sweep_and_the_scrub_know_whose_files_they_are(database: Database, store: ObjectStore) -> None:
     new = plain(reusing(database, store))
     first = finish(database, store, Jobs(database).create(new)[0].id)
