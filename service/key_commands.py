@@ -46,6 +46,7 @@ def _run(options: argparse.Namespace, keys: Keys) -> None:
             tenant=options.tenant,
             scopes=[Scope(name) for name in options.scope or ("read", "upload", "repair")],
             expires_at=options.expires,
+            requests_per_minute=options.requests_per_minute,
         )
         _print_new(keys.create(new)[0])
     elif options.command == "rotate":
@@ -102,6 +103,9 @@ def _parser() -> argparse.ArgumentParser:
     names = [scope.value for scope in Scope]
     create.add_argument("--scope", action="append", choices=names, help="may be repeated (default: read upload repair)")
     create.add_argument("--expires", type=_moment, help="when it ends, like 2027-01-31T00:00:00+00:00")
+    create.add_argument(
+        "--requests-per-minute", type=int, help="what it may send besides the limit of its tenant (default: no limit)"
+    )
     commands.add_parser("list", help="list keys, without what clients send")
     for name, words in (("rotate", "print a new key; the old one is taken for a day more"), ("revoke", "end a key")):
         commands.add_parser(name, help=words).add_argument("id", help="of the key, like key_01jd…")

@@ -120,6 +120,12 @@ class RateLimiter:
         _logger.warning("requests pass uncounted, Valkey does not answer: %s", type(error).__name__)
 
 
+def joined_fields(*counts: dict[str, str]) -> dict[str, str]:
+    """Join the header fields of several counts: each field is a list of named policies."""
+    names = dict.fromkeys(name for fields in counts for name in fields)
+    return {name: ", ".join(fields[name] for fields in counts if name in fields) for name in names}
+
+
 def rate_fields(policy: Policy, remaining: int, reset_s: int) -> dict[str, str]:
     """Write the header fields of a count.
 

@@ -53,6 +53,7 @@ OPERATIONS: Mapping[Scope, tuple[str, ...]] = {
         "get_webhook",
         "list_deliveries",
         "get_delivery",
+        "list_callbacks",
     ),
     Scope.UPLOAD: (
         "upload_mesh",
@@ -101,6 +102,7 @@ OPERATIONS: Mapping[Scope, tuple[str, ...]] = {
         "create_key",
         "list_keys",
         "get_key",
+        "change_key",
         "rotate_key",
         "revoke_key",
         "list_tenants",

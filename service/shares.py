@@ -21,7 +21,7 @@ from jobkit.errors import DatabaseError, DatabaseUnavailableError
 from quadpatch_client.schema import Quotas
 from service.auth import ANONYMOUS, address_of
 from service.problems import ProblemError, problem_response
-from service.rate_limits import Policy, RateLimiter
+from service.rate_limits import Policy, RateLimiter, joined_fields
 
 HEALTH_PATHS = frozenset({"/healthz", "/readyz"})
 _KNOWN_FOR_S = 2.0
@@ -80,4 +80,7 @@ class SharesMiddleware:
         quotas, is_disabled = await self._states.of(request.app.state.services.database, principal.tenant)
         if is_disabled:
             raise ProblemError(HTTPStatus.FORBIDDEN, "tenant_disabled", f"tenant {principal.tenant} is disabled")
-        return await rates.count(Policy("tenant", quotas.requests_per_minute), principal.tenant)
+        # Its own limit first: a key that asks too often takes nothing of what its tenant may send.
+        of_key = await rates.count(Policy("key", principal.requests_per_minute), principal.key_id)
+        of_tenant = await rates.count(Policy("tenant", quotas.requests_per_minute), principal.tenant)
+        return joined_fields(of_key, of_tenant)

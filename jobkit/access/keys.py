@@ -22,7 +22,7 @@ from jobkit.database.readable_rows import readable
 from jobkit.database.session import Database
 from jobkit.database.tenancy import DEFAULT_TENANT, tenant_of
 from jobkit.errors import KeyNotFoundError, KeyRevokedError
-from quadpatch_client.schema import Key, KeyList, KeyWithSecret, NewKey, Scope
+from quadpatch_client.schema import Key, KeyChanges, KeyList, KeyWithSecret, NewKey, Scope
 from quadpatch_rules.ids import new_key_id
 
 PREFIX = "qpk_"
@@ -34,12 +34,13 @@ _USE_NOTED_EVERY = timedelta(minutes=1)
 
 @dataclass(frozen=True)
 class Holder:
-    """Who holds a key, and what that allows."""
+    """Who holds a key, and what that allows; of requests within a minute 0 is no limit of its own."""
 
     key_id: str
     name: str
     tenant: str
     scopes: frozenset[Scope]
+    requests_per_minute: int = 0
 
 
 class Keys:
@@ -69,6 +70,15 @@ class Keys:
         """Return a key; raise KeyNotFoundError."""
         with self._database.read() as session:
             return _shown(_existing(session, key_id))
+
+    def change(self, key_id: str, changes: KeyChanges) -> Key:
+        """Change a key; raise KeyNotFoundError."""
+        with self._database.write() as session:
+            row = _existing(session, key_id, locked=True)
+            for name in changes.model_fields_set:
+                setattr(row, name, getattr(changes, name))
+            session.flush()
+            return _shown(row)
 
     def rotate(self, key_id: str, idempotency: Idempotency | None = None) -> tuple[KeyWithSecret, bool]:
         """Give a new key in place of one, which is taken as well for a day; return it, and whether it is new.
@@ -110,7 +120,8 @@ class Keys:
             with self._database.write() as session:
                 session.execute(update(KeyRow).where(KeyRow.id == row.id).values(used_at=now))
         known = {scope.value for scope in Scope}
-        return Holder(row.id, row.name, row.tenant, frozenset(Scope(s) for s in row.scopes if s in known))
+        scopes = frozenset(Scope(s) for s in row.scopes if s in known)
+        return Holder(row.id, row.name, row.tenant, scopes, row.requests_per_minute or 0)
 
 
 def digest_of(key: str) -> str:
@@ -129,6 +140,7 @@ def _create(session: Session, new: NewKey) -> tuple[KeyWithSecret, str]:
         name=new.name,
         tenant=new.tenant or tenant_of(session) or DEFAULT_TENANT,
         scopes=[scope.value for scope in new.scopes],
+        requests_per_minute=new.requests_per_minute,
         sha256=digest_of(key),
         expires_at=new.expires_at,
         created_at=utc_now(),

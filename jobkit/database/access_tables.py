@@ -50,6 +50,7 @@ class KeyRow(Owned, Base):
     id: Mapped[str] = mapped_column(String(40), primary_key=True)
     name: Mapped[str] = mapped_column(String(64))
     scopes: Mapped[list[str]] = mapped_column(JSON(none_as_null=True))
+    requests_per_minute: Mapped[int | None] = mapped_column(BigInteger)
     sha256: Mapped[str] = mapped_column(String(64))
     old_sha256: Mapped[str | None] = mapped_column(String(64))
     old_until: Mapped[datetime | None]

@@ -9,6 +9,7 @@ from sqlalchemy.orm import Session
 
 from jobkit.database.clock import utc_now
 from jobkit.database.idempotency import Idempotency, make_once
+from jobkit.database.job_rows import existing_job
 from jobkit.database.readable_rows import readable
 from jobkit.database.session import Database
 from jobkit.database.tables import DeliveryRow, DeliveryTryRow, WebhookRow
@@ -16,6 +17,8 @@ from jobkit.errors import DeliveryNotFoundError, DeliveryPendingError, WebhookDi
 from jobkit.webhooks.outbox import Receiver, new_delivery
 from jobkit.webhooks.subscriptions import existing_webhook
 from quadpatch_client.schema import (
+    CallbackDelivery,
+    CallbackDeliveryList,
     Delivery,
     DeliveryDetail,
     DeliveryLinks,
@@ -64,6 +67,14 @@ class Deliveries:
         next_cursor = rows[limit - 1].id if len(rows) > limit else None
         items = list(readable(rows[:limit], lambda row: Delivery.model_validate(_wire(row))))
         return DeliveryPage(items=items, next_cursor=next_cursor)
+
+    def of_job(self, job_id: str) -> CallbackDeliveryList:
+        """Return the messages to the callback URL of a job, with their tries, oldest first; raise JobNotFoundError."""
+        is_it = (DeliveryRow.job_id == job_id) & DeliveryRow.callback_url.is_not(None)
+        with self._database.read() as session:
+            existing_job(session, job_id)
+            rows = list(session.scalars(select(DeliveryRow).where(is_it).order_by(DeliveryRow.id)))
+            return CallbackDeliveryList(items=list(readable(rows, lambda row: _callback(session, row))))
 
     def get(self, webhook_id: str, delivery_id: str) -> DeliveryDetail:
         """Return a delivery with its tries; raise WebhookNotFoundError or DeliveryNotFoundError."""
@@ -174,9 +185,18 @@ def _add(session: Session, row: DeliveryRow) -> tuple[DeliveryDetail, str]:
 
 
 def _detail(session: Session, row: DeliveryRow) -> DeliveryDetail:
+    return DeliveryDetail.model_validate({**_wire(row), "message": row.payload, "log": _log_of(session, row)})
+
+
+def _callback(session: Session, row: DeliveryRow) -> CallbackDelivery:
+    names = CallbackDelivery.model_fields.keys() - {"url", "log"}
+    values = {name: getattr(row, name) for name in names}
+    return CallbackDelivery.model_validate({**values, "url": row.callback_url, "log": _log_of(session, row)})
+
+
+def _log_of(session: Session, row: DeliveryRow) -> list[DeliveryTry]:
     query = select(DeliveryTryRow).where(DeliveryTryRow.delivery_id == row.id).order_by(DeliveryTryRow.number)
-    log = [DeliveryTry.model_validate(entry, from_attributes=True) for entry in session.scalars(query)]
-    return DeliveryDetail.model_validate({**_wire(row), "message": row.payload, "log": log})
+    return [DeliveryTry.model_validate(entry, from_attributes=True) for entry in session.scalars(query)]
 
 
 def _wire(row: DeliveryRow) -> dict[str, Any]:

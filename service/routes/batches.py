@@ -67,7 +67,8 @@ def create_batch(
 @router.get("/v1/batches", response_model=BatchPage, responses=problems())
 def list_batches(services: ServicesDep, limit: Limit = 20, cursor: Cursor = None) -> BatchPage:
     """List batches, newest first, with counts that may be a second old."""
-    return services.batches.page(limit, cursor)
+    page = services.batches.page(limit, cursor)
+    return page.model_copy(update={"items": [_estimated(services, batch) for batch in page.items]})
 
 
 @router.get("/v1/batches/{batch_id}", response_model=Batch, responses=problems(404))

@@ -1,4 +1,4 @@
-"""Keys of clients: make, list, look at, rotate, revoke."""
+"""Keys of clients: make, list, look at, change, rotate, revoke."""
 
 from http import HTTPStatus
 from typing import Annotated, Any
@@ -8,7 +8,7 @@ from starlette.responses import Response
 
 from jobkit.access.keys import Keys
 from jobkit.database.tenancy import DEFAULT_TENANT
-from quadpatch_client.schema import Key, KeyList, KeyWithSecret, NewKey
+from quadpatch_client.schema import Key, KeyChanges, KeyList, KeyWithSecret, NewKey
 from quadpatch_client.schema.keys import EXAMPLE_KEY_ID
 from quadpatch_rules.ids import KEY_ID_PATTERN
 from service.idempotency import note_replayed
@@ -18,7 +18,7 @@ from service.services import AllServicesDep, PrincipalDep
 from service.strict_validation import StrictRoute
 
 router = APIRouter(tags=["access"], route_class=StrictRoute)
-_OPERATIONS = ("get_key", "rotate_key", "revoke_key")
+_OPERATIONS = ("get_key", "change_key", "rotate_key", "revoke_key")
 _LINKS: dict[str, Any] = {name: linked(name, "$response.body#/id", "key_id") for name in _OPERATIONS}
 KeyIdPath = Annotated[str, Path(pattern=KEY_ID_PATTERN, description="Id of a key.", examples=[EXAMPLE_KEY_ID])]
 
@@ -68,6 +68,15 @@ def list_keys(keys: KeysDep) -> KeyList:
 def get_key(keys: KeysDep, key_id: KeyIdPath) -> Key:
     """Show a key, without what clients send."""
     return keys.get(key_id)
+
+
+@router.patch("/v1/keys/{key_id}", response_model=Key, responses=problems(400, 404, 413, 415))
+def change_key(keys: KeysDep, key_id: KeyIdPath, changes: KeyChanges) -> Key:
+    """Set how many requests a key may send within a minute, besides the limit of its tenant.
+
+    Processes of the API know it within some seconds.
+    """
+    return keys.change(key_id, changes)
 
 
 @router.post("/v1/keys/{key_id}/rotate", response_model=KeyWithSecret, responses=problems(404, 409))

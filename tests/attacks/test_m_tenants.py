@@ -128,6 +128,7 @@ BODIES: dict[str, Any] = {
     "dry_run_rule": {"mesh_id": "{mesh_id}"},
     "deprecate_model_version": {"reason": "x"},
     "change_webhook": {"enabled": False},
+    "change_key": {"requests_per_minute": 1},
 }
 TUS = {"Tus-Resumable": "1.0.0"}
 HEADERS = {

@@ -20,6 +20,7 @@ from jobkit.jobs.jobs import Jobs
 from jobkit.jobs.new_jobs import NewJob
 from jobkit.settings import Settings
 from jobkit.webhooks.callbacks import Callbacks
+from jobkit.webhooks.deliveries import Deliveries
 from jobkit.webhooks.outbox import Receiver
 from quadpatch_client.schema import DeliveryState, JobError, JobSpec, Mesh, ResolvedModel
 from tests.dispatcher.receivers import LOOPBACK, receiving
@@ -53,6 +54,9 @@ def test_the_end_of_a_job_is_told_to_its_callback_url_signed_with_the_secret_of_
         fail(database, mesh, None)
         new = callbacks.renew_secret_once(None)[0].secret
         assert deliver_webhooks(database, settings, never) == "{'delivered': 1}"
+    (told,) = Deliveries(database).of_job(job_id).items
+    assert (told.type, told.state, told.tries) == ("job.failed", DeliveryState.DELIVERED, 1)
+    assert [(entry.number, entry.status) for entry in told.log] == [(1, 204)]
     (request,) = receiver.received
     assert request.path == "/part/1187?token=x"
     for secret in (old, new):

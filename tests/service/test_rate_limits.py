@@ -14,7 +14,7 @@ from starlette.testclient import TestClient
 
 from jobkit.settings import Settings
 from onebox.valkey import running_valkey
-from service import rate_limits, shares
+from service import auth, rate_limits, shares
 from service.app import create_app
 from tests.servers import free_port
 from tests.waiting import GUARD_S
@@ -60,6 +60,30 @@ def test_what_is_left_stands_in_every_answer_until_one_is_too_many(
     operator = client.get("/v1/jobs", headers={"X-API-Key": OPERATOR_KEY})
     assert operator.status_code == 200
     assert "ratelimit" not in operator.headers
+
+
+def test_a_key_with_a_limit_of_its_own_takes_no_more_of_its_tenant(
+    keyed: Settings, open_app: Callable[[Settings], TestClient], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(auth, "_KNOWN_FOR_S", 0.0)
+    client, operator = open_app(keyed), {"X-API-Key": OPERATOR_KEY}
+    new = {"name": "x", "tenant": TENANT, "requests_per_minute": 2}
+    made = client.post("/v1/keys", json=new, headers=operator).json()
+    assert made["requests_per_minute"] == 2
+    key = {"X-API-Key": made["key"]}
+    answers = [client.get("/v1/jobs", headers=key) for _ in range(3)]
+    assert [answer.status_code for answer in answers] == [200, 200, 429]
+    assert answers[0].headers["ratelimit-policy"] == '"key";q=2;w=60, "tenant";q=5;w=60'
+    assert re.fullmatch(r'"key";r=0;t=\d+, "tenant";r=3;t=\d+', answers[1].headers["ratelimit"])
+    assert answers[2].headers["ratelimit-policy"] == '"key";q=2;w=60'
+    others = [client.get("/v1/jobs", headers=key_of(client)).status_code for _ in range(4)]
+    assert others == [200] * 3 + [429], "what the key was refused is not counted for its tenant"
+    path = f"/v1/keys/{made['id']}"
+    changes: list[tuple[dict[str, Any], int | None]] = [({}, 2), ({"requests_per_minute": None}, None)]
+    for change, then in changes:
+        assert client.patch(path, json=change, headers=operator).json()["requests_per_minute"] == then
+    answer = client.get("/v1/jobs", headers=key)
+    assert answer.headers["ratelimit-policy"] == '"tenant";q=5;w=60'
 
 
 def test_errors_and_unknown_paths_count_as_well(keyed: Settings, open_app: Callable[[Settings], TestClient]) -> None:

@@ -35,7 +35,7 @@ from quadpatch_client.schema.jobs import (
     ResultFile,
     ResultFormat,
 )
-from quadpatch_client.schema.keys import AuditEntry, AuditPage, Key, KeyList, KeyWithSecret, NewKey, Scope
+from quadpatch_client.schema.keys import AuditEntry, AuditPage, Key, KeyChanges, KeyList, KeyWithSecret, NewKey, Scope
 from quadpatch_client.schema.learning import (
     JudgedMesh,
     NetworkTrainingOptions,
@@ -136,6 +136,8 @@ from quadpatch_client.schema.trainings import NewTraining, Training, TrainingFil
 from quadpatch_client.schema.uploads import Upload, UploadKind, UploadLinks, UploadProblem, UploadState
 from quadpatch_client.schema.webhooks import (
     ENDINGS,
+    CallbackDelivery,
+    CallbackDeliveryList,
     CallbackSecret,
     Delivery,
     DeliveryDetail,
@@ -186,6 +188,8 @@ __all__ = [
     "BatchState",
     "BodyLimits",
     "BoundingBox",
+    "CallbackDelivery",
+    "CallbackDeliveryList",
     "CallbackSecret",
     "CallerLimits",
     "CnnMethod",
@@ -226,6 +230,7 @@ __all__ = [
     "JobState",
     "JudgedMesh",
     "Key",
+    "KeyChanges",
     "KeyList",
     "KeyWithSecret",
     "Limits",

@@ -101,7 +101,7 @@ class Batch(Response):
     eta_s: float | None = Field(
         default=None,
         ge=0,
-        description="Estimated seconds to the end; null where too little is known, and in lists.",
+        description="Estimated seconds to the end; null where too little is known.",
         examples=[5400.0],
     )
     label: str | None = Field(default=None, description="A name for people.", examples=["night shift, hall 3"])

@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 from pydantic import Field
 
-from quadpatch_client.schema.base import TEXT_PATTERN, Moment, Request, Response, SentMoment
+from quadpatch_client.schema.base import TEXT_PATTERN, WHOLE, Moment, Request, Response, SentMoment
 from quadpatch_rules.ids import KEY_ID_PATTERN, TENANT_PATTERN
 
 EXAMPLE_KEY_ID = "key_01jd7z3v5qk8m2x4c6b8n0a9de"
@@ -50,6 +50,19 @@ Scopes = Annotated[
 ]
 
 
+KeyRate = Annotated[
+    int | None,
+    Field(
+        ge=1,
+        le=2**31,
+        description="Requests within a minute, besides those that the tenant may send in all; null: no limit of its "
+        "own.",
+        examples=[600],
+    ),
+    WHOLE,
+]
+
+
 class NewKey(Request):
     """A key to make."""
 
@@ -59,10 +72,17 @@ class NewKey(Request):
     expires_at: SentMoment | None = Field(
         default=None, description="When it is no longer taken, RFC 3339; null: never."
     )
+    requests_per_minute: KeyRate = None
 
     def model_post_init(self, _context: Any) -> None:
         """Name each scope once, in one order."""
         self.scopes = [scope for scope in Scope if scope in self.scopes]
+
+
+class KeyChanges(Request):
+    """What is to be another thing of a key; what is not named stays."""
+
+    requests_per_minute: KeyRate = None
 
 
 class Key(Response):
@@ -72,6 +92,7 @@ class Key(Response):
     name: KeyName
     tenant: Tenant
     scopes: Scopes
+    requests_per_minute: KeyRate = None
     created_at: Moment = Field(description="When it was made, RFC 3339.")
     used_at: Moment | None = Field(
         default=None, description="When it was used last, to within a minute, RFC 3339; null: never."

@@ -203,6 +203,26 @@ class DeliveryDetail(Delivery):
     log: list[DeliveryTry] = Field(description="Oldest first.")
 
 
+class CallbackDelivery(Response):
+    """A message on its way to the callback URL of a job, with its tries."""
+
+    id: MessageId
+    type: MessageType = Field(description="What the message tells.", examples=["job.succeeded"])
+    url: str = Field(description="Where it goes.", examples=["https://mes.example.com/done"])
+    state: DeliveryState = Field(description="Where it stands.", examples=["delivered"])
+    tries: int = Field(ge=0, description="Tries begun so far.", examples=[1])
+    next_try_at: Moment | None = Field(default=None, description="When it is tried again, RFC 3339.")
+    created_at: Moment = Field(description="When it happened, RFC 3339.")
+    finished_at: Moment | None = Field(default=None, description="When it was delivered or given up, RFC 3339.")
+    log: list[DeliveryTry] = Field(description="Each try and its answer, oldest first.")
+
+
+class CallbackDeliveryList(Response):
+    """Messages to the callback URL of a job."""
+
+    items: list[CallbackDelivery] = Field(description="Oldest first; none where the job has no callback URL.")
+
+
 class DeliveryPage(Response):
     """One page of deliveries, newest first."""
 

@@ -91,6 +91,14 @@ def test_wrong_keys_are_refused(operator: TestClient, fields: dict[str, Any]) ->
     assert (answer.status_code, answer.json()["code"]) == (422, "invalid_request")
 
 
+@pytest.mark.parametrize("rate", [0, -1, 1.5, "many", 2**40])
+def test_a_limit_of_a_key_is_a_whole_number_of_requests(operator: TestClient, rate: Any) -> None:
+    key = made(operator, requests_per_minute=7)
+    answer = operator.patch(f"/v1/keys/{key['id']}", json={"requests_per_minute": rate})
+    assert (answer.status_code, answer.json()["code"]) == (422, "invalid_request")
+    assert operator.get(f"/v1/keys/{key['id']}").json()["requests_per_minute"] == 7
+
+
 def test_an_unknown_key_is_not_found(operator: TestClient) -> None:
     path = "/v1/keys/key_01jd7z3v5qk8m2x4c6b8n0a9de"
     for answer in (operator.get(path), operator.delete(path), operator.post(f"{path}/rotate")):
