@@ -1,9 +1,9 @@
 """A bill of materials of the image: CycloneDX 1.6 as JSON, from the locks.
 
 `python -m deploy.sbom [EXTRA …]` prints it; without extras for the image that the Dockerfile builds by default. It
-names every distribution with its version and sha256, which of them needs which, and the models that ship. Licences are
-those that the installed distributions state. The packages of the base image's system are not in it. The same locks
-give the same bytes.
+names every distribution with its version and sha256, which of them needs which, the libraries that the page was built
+from, and the models that ship. Licences are those that the installed distributions and the lock of the page state. The
+packages of the base image's system are not in it. The same locks give the same bytes.
 """
 
 import hashlib
@@ -12,9 +12,11 @@ import re
 import sys
 import tomllib
 import uuid
+from base64 import b64decode
 from collections.abc import Iterable, Iterator
 from importlib.metadata import Distribution, PackageNotFoundError, distribution
 from typing import Any
+from urllib.parse import quote
 
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
@@ -23,6 +25,7 @@ from deploy.lock import EXTRAS, ROOT, read_lock, requirements
 
 Component = dict[str, Any]
 _DEFAULT_EXTRAS = ("service",)
+_PAGE_LOCK = ROOT / "web" / "package-lock.json"
 _MODELS = ROOT / "quadpatch" / "shipped_models"
 _MODEL_FILE = re.compile(r"(?P<name>[\w-]+)@(?P<version>\d+)\.(safetensors|onnx)")
 
@@ -40,14 +43,14 @@ def bill_of_materials(extras: Iterable[str] = _DEFAULT_EXTRAS) -> dict[str, Any]
         locked |= read_lock(extra)
     project = _project()
     libraries = [_library(name, version, sha256) for name, (version, sha256) in sorted(locked.items())]
-    models = list(_models())
+    scripts, models = list(_scripts()), list(_models())
     document: dict[str, Any] = {
         "$schema": "http://cyclonedx.org/schema/bom-1.6.schema.json",
         "bomFormat": "CycloneDX",
         "specVersion": "1.6",
         "version": 1,
         "metadata": {"component": project},
-        "components": [*libraries, *models],
+        "components": [*libraries, *scripts, *models],
         "dependencies": list(_dependencies(project["bom-ref"], locked, list(extras))),
     }
     digest = hashlib.sha256(json.dumps(document, sort_keys=True).encode()).hexdigest()
@@ -78,6 +81,26 @@ def _library(name: str, version: str, sha256: str) -> Component:
         **({"licenses": licences} if licences else {}),
         "purl": _reference(name, version),
     }
+
+
+def _scripts() -> Iterator[Component]:
+    """Yield the libraries that the page was built from, as its lock has them."""
+    packages = json.loads(_PAGE_LOCK.read_text("utf-8"))["packages"]
+    for path, package in sorted(packages.items()):
+        if not path or package.get("dev"):
+            continue
+        name = path.rpartition("node_modules/")[2]
+        purl = f"pkg:npm/{quote(name, safe='/')}@{package['version']}"
+        algorithm, _, digest = package["integrity"].partition("-")
+        yield {
+            "type": "library",
+            "bom-ref": purl,
+            "name": name,
+            "version": package["version"],
+            "hashes": [{"alg": algorithm.upper().replace("SHA", "SHA-"), "content": b64decode(digest).hex()}],
+            **({"licenses": [{"expression": package["license"]}]} if "license" in package else {}),
+            "purl": purl,
+        }
 
 
 def _models() -> Iterator[Component]:

@@ -14,7 +14,7 @@ ROOT = Path(__file__).resolve().parents[2]
 @pytest.mark.parametrize("extras", [("service",), EXTRAS])
 def test_the_bill_names_everything_that_the_locks_hold(extras: tuple[str, ...]) -> None:
     document = bill_of_materials(extras)
-    libraries = {c["name"]: c for c in document["components"] if c["type"] == "library"}
+    libraries = {c["name"]: c for c in document["components"] if c.get("purl", "").startswith("pkg:pypi/")}
     locked = {name: pin for extra in extras for name, pin in read_lock(extra).items()}
     assert {n: (c["version"], c["hashes"][0]["content"]) for n, c in libraries.items()} == locked
     assert {c["purl"] for c in libraries.values()} == {f"pkg:pypi/{n}@{version}" for n, (version, _) in locked.items()}
@@ -35,8 +35,21 @@ def test_references_are_unique_and_lead_to_components() -> None:
         if reference not in reached:
             reached.add(reference)
             left += edges[reference]
-    unreached = {component["name"] for component in document["components"] if component["bom-ref"] not in reached}
+    python = [component for component in document["components"] if not component["bom-ref"].startswith("pkg:npm/")]
+    unreached = {component["name"] for component in python if component["bom-ref"] not in reached}
     assert {name for name in unreached if not name.startswith(("nvidia-", "cuda-", "general-"))} <= {"triton"}
+
+
+def test_the_libraries_of_the_page_are_named() -> None:
+    scripts = {
+        component["name"]: component
+        for component in bill_of_materials()["components"]
+        if component["bom-ref"].startswith("pkg:npm/")
+    }
+    wanted = json.loads((ROOT / "web/package.json").read_text("utf-8"))["dependencies"]
+    assert {name: scripts[name]["version"] for name in wanted} == wanted
+    assert "typescript" not in scripts
+    assert all(re.fullmatch("[0-9a-f]{128}", script["hashes"][0]["content"]) for script in scripts.values())
 
 
 def test_the_models_that_ship_are_named_with_their_hashes() -> None:
