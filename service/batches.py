@@ -42,10 +42,11 @@ _logger = logging.getLogger("service")
 
 @dataclass(frozen=True)
 class BatchRequest:
-    """A request for a batch: its idempotency, and whether its jobs may take over results of equal ones."""
+    """A request for a batch: its idempotency, whether its jobs may take over results of equal ones, and its key."""
 
     idempotency: Idempotency | None
     may_reuse: bool
+    asked_by: str | None = None
 
 
 def submit_batch(services: Services, new: NewBatch, request: BatchRequest) -> tuple[Batch, bool]:
@@ -131,7 +132,7 @@ def _create(
     services.full_tenants.check(services.database)
     _check_callbacks(services, {facts.callback_url, *(spec.callback_url for spec, _ in specs)})
     checks = _Checks(services, outlines(services.database, {spec.mesh_id for spec, _ in specs}))
-    origin = (current_request_id(), current_traceparent(), request.may_reuse)
+    origin = (current_request_id(), current_traceparent(), request.may_reuse, request.asked_by)
     most = services.settings.max_attempts
     jobs = [NewJob(spec, checks.model_of(spec), most, rerun_of, *origin) for spec, rerun_of in specs]
     batch, is_new = services.batches.create(facts, lambda: jobs, request.idempotency)

@@ -45,7 +45,7 @@ _logger = logging.getLogger("service")
 
 @dataclass(frozen=True)
 class Submission:
-    """A spec, and who sends it under which idempotency key.
+    """A spec, and who sends it under which idempotency key; reports name the key of the service by `asked_by`.
 
     `rerun_of` names the job that it repeats. `runs_because` says in the word of `Cache-Status` why the job runs in any
     case; without it, it takes over the result of an equal one.
@@ -56,6 +56,7 @@ class Submission:
     key: str | None = None
     rerun_of: str | None = None
     runs_because: str | None = None
+    asked_by: str | None = None
 
     @property
     def idempotency(self) -> Idempotency | None:
@@ -104,6 +105,7 @@ def submit(services: Services, submission: Submission) -> tuple[Job, bool]:
         submission.rerun_of,
         current_request_id(),
         current_traceparent(),
+        asked_by=submission.asked_by,
     )
     may_reuse = submission.runs_because is None and _is_in_store(services, new)
     return accept(services, replace(new, may_reuse=may_reuse), idempotency)

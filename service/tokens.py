@@ -13,7 +13,7 @@ from typing import Any
 
 import jwt
 
-from jobkit.access.keys import Holder
+from jobkit.access.keys import TOKEN_PREFIX, Holder
 from jobkit.settings import Settings
 from quadpatch_client.schema import Scope
 from quadpatch_rules.ids import TENANT_PATTERN
@@ -98,7 +98,7 @@ class TokenVerifier:
         subject = str(claims["sub"])
         digest = hashlib.sha256(f"{claims['iss']}\n{subject}".encode("utf-8", "surrogatepass")).hexdigest()
         scopes = frozenset(_KNOWN_SCOPES[name] for name in self._scope_names(claims) if name in _KNOWN_SCOPES)
-        return Holder(f"oidc-{digest[:32]}", printable(subject)[:_LONGEST_NAME], tenant, scopes)
+        return Holder(f"{TOKEN_PREFIX}{digest[:32]}", printable(subject)[:_LONGEST_NAME], tenant, scopes)
 
     def _scope_names(self, claims: dict[str, Any]) -> list[str]:
         value = claims.get(self._settings.oidc_scope_claim)

@@ -3,6 +3,7 @@
 Tested in `tests/service/routes/test_trainings.py`.
 """
 
+from jobkit.access.keys import Holder
 from jobkit.database.searching import Period
 from jobkit.errors import NoNetworkWorkerError, NoTrainingMeshError
 from jobkit.jobs.new_jobs import NewJob
@@ -21,7 +22,7 @@ from service.submission import accept, check_limits
 _ENCODED = "qpz"
 
 
-def submit_training(services: Services, new: NewTraining, principal: str, key: str | None) -> tuple[Job, bool]:
+def submit_training(services: Services, new: NewTraining, principal: Holder, key: str | None) -> tuple[Job, bool]:
     """Write a training and put it into the queue.
 
     Returns
@@ -45,7 +46,7 @@ def submit_training(services: Services, new: NewTraining, principal: str, key: s
         If the key came before with another request.
     """
     # Of the request, not of the meshes that its filter finds: a repeated request stays the same.
-    idempotency = idempotency_of(principal, key, "create_training", new.model_dump_json())
+    idempotency = idempotency_of(principal.key_id, key, "create_training", new.model_dump_json())
     if idempotency is not None and (earlier := services.jobs.earlier(idempotency)) is not None:
         return earlier, False
     check_limits(new.limits, services.settings)
@@ -64,6 +65,7 @@ def submit_training(services: Services, new: NewTraining, principal: str, key: s
         services.settings.max_attempts,
         request_id=current_request_id(),
         traceparent=current_traceparent(),
+        asked_by=principal.public_name,
     )
     return accept(services, job, idempotency)
 

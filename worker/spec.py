@@ -94,6 +94,7 @@ def who_asked(started: StartedAttempt) -> dict[str, Any] | None:
     return {
         "job_id": job.id,
         "tenant": started.tenant,
+        **({} if started.asked_by is None else {"asked_by": started.asked_by}),
         "request_id": started.request_id,
         "label": job.spec.label,
         "metadata": job.spec.metadata,

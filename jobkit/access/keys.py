@@ -26,6 +26,8 @@ from quadpatch_client.schema import Key, KeyChanges, KeyList, KeyWithSecret, New
 from quadpatch_rules.ids import new_key_id
 
 PREFIX = "qpk_"
+# Of the ids of those who come with a token in place of a key.
+TOKEN_PREFIX = "oidc-"
 # How long the key of before is taken after a rotation: stations are given the new one meanwhile.
 OLD_KEY_FOR = timedelta(days=1)
 # `used_at` is written at most so often.
@@ -41,6 +43,11 @@ class Holder:
     tenant: str
     scopes: frozenset[Scope]
     requests_per_minute: int = 0
+
+    @property
+    def public_name(self) -> str | None:
+        """What reports call the holder: the key by its name, a token by its digest; None where no key was needed."""
+        return self.key_id if self.key_id.startswith(TOKEN_PREFIX) else self.name or None
 
 
 class Keys:

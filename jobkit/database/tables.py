@@ -78,6 +78,8 @@ class JobRow(Owned, Base):
     `fingerprint` stands for all that decides about the bytes of the result (`jobkit/jobs/fingerprints.py`). Where
     `may_reuse` is set, the job takes over the result of another one with the same fingerprint. Then its files are those
     of the attempt `cached_attempt` of the job `cached_from`, whose row may be gone.
+
+    `asked_by` names the key that the request came with, as the report does; null where none was needed.
     """
 
     __tablename__ = "jobs"
@@ -116,6 +118,7 @@ class JobRow(Owned, Base):
     cached_from: Mapped[str | None] = mapped_column(String(40))
     cached_attempt: Mapped[int | None]
     request_id: Mapped[str | None] = mapped_column(String(64))
+    asked_by: Mapped[str | None] = mapped_column(String(64))
     traceparent: Mapped[str | None] = mapped_column(String(64))
     created_at: Mapped[datetime]
     updated_at: Mapped[datetime]

@@ -50,8 +50,8 @@ _MOST_TRIED = 8
 class StartedAttempt:
     """An attempt, and the job as it was when it started, with its owner.
 
-    `request_id` and `traceparent` name the request that made the job; `memory_mb` is the most memory of its engine, in
-    MiB, where its machine has less than it is expected to need.
+    `request_id` and `traceparent` name the request that made the job, and `asked_by` its key; `memory_mb` is the most
+    memory of its engine, in MiB, where its machine has less than it is expected to need.
     """
 
     attempt: Attempt
@@ -60,6 +60,7 @@ class StartedAttempt:
     request_id: str | None = None
     traceparent: str | None = None
     memory_mb: int | None = None
+    asked_by: str | None = None
 
 
 class Attempts:
@@ -146,7 +147,8 @@ class Attempts:
                 session.flush()
                 admit_attempt(session, row.tenant)
                 row = existing_job(session, job_id)
-                return StartedAttempt(attempt, to_job(row), row.tenant, row.request_id, row.traceparent, grant.limit_mb)
+                request = (row.request_id, row.traceparent, grant.limit_mb, row.asked_by)
+                return StartedAttempt(attempt, to_job(row), row.tenant, *request)
         if has_ended:
             raise StaleAttemptError(f"job {job_id} has taken over the result of an equal one")
         raise MemoryFullError(f"job {job_id} waits for memory")

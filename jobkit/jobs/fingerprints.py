@@ -7,6 +7,7 @@ Tested in `tests/jobkit/jobs/test_reuse.py`.
 
 import hashlib
 import json
+from typing import Any
 
 from quadpatch_client.schema import JobSpec, ResolvedModel
 
@@ -15,11 +16,16 @@ _UNRELATED = frozenset({"label", "metadata", "priority", "mesh_name", "callback_
 _IN_PAGES = frozenset({"label", "metadata", "mesh_name"})
 
 
-def fingerprint_of(spec: JobSpec, model: ResolvedModel) -> str:
-    """Return the sha256, in hex, over a job's options, the bytes of its meshes and those of its model."""
+def fingerprint_of(spec: JobSpec, model: ResolvedModel, asked_by: str | None = None) -> str:
+    """Return the sha256, in hex, over a job's options, the bytes of its meshes and those of its model.
+
+    Of a job with a page also over the name of the key that asked for it, `asked_by`.
+    """
     unrelated = _UNRELATED - _IN_PAGES if spec.output.html_report else _UNRELATED
-    facts = {
+    facts: dict[str, Any] = {
         "spec": spec.model_dump(mode="json", exclude=set(unrelated)),
         "model": [model.kind, model.name, model.version, model.sha256],
     }
+    if spec.output.html_report and asked_by is not None:
+        facts["asked_by"] = asked_by
     return hashlib.sha256(json.dumps(facts, sort_keys=True).encode()).hexdigest()

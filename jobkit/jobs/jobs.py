@@ -102,7 +102,8 @@ class Jobs:
     def files_to_reuse(self, new: NewJob) -> list[str]:
         """Return the keys of the files that a job would take over from an equal one; none where it would run."""
         with self._database.read() as session:
-            row = JobRow(fingerprint=fingerprint_of(new.spec, new.model), tenant=tenant_of(session) or DEFAULT_TENANT)
+            fingerprint = fingerprint_of(new.spec, new.model, new.asked_by)
+            row = JobRow(fingerprint=fingerprint, tenant=tenant_of(session) or DEFAULT_TENANT)
             source = source_of(session, row, shared_now(session), self._retention_days, is_locked=False)
             return [] if source is None else list(file_keys(source))
 

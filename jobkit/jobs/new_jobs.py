@@ -20,8 +20,8 @@ from quadpatch_client.schema import JobSpec, JobState, ResolvedModel
 class NewJob:
     """What a job is created from; `model` is already resolved, and stays.
 
-    `request_id` and `traceparent` name the request that makes it, for logs and traces. With `may_reuse` it takes over
-    the result of an equal job, where there is one.
+    `request_id` and `traceparent` name the request that makes it, for logs and traces, and `asked_by` its key, for the
+    report. With `may_reuse` it takes over the result of an equal job, where there is one.
     """
 
     spec: JobSpec
@@ -31,6 +31,7 @@ class NewJob:
     request_id: str | None = None
     traceparent: str | None = None
     may_reuse: bool = False
+    asked_by: str | None = None
 
 
 class NamedMesh(Protocol):
@@ -81,9 +82,10 @@ def values_of(new: NewJob, meshes: Mapping[str, NamedMesh]) -> dict[str, Any]:
         "spec": spec.model_dump(mode="json"),
         "model": new.model.model_dump(mode="json"),
         "rerun_of": new.rerun_of,
-        "fingerprint": fingerprint_of(spec, new.model),
+        "fingerprint": fingerprint_of(spec, new.model, new.asked_by),
         "may_reuse": new.may_reuse,
         "request_id": new.request_id,
+        "asked_by": new.asked_by,
         "traceparent": new.traceparent,
         "queued_at": now,
         "created_at": now,

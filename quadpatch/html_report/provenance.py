@@ -55,8 +55,8 @@ def provenance(
     output : Path
         The repaired file. What went into a stream can't be read again, and has no sha256.
     request : mapping, optional
-        Who asked: `job_id`, `tenant`, `request_id`, `label`, `metadata`, `rule`, `acceptance`, the limits of the
-        result; and `mesh_name`, the name of the scan's file.
+        Who asked: `job_id`, `tenant`, `asked_by`, the name of the key, if any, `request_id`, `label`, `metadata`,
+        `rule`, `acceptance`, the limits of the result; and `mesh_name`, the name of the scan's file.
     """
     filled, asked = repaired.repair.filled, dict(request or {})
     source, name = start.source, asked.pop("mesh_name", None)

@@ -61,7 +61,8 @@ def create_batch(
 ) -> Response:
     """Start a job on each of many meshes: all of them, or none where one can't be started."""
     idempotency = caller.idempotency("create_batch", new.model_dump_json())
-    return _accepted(submit_batch(services, new, BatchRequest(idempotency, not asks_anew(cache_control))))
+    request = BatchRequest(idempotency, not asks_anew(cache_control), caller.principal.public_name)
+    return _accepted(submit_batch(services, new, request))
 
 
 @router.get("/v1/batches", response_model=BatchPage, responses=problems())
@@ -131,7 +132,7 @@ def rerun_batch(
     """Run again what failed of a batch so far, as a new batch that names the old one."""
     states = [JobState.FAILED, *([JobState.CANCELED] if canceled else [])]
     idempotency = caller.idempotency("rerun_batch", batch_id, *states)
-    request = BatchRequest(idempotency, not asks_anew(cache_control))
+    request = BatchRequest(idempotency, not asks_anew(cache_control), caller.principal.public_name)
     return _accepted(run_failed_again(services, batch_id, states, request))
 
 

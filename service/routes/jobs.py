@@ -65,7 +65,8 @@ class Asked:
     def submission(self, spec: JobSpec, rerun_of: str | None = None, *, runs_anyway: bool = False) -> Submission:
         """Return what is submitted; with `runs_anyway` no result is taken over."""
         reason = "request" if asks_anew(self.cache_control) else "bypass" if runs_anyway else None
-        return Submission(spec, self.principal.key_id, self.key, rerun_of, reason)
+        holder = self.principal
+        return Submission(spec, holder.key_id, self.key, rerun_of, reason, holder.public_name)
 
 
 async def _get_asked(

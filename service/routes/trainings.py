@@ -82,7 +82,7 @@ def create_training(
     A training is a job of the task `train`: it waits in the same queue, and webhooks tell of it. Meshes that are kept
     from learning are repaired by what was learned and by the plain fill; the verdict says which of them did better.
     """
-    job, is_new = submit_training(services, new, principal.key_id, key)
+    job, is_new = submit_training(services, new, principal, key)
     return note_replayed(_answer(services, job, HTTPStatus.ACCEPTED), is_new=is_new)
 
 

@@ -17,11 +17,13 @@ from cryptography.hazmat.primitives.serialization import Encoding, PublicFormat
 from pydantic import SecretStr
 from starlette.testclient import TestClient
 
+from jobkit.database.tables import JobRow
 from jobkit.egress import parse_networks
 from jobkit.errors import SettingsError
 from jobkit.settings import Settings, load_settings
 from service import issuer as issuers
 from service.app import create_app
+from service.services import Services
 from tests.oidc_issuer import AUDIENCE, Issuer, entry_of, running_issuer
 
 NOW = int(datetime.now(UTC).timestamp())
@@ -72,6 +74,19 @@ def test_a_token_acts_for_its_tenant_with_its_scopes(client: TestClient, shared_
     # Keys are taken as before.
     assert client.get("/v1/jobs", headers={"X-API-Key": KEY}).status_code == 200
     assert client.get("/v1/jobs").status_code == 401
+
+
+def test_a_job_keeps_the_digest_of_its_token_and_not_the_subject(client: TestClient, shared_issuer: Issuer) -> None:
+    token = shared_issuer.token("first", sub="ann@example.org", scope=["read", "upload", "repair"])
+    headers, ply = {"Authorization": f"Bearer {token}"}, b"ply\nformat ascii 1.0\nend_header\n"
+    mesh_id = client.post("/v1/meshes", content=ply, headers=headers).json()["id"]
+    job = client.post("/v1/jobs", json={"mesh_id": mesh_id, "method": {"method": "smooth"}}, headers=headers).json()
+    digest = hashlib.sha256(f"{shared_issuer.url}\nann@example.org".encode()).hexdigest()
+    services: Services = client.app.state.services  # type: ignore[attr-defined]
+    with services.database.read() as session:
+        row = session.get(JobRow, job["id"])
+        assert row is not None
+        assert row.asked_by == f"oidc-{digest[:32]}"
 
 
 def test_a_key_of_the_settings_may_look_like_a_token(settings: Settings, shared_issuer: Issuer) -> None:

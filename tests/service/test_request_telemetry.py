@@ -81,4 +81,5 @@ def test_without_traces_a_job_keeps_the_request_alone(settings: Settings) -> Non
         answer = client.post("/v1/jobs", json=spec, headers={"traceparent": SENT})
         started = services.attempts.start(answer.json()["id"], "w", 30)
     assert started.request_id == answer.headers["x-request-id"]
-    assert started.traceparent is None
+    # Nor did it come with a key.
+    assert (started.traceparent, started.asked_by) == (None, None)

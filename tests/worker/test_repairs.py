@@ -88,7 +88,8 @@ def new_job(context: Context, *, preview: bool = False, closeups: bool = False, 
     mesh = Meshes(context.database).add(stored, "scan.ply", "ply")[0]
     output = {"preview": preview, "closeups": closeups, "html_report": html_report}
     spec = JobSpec.model_validate({"mesh_id": mesh.id, "method": {"method": "smooth"}, "output": output})
-    return Jobs(context.database).create(NewJob(spec, ResolvedModel(requested="smooth", kind="none"), 3))[0]
+    new = NewJob(spec, ResolvedModel(requested="smooth", kind="none"), 3, asked_by="station 4")
+    return Jobs(context.database).create(new)[0]
 
 
 def has_result(session: Session) -> bool:
@@ -141,7 +142,7 @@ def test_a_job_that_asks_for_a_page_has_one_that_names_job_and_files(settings: S
     facts, repaired = report["provenance"], ended.result.file("result")
     assert repaired is not None
     assert (facts["source"]["sha256"], facts["output"]["sha256"]) == (mesh.id, repaired.sha256)
-    assert facts["request"]["job_id"] == job.id
+    assert (facts["request"]["job_id"], facts["request"]["asked_by"]) == (job.id, "station 4")
     assert json.loads(page.by_id("report-json").text) == {**report, "stages": report["stages"][:-1]}
     assert len(page.all("img")) > 1
     assert report["stages"][-1]["name"] == "html_report"

@@ -269,7 +269,7 @@ def test_who_asked_is_told_where_a_page_is_asked_for() -> None:
     asked = spec(output=output, label="part 7", metadata={"order": "A-17"}, mesh_name="bust.ply")
     job = Job.model_validate_json(body("queued", 1, spec=asked.model_dump(), mesh_name="bust.ply"))
     attempt = Attempt(job.id, 1)
-    assert who_asked(StartedAttempt(attempt, job, "museum", "r-1")) == {
+    told = {
         "job_id": job.id,
         "tenant": "museum",
         "request_id": "r-1",
@@ -279,6 +279,9 @@ def test_who_asked_is_told_where_a_page_is_asked_for() -> None:
         "acceptance": None,
         "mesh_name": "bust.ply",
     }
+    assert who_asked(StartedAttempt(attempt, job, "museum", "r-1")) == told
+    by_key = StartedAttempt(attempt, job, "museum", "r-1", asked_by="station 4")
+    assert who_asked(by_key) == told | {"asked_by": "station 4"}
     plain = Job.model_validate_json(body("queued", 1, spec=spec().model_dump()))
     assert who_asked(StartedAttempt(attempt, plain, "museum")) is None
 

@@ -101,9 +101,13 @@ class Asked(Response):
 
     job_id: str = Field(description="The job.", examples=[EXAMPLE_JOB_ID])
     tenant: str = Field(description="The tenant that it belongs to.", examples=["default"])
-    request_id: str | None = Field(
-        description="The request that made the job: by it the audit log and the logs say which key it came with."
+    asked_by: str | None = Field(
+        default=None,
+        description="The key that the request came with, by its name (`settings` for those of the settings); of an "
+        "OIDC token the digest that the audit log has; left out where no key was needed.",
+        examples=["station 4"],
     )
+    request_id: str | None = Field(description="The request that made the job; the audit log has more about it.")
     label: str | None = Field(description="Name of the job for people.", examples=["station 4, part 1187"])
     metadata: dict[str, str] = Field(description="Facts of the sender's own.", examples=[{"order": "A-17"}])
     rule: str | None = Field(description="The saved rule that the job went by.", examples=["castings@2"])

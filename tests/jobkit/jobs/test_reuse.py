@@ -60,6 +60,20 @@ def test_what_stands_in_a_page_is_part_of_the_fingerprint_of_a_job_that_asks_for
     assert fingerprint_of(spec.model_copy(update={"priority": "bulk"}), SELF) == known
     changes = ({"label": "x"}, {"mesh_name": "a.ply"}, {"metadata": {"a": "b"}})
     assert len({known, *(fingerprint_of(spec.model_copy(update=change), SELF) for change in changes)}) == 4
+    assert len({known, *(fingerprint_of(spec, SELF, name) for name in ("station 4", "station 5"))}) == 3
+
+
+def test_a_page_never_names_the_key_of_another_job(database: Database, store: ObjectStore) -> None:
+    new = replace(plain(reusing(database, store)), asked_by="station 4")
+    first = finish(database, store, Jobs(database).create(new)[0].id)
+    assert Jobs(database).create(replace(new, asked_by="station 5"))[0].cached_from == first.id
+    with_page = new.spec.output.model_copy(update={"html_report": True})
+    named = replace(new, spec=new.spec.model_copy(update={"output": with_page}))
+    jobs = [Jobs(database).create(replace(named, asked_by=name))[0].id for name in ("station 4", "station 5", None)]
+    assert [Attempts(database).start(job_id, "w", 30).asked_by for job_id in jobs] == ["station 4", "station 5", None]
+    with database.read() as session:
+        query = select(JobRow.fingerprint).where(JobRow.id.in_(jobs))
+        assert len(set(session.scalars(query))) == 3
 
 
 def test_a_job_takes_over_the_result_of_an_equal_one(database: Database, store: ObjectStore) -> None:

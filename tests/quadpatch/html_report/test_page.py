@@ -21,6 +21,7 @@ from tests.quadpatch.html_report.pages import HOSTILE, Element, Page, ball, repa
 ASKED = {
     "job_id": "job_01jd7z3v5qk8m2x4c6b8n0a9de",
     "tenant": "default",
+    "asked_by": "station 4",
     "request_id": "r-1",
     "label": HOSTILE,
     "metadata": {"order": HOSTILE},
@@ -81,6 +82,13 @@ def test_the_whole_report_can_be_copied_out_of_the_page(written: tuple[dict[str,
     """But for the stage that wrote the page."""
     report, text = written
     assert json.loads(Page(text).by_id("report-json").text) == {**report, "stages": report["stages"][:-1]}
+
+
+def test_the_page_says_who_asked(written: tuple[dict[str, Any], str]) -> None:
+    report, text = written
+    said = [cell.text for cell in Page(text).all("th", "td")]
+    for name in ("job_id", "tenant", "asked_by", "request_id"):
+        assert said[said.index(f"Request: {name}") + 1] == report["provenance"]["request"][name] == ASKED[name]
 
 
 def test_what_a_client_wrote_is_text_wherever_it_stands(written: tuple[dict[str, Any], str]) -> None:

@@ -6,11 +6,13 @@ from typing import Any
 
 import pytest
 from pydantic import SecretStr
+from sqlalchemy import select
 from starlette.testclient import TestClient
 
 from dispatcher.retention import forget_audit
 from jobkit.access.keys import Keys
 from jobkit.database.access_tables import KeyRow
+from jobkit.database.tables import JobRow
 from jobkit.settings import Settings
 from quadpatch_client.schema import NewKey, Scope
 from service import auth
@@ -161,6 +163,24 @@ def test_the_audit_log_says_who_did_what_when_and_from_where(operator: TestClien
     page = operator.get("/v1/audit?limit=2").json()
     rest = operator.get(f"/v1/audit?limit=10&cursor={page['next_cursor']}").json()
     assert [*page["items"], *rest["items"]] == entries()
+
+
+def test_a_job_keeps_the_name_of_the_key_that_asked_for_it(operator: TestClient) -> None:
+    smooth = {"method": {"method": "smooth"}}
+    key = made(operator, scopes=["upload", "repair", "models"])["key"]
+    for headers in ({"X-API-Key": OPERATOR_KEY}, {"X-API-Key": key}):
+        mesh = operator.post("/v1/meshes", content=b"ply\nformat ascii 1.0\nend_header\n", headers=headers).json()["id"]
+        for path, body in (
+            ("/v1/jobs", {"mesh_id": mesh, **smooth}),
+            ("/v1/batches", {"mesh_ids": [mesh], "spec": smooth}),
+            ("/v1/trainings", {"meshes": [mesh], "model": "castings"}),
+        ):
+            answer = operator.post(path, json=body, headers=headers)
+            assert answer.status_code == 202, answer.text
+    services: Services = operator.app.state.services  # type: ignore[attr-defined]
+    with services.database.read() as session:
+        names = list(session.scalars(select(JobRow.asked_by).order_by(JobRow.id)))
+    assert names == ["settings"] * 3 + ["station 4"] * 3
 
 
 def test_requests_without_a_key_can_not_fill_the_audit_log(operator: TestClient) -> None:
