@@ -37,7 +37,7 @@ def serve(
     if workers != "auto" and not (workers.isdecimal() and 1 <= int(workers) <= 256):
         raise typer.BadParameter(f"must be 'auto' or a count from 1 to 256; it is {workers!r}", param_hint="--workers")
     try:
-        check_settings(host)
+        check_settings(host, data)
         n_workers = default_workers() if workers == "auto" else int(workers)
         run_serve(LocalStack(data, host, usable_port(host, port), n_workers), typer.echo)
     except OneBoxError as error:

@@ -123,8 +123,8 @@ def ready_check(url: str) -> Callable[[], bool]:
     return is_ready
 
 
-def check_settings(host: str) -> None:
-    """Look at the settings in the environment before anything is started.
+def check_settings(host: str, data: Path) -> None:
+    """Look at the settings of a stack with some data folder before anything is started.
 
     Raises
     ------
@@ -132,7 +132,7 @@ def check_settings(host: str) -> None:
         If one is wrong, or `host` may not be listened on with them.
     """
     try:
-        check_exposure(load_settings().model_copy(update={"host": host}))
+        check_exposure(load_settings().model_copy(update={"host": host, "data_dir": data}))
     except SettingsError as error:
         raise StartError(str(error)) from error
 

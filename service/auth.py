@@ -48,9 +48,17 @@ def check_exposure(settings: Settings) -> None:
     has_some = settings.key_list or settings.oidc_issuer
     if not has_some and not is_loopback(settings.host) and not _has_keys(settings):
         raise SettingsError(
-            f"QUADPATCH_HOST is {settings.host}, which other machines can reach, and QUADPATCH_API_KEYS is empty; "
-            "set keys, make one (python -m service keys create NAME), or listen on 127.0.0.1"
+            f"QUADPATCH_HOST is {settings.host}, which other machines can reach, QUADPATCH_API_KEYS is empty, and no "
+            f"key is in {shown_database(settings)}; set keys, make one there (python -m service keys create NAME), or "
+            "listen on 127.0.0.1"
         )
+
+
+def shown_database(settings: Settings) -> str:
+    """Name the database for people: its file, or its address without the password."""
+    url = make_url(settings.effective_database_url)
+    is_file = url.get_backend_name() == "sqlite" and bool(url.database)
+    return str(url.database) if is_file else url.render_as_string(hide_password=True)
 
 
 def _has_keys(settings: Settings) -> bool:

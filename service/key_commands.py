@@ -17,6 +17,7 @@ from jobkit.errors import DatabaseUnavailableError, KeyNotFoundError, KeyRevoked
 from jobkit.settings import Settings
 from quadpatch_client.schema import Key, KeyWithSecret, NewKey, Scope
 from quadpatch_rules.text import printable
+from service.auth import shown_database
 from service.command_line import CommandParser, print_columns
 
 
@@ -26,7 +27,7 @@ def run(arguments: Sequence[str], settings: Settings) -> int:
     database = Database(settings.effective_database_url)
     try:
         database.migrate()
-        _run(options, Keys(database))
+        _run(options, Keys(database), shown_database(settings))
     except ValidationError as error:
         details = error.errors(include_input=False, include_url=False)
         sys.stderr.write("".join(f"quadpatch: {detail['loc'][0]}: {detail['msg']}\n" for detail in details))
@@ -39,7 +40,7 @@ def run(arguments: Sequence[str], settings: Settings) -> int:
     return 0
 
 
-def _run(options: argparse.Namespace, keys: Keys) -> None:
+def _run(options: argparse.Namespace, keys: Keys, database: str) -> None:
     if options.command == "create":
         new = NewKey(
             name=options.name,
@@ -48,17 +49,19 @@ def _run(options: argparse.Namespace, keys: Keys) -> None:
             expires_at=options.expires,
             requests_per_minute=options.requests_per_minute,
         )
-        _print_new(keys.create(new)[0])
+        _print_new(keys.create(new)[0], database)
     elif options.command == "rotate":
-        _print_new(keys.rotate(options.id)[0])
+        _print_new(keys.rotate(options.id)[0], database)
     elif options.command == "revoke":
         keys.revoke(options.id)
     else:
         _print_table(keys.list_all().items)
 
 
-def _print_new(key: KeyWithSecret) -> None:
-    sys.stderr.write(f"{key.id}, {key.name}, tenant {key.tenant}: {', '.join(key.scopes)}; it is shown this once:\n")
+def _print_new(key: KeyWithSecret, database: str) -> None:
+    rights = ", ".join(key.scopes)
+    sys.stderr.write(f"{key.id}, {key.name}, tenant {key.tenant}: {rights}; written to {database}\n")
+    sys.stderr.write("the key, shown this once:\n")
     sys.stdout.write(f"{key.key}\n")
 
 

@@ -11,7 +11,15 @@ import pytest
 
 from onebox.demo import find_scan
 from onebox.errors import StartError
-from onebox.local_stack import LocalStack, default_workers, owned_folder, programs, ready_check, usable_port
+from onebox.local_stack import (
+    LocalStack,
+    check_settings,
+    default_workers,
+    owned_folder,
+    programs,
+    ready_check,
+    usable_port,
+)
 from tests.waiting import GUARD_S
 
 
@@ -101,6 +109,16 @@ def test_wrong_settings_are_told_before_anything_is_started(tmp_path: Path) -> N
     assert "QUADPATCH_LAESE_S is no setting" in mistyped.stderr
     assert "QUADPATCH_API_KEYS" not in mistyped.stderr
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_key_made_in_the_data_folder_opens_the_stack_to_others(tmp_path: Path) -> None:
+    environment = {**os.environ, "QUADPATCH_DATA_DIR": str(tmp_path)}
+    command = [sys.executable, "-m", "service", "keys", "create", "operator", "--scope", "admin"]
+    made = subprocess.run(command, env=environment, capture_output=True, text=True, check=True, timeout=GUARD_S)
+    assert str(tmp_path / "quadpatch.db") in made.stderr
+    check_settings("0.0.0.0", tmp_path)
+    with pytest.raises(StartError, match=re.escape(str(tmp_path / "elsewhere" / "quadpatch.db"))):
+        check_settings("0.0.0.0", tmp_path / "elsewhere")
 
 
 def test_serve_passes_on_why_a_process_ended(tmp_path: Path) -> None:
