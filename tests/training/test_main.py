@@ -118,7 +118,7 @@ def test_dictionaries_are_registered_as_versions_of_their_name(
         (["{meshes}", "--name", "a", "--patch-length", "nan"], "invalid_option"),
         (["{meshes}", "--name", "a", "--holdout", "mesh"], "invalid_option"),
         (["{meshes}", "--name", "a", "--output", "a.pkl"], "invalid_option"),
-        (["{meshes}", "--name", "a", "--atoms", "100000", *SMALL[2:]], "stage_failed"),
+        (["{meshes}", "--name", "a", "--atoms", "100000", *SMALL[2:]], "invalid_option"),
     ],
 )
 def test_what_cannot_work_is_answered_with_a_code(
