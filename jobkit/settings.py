@@ -134,6 +134,12 @@ class Settings(BaseSettings):
     )
     job_time_limit_s: float = Field(default=900.0, ge=1, description="Most wall-clock seconds of one attempt.")
     job_memory_limit_mb: int = Field(default=4096, ge=256, description="Most memory of one attempt, in MiB.")
+    pdf_renderer: str = Field(
+        default="",
+        pattern=r"^(/.*)?$",
+        description="Path of a Chromium or a browser that takes its options: workers print the page of a report with "
+        "it, `report.pdf`; empty: there are no PDFs.",
+    )
     job_processes: int = Field(
         default=0,
         ge=0,

@@ -24,7 +24,13 @@ _UNSAFE = re.compile(r'[\x00-\x1f\x7f<>:"/\\|?*]')
 _MOST_BYTES = 200
 # A spreadsheet takes a cell that begins so for a formula.
 _FORMULA = ("=", "+", "-", "@", "\t", "\r")
-_SUFFIXES = {"report": ".json", "preview": ".png", "closeups": "-closeups.zip", "html_report": ".html"}
+_SUFFIXES = {
+    "report": ".json",
+    "preview": ".png",
+    "closeups": "-closeups.zip",
+    "html_report": ".html",
+    "pdf_report": ".pdf",
+}
 
 
 def suffix_of(job: Job, role: FileRole) -> str:

@@ -25,6 +25,7 @@ OPERATIONS: Mapping[Scope, tuple[str, ...]] = {
         "get_preview",
         "get_closeups",
         "get_html_report",
+        "get_pdf_report",
         "get_mesh_view",
         "get_mesh_outlines",
         "get_job_view",

@@ -39,6 +39,7 @@ from worker.failures import OUTAGE_DELAY_S, Failure, StopReason
 from worker.heartbeat import OUTAGE_TIMEOUT_S, Heartbeat, HeartbeatCalls
 from worker.models import deprecation, model_argument, network_card
 from worker.outcomes import folder_with_mesh, outcome_of
+from worker.pdf import add_pdf
 from worker.progress import Progress
 from worker.results import (
     Cost,
@@ -148,6 +149,7 @@ def _work(context: Context, started_attempt: StartedAttempt, heartbeat: Heartbea
             log_engine_tail(folder / LOG_NAME)
         if request.scan:
             take_back(meshes, job.mesh_id, folder, before)
+        add_pdf(folder, context.settings.pdf_renderer, request.limits, _StopRule(context, heartbeat))
         if deprecated is not None:
             note_deprecation(folder, f"{job.model.name}@{job.model.version}", deprecated.reason)
         check_acceptance(folder, job.spec)

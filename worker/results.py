@@ -13,7 +13,7 @@ from quadpatch.formats.output_files import write_whole
 from quadpatch.stages import failure_of
 from quadpatch_client.schema import FileRole, JobResult, JobSpec, ResultFile
 from quadpatch_rules.tasks import TRAIN
-from worker.engine.request import CLOSE_UPS_NAME, PAGE_NAME, PREVIEW_NAME, REPORT_NAME, EngineRequest
+from worker.engine.request import CLOSE_UPS_NAME, PAGE_NAME, PDF_NAME, PREVIEW_NAME, REPORT_NAME, EngineRequest
 from worker.failures import Failure
 from worker.result_facts import facts_of_fill, facts_of_task, facts_of_training
 
@@ -26,6 +26,7 @@ _MEDIA_TYPES = {
     "png": "image/png",
     "zip": "application/zip",
     "html": "text/html",
+    "pdf": "application/pdf",
 }
 
 
@@ -43,6 +44,8 @@ _PREVIEW = Picture("preview", PREVIEW_NAME, "preview", "there is no picture")
 _CLOSE_UPS = Picture("closeups", CLOSE_UPS_NAME, "closeups", "there are no close-ups")
 _PAGE = Picture("html_report", PAGE_NAME, "html_report", "there is no HTML report")
 _OPTIONAL = (_PREVIEW, _CLOSE_UPS, _PAGE)
+# No engine draws it: `worker.pdf` prints the page.
+_PDF = Picture("pdf_report", PDF_NAME, "html_report", "there is no PDF")
 
 
 @dataclass(frozen=True)
@@ -68,7 +71,7 @@ def store_result(folder: Path, request: EngineRequest, attempt: Attempt, store: 
     """
     # A learned model is published by the registry.
     files = [] if request.task == TRAIN else [_store_file(folder / request.output, "result", attempt, store)]
-    pictures = [file for picture in _OPTIONAL for file in _store_picture(picture, folder, attempt, store)]
+    pictures = [file for picture in (*_OPTIONAL, _PDF) for file in _store_picture(picture, folder, attempt, store)]
     report = _read_report(folder)
     files += [_store_file(folder / REPORT_NAME, "report", attempt, store), *pictures]
     return JobResult.model_validate(
@@ -104,7 +107,7 @@ def missing_pictures(folder: Path, request: EngineRequest) -> list[Picture]:
 
 def note_deprecation(folder: Path, reference: str, reason: str) -> None:
     """Write into the report that the model should be used no more."""
-    _add_warning(folder, f"the model {reference} is deprecated" + (f": {reason}" if reason else ""))
+    add_warning(folder, f"the model {reference} is deprecated" + (f": {reason}" if reason else ""))
 
 
 def note_lost_pictures(folder: Path, request: EngineRequest, failure: Failure) -> None:
@@ -115,7 +118,7 @@ def note_lost_pictures(folder: Path, request: EngineRequest, failure: Failure) -
     drawn_stages = {stage["name"] for stage in _read_report(folder).get("stages", [])}
     for picture in missing_pictures(folder, request):
         if picture.stage not in drawn_stages:
-            _add_warning(folder, f"{picture.warning}: {failure.message}")
+            add_warning(folder, f"{picture.warning}: {failure.message}")
 
 
 def _store_picture(picture: Picture, folder: Path, attempt: Attempt, store: ObjectStore) -> list[ResultFile]:
@@ -125,11 +128,11 @@ def _store_picture(picture: Picture, folder: Path, attempt: Attempt, store: Obje
     if path.exists():
         failure = failure_of(lambda: stored.append(_store_file(path, picture.role, attempt, store)))
         if failure is not None:
-            _add_warning(folder, f"{picture.warning}: the store failed")
+            add_warning(folder, f"{picture.warning}: the store failed")
     return stored
 
 
-def _add_warning(folder: Path, warning: str) -> None:
+def add_warning(folder: Path, warning: str) -> None:
     """Add a warning to the report; on a full disk the report stays as it was."""
     report = _read_report(folder)
     report["warnings"].append(warning)

@@ -1,4 +1,7 @@
-"""Rows of jobs, found and turned into what clients see."""
+"""Rows of jobs, found and turned into what clients see.
+
+Tested in `tests/service/routes/test_results.py`.
+"""
 
 from sqlalchemy import ColumnElement, or_, select
 from sqlalchemy.orm import InstrumentedAttribute, Session
@@ -57,4 +60,5 @@ def _links(row: JobRow) -> JobLinks:
         preview=f"{path}/preview.png" if "preview" in roles else None,
         closeups=f"{path}/closeups.zip" if "closeups" in roles else None,
         html_report=f"{path}/report.html" if "html_report" in roles else None,
+        pdf_report=f"{path}/report.pdf" if "pdf_report" in roles else None,
     )

@@ -36,7 +36,7 @@ from service.waiting import PreferHeader, note_applied, preferred_wait_s
 router = APIRouter(tags=["jobs"], route_class=StrictRoute)
 
 _OPERATIONS = ("get_job", "cancel_job", "rerun_job", "list_events")
-_DOWNLOADS = ("get_result", "get_report", "get_preview", "get_closeups", "get_html_report")
+_DOWNLOADS = ("get_result", "get_report", "get_preview", "get_closeups", "get_html_report", "get_pdf_report")
 JOB_LINKS: dict[str, Any] = {
     operation: linked(operation, "$response.body#/id", "job_id") for operation in (*_OPERATIONS, *_DOWNLOADS)
 }

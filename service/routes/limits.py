@@ -47,6 +47,7 @@ def get_limits(services: AllServicesDep, principal: PrincipalDep) -> CallerLimit
         formats_read=list(get_args(Format)),
         formats_written=list(get_args(OutputFormat)),
         trainings=_trainings(services),
+        pdf_reports=bool(settings.pdf_renderer),
     )
 
 

@@ -115,6 +115,30 @@ def get_html_report(
     return answer
 
 
+@router.get(
+    "/v1/jobs/{job_id}/report.pdf",
+    response_class=Response,
+    dependencies=CONDITIONAL,
+    responses=_documented("application/pdf"),
+)
+def get_pdf_report(
+    request: Request,
+    services: ServicesDep,
+    job_id: JobIdPath,
+) -> Response:
+    """Fetch the page of the report as a PDF, where the job asked for a page and a renderer is installed.
+
+    `output.html_report` asks for the page; `pdf_reports` of `GET /v1/limits` says whether there is a renderer.
+    """
+    try:
+        return _file_response(request, services, job_id, "pdf_report", "application/pdf")
+    except ObjectNotFoundError as error:
+        if services.settings.pdf_renderer:
+            raise
+        detail = f"job {job_id} left no PDF: no renderer is installed here; print report.html with a browser"
+        raise ObjectNotFoundError(detail) from error
+
+
 def _file_response(
     request: Request,
     services: Services,

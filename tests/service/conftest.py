@@ -19,6 +19,7 @@ FILES = (
     ("preview", "preview.png", b"\x89PNG\r\n\x1a\n"),
     ("closeups", "closeups.zip", b"PK\x05\x06" + bytes(18)),
     ("html_report", "report.html", b"<!DOCTYPE html>"),
+    ("pdf_report", "report.pdf", b"%PDF-1.4"),
 )
 
 

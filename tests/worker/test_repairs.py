@@ -28,6 +28,7 @@ from jobkit.storage.open import open_store
 from quadpatch_client.schema import Job, JobSpec, JobState, MeshState, ResolvedModel
 from tests.integration.conftest import ply_bytes, punched_relief
 from tests.quadpatch.html_report.pages import Page
+from tests.worker.test_pdf import CHROMIUM, needs_chromium
 from worker.context import Context, use_context
 from worker.engine.client import ForkServer
 from worker.jobs import inspect_mesh, run_job
@@ -146,6 +147,23 @@ def test_a_job_that_asks_for_a_page_has_one_that_names_job_and_files(settings: S
     assert json.loads(page.by_id("report-json").text) == {**report, "stages": report["stages"][:-1]}
     assert len(page.all("img")) > 1
     assert report["stages"][-1]["name"] == "html_report"
+
+
+@needs_chromium
+def test_a_worker_with_a_renderer_leaves_the_page_as_a_pdf_too(settings: Settings, store: ObjectStore) -> None:
+    settings = settings.model_copy(update={"pdf_renderer": CHROMIUM})
+    with working(settings, Database(settings.effective_database_url), store) as context:
+        job, plain = new_job(context, html_report=True), new_job(context)
+        for job_id in (job.id, plain.id):
+            run_job(job_id)
+        ended, without = context.jobs.get(job.id), context.jobs.get(plain.id)
+    assert ended.result is not None
+    assert [file.role for file in ended.result.files] == ["result", "report", "html_report", "pdf_report"]
+    assert ended.result.files[-1].media_type == "application/pdf"
+    assert ended.result.warnings == []
+    assert ended.links.pdf_report == f"/v1/jobs/{job.id}/report.pdf"
+    assert b"".join(store.read(result_key(job.id, 1, "report.pdf"))).startswith(b"%PDF-")
+    assert without.links.pdf_report is None
 
 
 def test_the_second_repair_of_a_mesh_takes_what_the_first_one_found_out_by_calibration(

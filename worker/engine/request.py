@@ -13,7 +13,7 @@
     report.json      what was done to every hole, or what else was done
     preview.png      the before/after picture
     closeups.zip     a picture of each chosen hole
-    report.html      the report as a page
+    report.html      the report as a page; report.pdf, printed
     calibration.json what repairs of this mesh found out by calibration; the engine adds what it finds out
     facts.json       what an inspection found
     result/, report/ the result and the report of a job that is to be viewed
@@ -40,6 +40,7 @@ FACTS_NAME = "facts.json"
 PREVIEW_NAME = "preview.png"
 CLOSE_UPS_NAME = "closeups.zip"
 PAGE_NAME = "report.html"
+PDF_NAME = "report.pdf"
 CALIBRATION_NAME = "calibration.json"
 VIEW_NAME = "view.bin"
 LOG_NAME = "engine.log"

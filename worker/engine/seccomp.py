@@ -10,6 +10,7 @@ import ctypes
 import errno
 import os
 import platform
+import socket
 import struct
 import sys
 from dataclasses import dataclass
@@ -74,6 +75,8 @@ _OTHER_CALLS: dict[str, tuple[int | None, int | None]] = {
     "settimeofday": (164, 170),
     "clock_settime": (227, 112),
 }
+# Of those above.
+_CALLS_OF_A_BROWSER = frozenset({"fork", "vfork", "execve", "tkill", "pidfd_open"})
 
 
 @dataclass(frozen=True)
@@ -115,6 +118,28 @@ def restrict_calls() -> None:
         machine = _MACHINES[platform.machine()]
         refused = [*_SOCKETS.values(), *_OTHER_CALLS.values()]
         _install(_filter(machine, _numbers(refused, machine), REFUSE | errno.EPERM, os.getpid()))
+
+
+def restrict_calls_of_a_browser() -> None:
+    """Refuse a browser the network and a look into other processes; it may start programs and talk to itself.
+
+    It may make unix sockets, and connect to none by a name.
+
+    Raises
+    ------
+    OSError
+        If the kernel takes filters and refuses this one.
+    """
+    if has_seccomp():
+        machine = _MACHINES[platform.machine()]
+        others = [numbers for name, numbers in _OTHER_CALLS.items() if name not in _CALLS_OF_A_BROWSER]
+        refused = _numbers([_SOCKETS["connect"], _SOCKETS["io_uring_setup"], *others], machine)
+        answer = REFUSE | errno.EPERM
+        lines = [*_head(machine), *(line for number in refused for line in _if_equal(number, answer))]
+        (socket_number,) = _numbers([_SOCKETS["socket"]], machine)
+        lines += [(0x15, 0, 4, socket_number), _load(_FIRST_ARGUMENT), (0x15, 0, 1, socket.AF_UNIX)]
+        lines += [_end(ALLOW), _end(answer)]
+        _install(_assembled([*lines, _end(ALLOW)]))
 
 
 def kill_on_socket() -> None:

@@ -22,7 +22,7 @@ from quadpatch_rules.tasks import FILL, Task
 
 # What a job hands back: a mesh in a format of its own choice, an encoded surface, or a model.
 ResultFormat = OutputFormat | Literal["qpz", "safetensors", "onnx"]
-FileRole = Literal["result", "report", "preview", "closeups", "html_report"]
+FileRole = Literal["result", "report", "preview", "closeups", "html_report", "pdf_report"]
 
 
 class JobError(Response):
@@ -118,6 +118,7 @@ class JobLinks(Response):
     preview: str | None = Field(default=None, description="The before/after picture.")
     closeups: str | None = Field(default=None, description="Pictures of the chosen holes, a ZIP file.")
     html_report: str | None = Field(default=None, description="The report as a page for people.")
+    pdf_report: str | None = Field(default=None, description="That page as a PDF.")
 
 
 class Job(Response):

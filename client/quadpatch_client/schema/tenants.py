@@ -117,6 +117,11 @@ class CallerLimits(Response):
         description="What `POST /v1/trainings` can learn now; `network` where a worker runs that has torch.",
         examples=[["dictionary", "network"]],
     )
+    pdf_reports: bool = Field(
+        default=False,
+        description="Whether a job with `output.html_report` leaves a `report.pdf` too: a renderer is installed.",
+        examples=[False],
+    )
 
 
 class Version(Response):

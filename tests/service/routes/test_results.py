@@ -1,10 +1,14 @@
+"""Also tests `jobkit/database/job_rows.py`."""
+
 import json
 from collections.abc import Callable
 
 import pytest
 from starlette.testclient import TestClient
 
-from quadpatch_client.schema import Job, JobError
+from jobkit.settings import Settings
+from quadpatch_client.schema import Job, JobError, JobResult
+from service.app import create_app
 from service.services import Services
 
 PATHS = [
@@ -13,6 +17,7 @@ PATHS = [
     ("preview.png", "image/png", b"\x89PNG\r\n\x1a\n", "part 7-repaired.png"),
     ("closeups.zip", "application/zip", b"PK\x05\x06" + bytes(18), "part 7-repaired-closeups.zip"),
     ("report.html", "text/html; charset=utf-8", b"<!DOCTYPE html>", "part 7-repaired.html"),
+    ("report.pdf", "application/pdf", b"%PDF-1.4", "part 7-repaired.pdf"),
 ]
 
 
@@ -79,12 +84,27 @@ def test_a_result_is_named_after_the_file_of_its_job_whatever_its_bytes_are_call
             assert header == f'attachment; filename="{name}-repaired.{suffix}"'
 
 
-@pytest.mark.parametrize("path", ["result", "report", "preview.png", "closeups.zip", "report.html"])
+@pytest.mark.parametrize("path", ["result", "report", "preview.png", "closeups.zip", "report.html", "report.pdf"])
 def test_a_job_that_has_not_ended_has_no_result_yet(client: TestClient, job_id: str, path: str) -> None:
     answer = client.get(f"/v1/jobs/{job_id}/{path}")
     assert (answer.status_code, answer.json()["code"]) == (409, "job_not_finished")
     assert answer.headers["retry-after"] == "2"
     assert answer.json()["retryable"] is True
+
+
+@pytest.mark.parametrize(("renderer", "said"), [("", "no renderer is installed"), ("/usr/bin/chromium", "left no pdf")])
+def test_a_job_without_a_pdf_says_whether_there_could_be_one(settings: Settings, renderer: str, said: str) -> None:
+    app = create_app(settings.model_copy(update={"pdf_renderer": renderer}))
+    with TestClient(app, base_url="http://127.0.0.1") as client:
+        mesh_id = client.post("/v1/meshes", content=b"ply").json()["id"]
+        job = client.post("/v1/jobs", json={"mesh_id": mesh_id, "method": {"method": "smooth"}}).json()
+        attempts = app.state.services.attempts
+        attempts.publish(attempts.start(job["id"], "test", 30).attempt, JobResult(format="ply"))
+        answer = client.get(f"/v1/jobs/{job['id']}/report.pdf")
+        assert (answer.status_code, answer.json()["code"]) == (404, "object_not_found")
+        assert said in answer.json()["detail"]
+        assert client.get(f"/v1/jobs/{job['id']}").json()["links"]["pdf_report"] is None
+        assert client.get("/v1/limits").json()["pdf_reports"] is bool(renderer)
 
 
 def test_a_failed_job_says_why_there_is_no_result(client: TestClient, services: Services, job_id: str) -> None:
