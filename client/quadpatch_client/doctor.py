@@ -22,12 +22,14 @@ import httpx
 
 from quadpatch_client.lenient_json import read_leniently
 from quadpatch_client.schema import CallerLimits, Version
+from quadpatch_client.transport import service_address
 
 _LOCAL = ("localhost", "127.0.0.1", "::1")
 _TIMEOUT_S = 10.0
 _MOST_SKEW_S = 60.0
 _LEAST_FREE_BYTES = 2 << 30
 _LEAST_DAYS = 14.0
+_REFUSALS = (httpx.codes.UNAUTHORIZED, httpx.codes.FORBIDDEN)
 
 
 @dataclass(frozen=True)
@@ -68,7 +70,8 @@ def examine(url: str, api_key: str | None, folder: Path) -> Iterator[Finding]:
         f"quadpatch-client {version('quadpatch-client')}, Python {platform.python_version()}, {platform.platform()}",
     )
     yield from _disks(folder)
-    parts = urlsplit(url)
+    address = service_address(url)
+    parts = urlsplit(address)
     found = _address(parts)
     yield found
     if found.verdict == "error":
@@ -78,7 +81,7 @@ def examine(url: str, api_key: str | None, folder: Path) -> Iterator[Finding]:
         if certificate.verdict == "error":
             return
     headers = {"Authorization": f"Bearer {api_key}"} if api_key else {}
-    with httpx.Client(base_url=url.rstrip("/"), headers=headers, timeout=_TIMEOUT_S) as client:
+    with httpx.Client(base_url=address, headers=headers, timeout=_TIMEOUT_S) as client:
         for look in (_service, _ready, _key):
             finding, goes_on = look(client)
             yield from finding
@@ -144,7 +147,10 @@ def _service(client: httpx.Client) -> tuple[list[Finding], bool]:
     """Ask for the version, and compare clocks by the answer."""
     try:
         answer = client.get("/v1/version")
-        answer.raise_for_status()
+        if answer.status_code in _REFUSALS:
+            return [_refused_key(client, answer)], False
+        if not answer.is_success:
+            raise ValueError(f"status {answer.status_code} {answer.reason_phrase}".strip())
         there = read_leniently(Version, answer.content)
     except (httpx.HTTPError, ValueError) as error:
         advice = "check --url: another program may listen there, or a proxy stands in between"
@@ -190,15 +196,23 @@ def _key(client: httpx.Client) -> tuple[list[Finding], bool]:
         answer = client.get("/v1/limits")
     except httpx.HTTPError as error:
         return [Finding("key", "error", str(error), "try again")], False
-    if answer.status_code in (httpx.codes.UNAUTHORIZED, httpx.codes.FORBIDDEN):
-        has_key = "Authorization" in client.headers
-        text = "the service does not take this key" if has_key else "the service needs a key"
-        return [Finding("key", "error", text, "say --api-key or set QUADPATCH_CLIENT_API_KEY; ask the operator")], False
+    if answer.status_code in _REFUSALS:
+        return [_refused_key(client, answer)], False
     try:
         limits = read_leniently(CallerLimits, answer.raise_for_status().content)
     except (httpx.HTTPError, ValueError):
         return [Finding("limits", "warning", "the service does not say what its limits are", "")], False
     return [Finding("key", "ok", f"of tenant {limits.tenant}"), *_limits(limits)], False
+
+
+def _refused_key(client: httpx.Client, answer: httpx.Response) -> Finding:
+    if "Authorization" not in client.headers:
+        text = "the service asks for a key"
+    elif answer.status_code == httpx.codes.FORBIDDEN:
+        text = "the service knows this key, which may not read: the scope `read` is missing"
+    else:
+        text = "the service does not know this key"
+    return Finding("key", "error", text, "set QUADPATCH_CLIENT_API_KEY or say --api-key; the operator makes a key")
 
 
 def _limits(limits: CallerLimits) -> Iterator[Finding]:

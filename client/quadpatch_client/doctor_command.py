@@ -33,6 +33,8 @@ def doctor(url: UrlOption = DEFAULT_URL, api_key: KeyOption = None, as_json: Jso
             verdict = f"[{_STYLES[finding.verdict]}]{finding.verdict}[/]"
             table.add_row(finding.subject, verdict, words.replace("[", "\\["))
         Console(highlight=False).print(table)
+    if any(finding.subject == "key" and finding.verdict == "error" for finding in findings):
+        raise typer.Exit(ExitCode.REJECTED)
     if not exit_is_clean(findings):
         is_reached = any(finding.subject == "service" and finding.verdict != "error" for finding in findings)
         raise typer.Exit(ExitCode.OTHER if is_reached else ExitCode.UNREACHABLE)

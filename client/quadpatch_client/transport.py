@@ -22,6 +22,11 @@ _SILENCE_S, _CONNECT_S = 60.0, 5.0
 _TIMEOUT = httpx.Timeout(_SILENCE_S, connect=_CONNECT_S)
 
 
+def service_address(url: str) -> str:
+    """Return the address of a service, without the `/v1` that begins the paths of its routes."""
+    return url.rstrip("/").removesuffix("/v1").rstrip("/")
+
+
 def _nothing() -> int:
     return 0
 
@@ -47,7 +52,7 @@ class Transport:
         first_contact_s: float = _FIRST_CONTACT_S,
     ) -> None:
         headers = {"Authorization": f"Bearer {api_key}"} if api_key else {}
-        self.base_url = base_url.rstrip("/")
+        self.base_url = service_address(base_url)
         self._client = httpx.Client(base_url=self.base_url, headers=headers, timeout=_TIMEOUT)
         self._line = Line(self.base_url, patience_s, first_contact_s)
 

@@ -60,7 +60,34 @@ def test_versions_clocks_and_keys_are_compared(server: Any, answers: Any, tmp_pa
         "not ready: the queue is away wait: jobs that were accepted are kept; tell the operator if it stays so",
     )
     assert seen["key"][0] == "error"
-    assert "does not take this key" in seen["key"][1]
+    assert "does not know this key" in seen["key"][1]
+
+
+@pytest.mark.parametrize(
+    ("status", "key", "words"),
+    [
+        (401, [], "the service asks for a key"),
+        (401, ["--api-key", "wrong"], "the service does not know this key"),
+        (403, ["--api-key", "narrow"], "the scope `read` is missing"),
+    ],
+)
+def test_a_key_that_is_refused_is_told_as_that(
+    server: Any, answers: Any, status: int, key: list[str], words: str
+) -> None:
+    server.answers = [answers["answer"](status)]
+    command = ["doctor", "--url", f"{server.url}/v1/", *key]
+    environment = {"COLUMNS": "200", "QUADPATCH_CLIENT_API_KEY": ""}
+    done = CliRunner().invoke(app, command, env=environment)
+    assert done.exit_code == ExitCode.REJECTED
+    assert words in done.stdout
+    assert "→ set QUADPATCH_CLIENT_API_KEY or say --api-key; the operator makes a key" in done.stdout
+    assert [path for _, path, _, _ in server.requests] == ["/v1/version"]
+
+
+def test_no_answer_of_another_program_is_told_in_words_of_a_library(server: Any, answers: Any, tmp_path: Path) -> None:
+    server.answers = [answers["answer"](404)]
+    verdict, text = found(server.url, tmp_path)["service"]
+    assert (verdict, text.partition(" check")[0]) == ("error", "no answer of a Quadpatch service: status 404 Not Found")
 
 
 def test_another_program_is_told_apart(server: Any, answers: Any, tmp_path: Path) -> None:

@@ -63,6 +63,14 @@ def test_a_quota_that_stays_used_up_is_told_in_the_words_of_the_service(server: 
     assert (caught.value.problem.quota and caught.value.problem.quota.limit) == 7
 
 
+@pytest.mark.parametrize("path", ["", "/", "/v1", "/v1/"])
+def test_an_address_may_end_with_the_beginning_of_its_paths(server: Any, answers: Any, path: str) -> None:
+    server.answers = [answers["answer"](200)]
+    with Transport(f"{server.url}{path}") as transport:
+        assert transport.request("GET", "/v1/version").is_success
+    assert [asked for _, asked, _, _ in server.requests] == ["/v1/version"]
+
+
 def test_a_quota_that_waiting_does_not_change_is_told_at_once(server: Any, answers: Any) -> None:
     server.answers = [answers["answer"](507, PROBLEM.replace(b"404", b"507"), Content_Type=PROBLEM_MEDIA_TYPE)]
     with Transport(server.url, patience_s=GUARD_S) as transport, pytest.raises(RefusedError):
