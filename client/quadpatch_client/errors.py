@@ -22,6 +22,13 @@ if TYPE_CHECKING:
     from quadpatch_client.schema import Job, MeshProblem, Problem
 
 
+# What the service says in terms of HTTP, in options of the client.
+_IN_OPTIONS = {
+    "unauthorized": "the key is missing or not valid: --api-key or QUADPATCH_CLIENT_API_KEY "
+    "(`quadpatch-client doctor` looks)"
+}
+
+
 class ClientError(Exception):
     """Base of all errors of the SDK."""
 
@@ -35,7 +42,7 @@ class RefusedError(ClientError):
 
     def __init__(self, problem: "Problem") -> None:
         details = "".join(f"; {error.pointer}: {error.message}" for error in problem.errors)
-        super().__init__(f"{problem.detail}{details} ({problem.code})")
+        super().__init__(f"{_IN_OPTIONS.get(problem.code, problem.detail)}{details} ({problem.code})")
         self.problem = problem
 
 

@@ -78,6 +78,18 @@ def test_a_quota_that_waiting_does_not_change_is_told_at_once(server: Any, answe
     assert len(server.requests) == 1
 
 
+def test_a_key_that_is_not_taken_is_told_in_options_of_the_client(server: Any, answers: Any) -> None:
+    words = {"status": 401, "code": "unauthorized", "detail": "send a valid key as 'X-API-Key: KEY'"}
+    problem = json.dumps({**json.loads(PROBLEM), **words}).encode()
+    server.answers = [answers["answer"](401, problem, Content_Type=PROBLEM_MEDIA_TYPE)]
+    with Transport(server.url) as transport, pytest.raises(RefusedError) as caught:
+        transport.request("GET", "/")
+    assert str(caught.value) == (
+        "the key is missing or not valid: --api-key or QUADPATCH_CLIENT_API_KEY (`quadpatch-client doctor` looks) "
+        "(unauthorized)"
+    )
+
+
 def test_a_problem_is_raised_at_once_with_its_code(server: Any, answers: Any) -> None:
     server.answers = [answers["answer"](404, PROBLEM, Content_Type=PROBLEM_MEDIA_TYPE)]
     with Transport(server.url) as transport, pytest.raises(RefusedError, match="there is no such mesh") as caught:
