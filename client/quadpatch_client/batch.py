@@ -11,7 +11,7 @@ from concurrent.futures import FIRST_COMPLETED, wait
 from functools import partial
 from typing import TYPE_CHECKING
 
-from quadpatch_client.errors import ClientError, UnreachableError
+from quadpatch_client.errors import ClientError, RefusedError, UnreachableError
 from quadpatch_client.file_repair import FilePlan, JobOptions, Row, failure, repair_file
 from quadpatch_client.journal import Entry, Journal, Stamp, sync
 from quadpatch_client.workers import Workers
@@ -64,17 +64,23 @@ class Batch:
         ------
         UnreachableError
             If the service does not answer. Nothing is lost: the same batch goes on later.
+        RefusedError
+            If the service refuses the key or the options, and with them every file.
         """
         rows = self.finished()
         workers = Workers(self._n_parallel)
         left = {workers.submit(partial(self._repair, plan)) for plan in self.plans if plan.name not in rows}
         workers.close()
-        while left:
-            ended, left = wait(left, return_when=FIRST_COMPLETED)
-            for future in ended:
-                row = future.result()
-                rows[row.file] = row
-                tell(row)
+        try:
+            while left:
+                ended, left = wait(left, return_when=FIRST_COMPLETED)
+                for future in ended:
+                    row = future.result()
+                    rows[row.file] = row
+                    tell(row)
+        finally:
+            for future in left:
+                future.cancel()
         return [rows[plan.name] for plan in self.plans]
 
     def _holds(self, entry: Entry, plan: FilePlan) -> bool:
@@ -96,6 +102,8 @@ class Batch:
         except UnreachableError:
             raise
         except (ClientError, OSError) as error:
+            if isinstance(error, RefusedError) and error.concerns_every_file:
+                raise
             row = failure(plan.name, error)
         note(row)
         return row

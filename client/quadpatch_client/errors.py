@@ -28,6 +28,26 @@ _IN_OPTIONS = {
     "(`quadpatch-client doctor` looks)"
 }
 
+# What would be refused for any other file as well: it lies with the key or the options.
+_OF_THE_REQUEST = frozenset(
+    {
+        "unauthorized",
+        "invalid_token",
+        "tenant_missing",
+        "tenant_disabled",
+        "scope_missing",
+        "foreign_host",
+        "route_not_found",
+        "rule_not_found",
+        "model_not_found",
+        "model_kind_mismatch",
+        "model_refused",
+        "no_network_registered",
+        "over_service_limit",
+        "options_conflict",
+    }
+)
+
 
 class ClientError(Exception):
     """Base of all errors of the SDK."""
@@ -44,6 +64,11 @@ class RefusedError(ClientError):
         details = "".join(f"; {error.pointer}: {error.message}" for error in problem.errors)
         super().__init__(f"{_IN_OPTIONS.get(problem.code, problem.detail)}{details} ({problem.code})")
         self.problem = problem
+
+    @property
+    def concerns_every_file(self) -> bool:
+        """Whether the service would refuse the same for any other file: the key or the options are at fault."""
+        return self.problem.code in _OF_THE_REQUEST
 
 
 class AnswerError(ClientError):

@@ -71,6 +71,11 @@ class FolderWatch:
         Whether the report comes as a page, too.
     clock : callable
         Seconds that only grow.
+
+    Attributes
+    ----------
+    refusal : RefusedError, optional
+        The latest one by which the service refused the key or the options, and with them every file.
     """
 
     def __init__(  # noqa: PLR0913, PLR0917 - what a station may choose
@@ -92,6 +97,7 @@ class FolderWatch:
         self._seen: dict[Path, _Waiting] = {}
         self._busy: dict[Path, Future[Row]] = {}
         self._pause_s = 0.0
+        self.refusal: RefusedError | None = None
 
     @property
     def is_idle(self) -> bool:
@@ -175,6 +181,8 @@ class FolderWatch:
         return retryable and waiting.n_tries < _MOST_TRIES
 
     def _wait_for(self, path: Path, waiting: _Waiting, error: Exception) -> None:
+        if isinstance(error, RefusedError) and error.concerns_every_file:
+            self.refusal = error
         self._pause_s = min(max(2 * self._pause_s, _FIRST_PAUSE_S), _LONGEST_PAUSE_S)
         waiting.not_before = self._clock() + self._pause_s
         n_waiting = len(self._seen)

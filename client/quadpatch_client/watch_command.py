@@ -99,5 +99,7 @@ def watch(  # noqa: PLR0913 - one parameter per option of the command line
             screen.say(f"watching {folder}; end with Ctrl-C" if not once else f"repairing what lies in {folder}")
             work.look()
             while not (once and work.is_idle):
+                if once and work.refusal is not None:
+                    raise work.refusal
                 time.sleep(_LOOK_S)
                 work.look()

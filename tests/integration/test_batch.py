@@ -165,6 +165,22 @@ def test_what_makes_no_sense_is_said_before_anything_is_sent(
     assert words in done.stderr
 
 
+@pytest.mark.parametrize(
+    ("options", "code"), [(["--saved-rule", "no-such"], "rule_not_found"), (["--model", "no-such"], "model_not_found")]
+)
+def test_what_would_be_refused_for_every_file_ends_the_batch_at_once(
+    run: Callable[..., Result], tmp_path: Path, options: list[str], code: str
+) -> None:
+    folder, out = tmp_path / "in", tmp_path / "out"
+    small_scans(folder, 3, "refused")
+    done = run("batch", folder, "--out", out, "--parallel", "1", *options)
+    assert done.exit_code == ExitCode.REJECTED, done.stderr
+    assert f"({code})" in done.stderr
+    assert "refused_000.ply" not in done.stderr
+    assert not (out / "summary.csv").exists()
+    assert (out / JOURNAL).read_text() == ""
+
+
 def test_a_service_that_is_away_ends_the_batch_with_what_to_do(tmp_path: Path) -> None:
     small_scans(tmp_path / "in", 1, "away")
     arguments = ["batch", str(tmp_path / "in"), "--out", str(tmp_path / "out"), "--url", "http://127.0.0.1:9"]

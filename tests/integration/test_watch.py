@@ -19,6 +19,7 @@ from urllib.parse import urlsplit
 from typer.testing import CliRunner
 
 from quadpatch_client.cli import app
+from quadpatch_client.exit_codes import ExitCode
 from quadpatch_client.sdk import Client
 from tests.integration.conftest import ply_bytes, punched_relief
 from tests.integration.test_batch import SMOOTH, small_scans
@@ -109,3 +110,12 @@ def test_what_lies_there_is_repaired_once_and_what_is_no_mesh_is_set_aside(
     again = CliRunner().invoke(app, arguments)
     assert "garbage.ply can't be repaired and was moved to" in again.stderr
     assert (tmp_path / "failed" / "garbage.ply").exists()
+
+
+def test_a_rule_that_is_not_known_ends_a_single_look(local_stack: Any, tmp_path: Path) -> None:
+    names = small_scans(tmp_path, 2, "unruled")
+    arguments = ["watch", str(tmp_path), "--once", "--saved-rule", "no-such", *OPTIONS, "--url", local_stack.url]
+    done = CliRunner().invoke(app, arguments)
+    assert done.exit_code == ExitCode.REJECTED, done.stderr
+    assert "(rule_not_found)" in done.stderr
+    assert sorted(path.name for path in tmp_path.iterdir() if not path.name.startswith(".")) == names

@@ -3,19 +3,48 @@
 import io
 import threading
 from pathlib import Path
+from typing import Any
 
 import pytest
 from rich.console import Console
+from typer.testing import CliRunner
 
 from quadpatch_client.batch_summary import print_summary, row_text, write_csv
+from quadpatch_client.cli import app
 from quadpatch_client.errors import UsageError
+from quadpatch_client.exit_codes import ExitCode
 from quadpatch_client.file_repair import Row
 from quadpatch_client.folder_files import mesh_files, plans_in, remove_partial_files
+from quadpatch_client.schema import PROBLEM_MEDIA_TYPE, Problem
 from quadpatch_client.workers import Workers
 from tests.waiting import GUARD_S
 
 DONE = Row("a.ply", "done", 5, 1, 2, 1, 1, 70, 2.5, "job_1", "")
 FAILED = Row("b.ply", "failed", reason="=the file is empty (invalid_mesh)")
+
+
+@pytest.mark.parametrize(("status", "code"), [(401, "unauthorized"), (403, "scope_missing")])
+@pytest.mark.parametrize("words", [["batch", "in", "--out", "out"], ["watch", "in", "--once", "--settle", "0"]])
+def test_a_key_that_is_refused_is_no_fault_of_any_file(  # noqa: PLR0917 - what pytest hands over
+    server: Any,
+    answers: Any,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    words: list[str],
+    status: int,
+    code: str,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("in").mkdir()
+    for name in ("a.ply", "b.ply"):
+        (Path("in") / name).write_bytes(b"ply")
+    problem = Problem(type="x", title="x", status=status, code=code, detail="words", instance="x")
+    server.answers = [answers["answer"](status, problem.model_dump_json().encode(), Content_Type=PROBLEM_MEDIA_TYPE)]
+    done = CliRunner().invoke(app, [*words, "--url", server.url, "--api-key", "wrong"])
+    assert done.exit_code == ExitCode.REJECTED, done.stderr
+    assert f"({code})" in done.stderr
+    assert sorted(path.name for path in Path("in").glob("*.ply")) == ["a.ply", "b.ply"]
+    assert not Path("out/summary.csv").exists()
 
 
 def test_the_summary_counts_and_names_what_failed() -> None:
