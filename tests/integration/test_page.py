@@ -11,6 +11,7 @@ from playwright.sync_api import Browser, Request, Route, expect
 
 from tests.integration.browser import AXE, Service, Visit, visiting
 from tests.integration.conftest import RunningStack, ply_bytes, punched_relief
+from tests.waiting import wait_until
 
 
 def relief(n: int = 40) -> bytes:
@@ -182,6 +183,8 @@ def test_batches_rules_and_models_are_shown_and_made(visit: Visit, api: Service)
     page.get_by_role("button", name="Start the batch").click()
     expect(page).to_have_url(re.compile("#/batches/bat_"))
     expect(page.get_by_text("ended", exact=True)).to_be_visible()
+    # The list of its jobs goes along.
+    expect(page.locator("tbody tr")).to_contain_text("done")
     with page.expect_download() as saving:
         page.get_by_role("button", name="Table of its jobs").click()
     assert b"hall8-a.ply" in Path(saving.value.path()).read_bytes()
@@ -189,6 +192,27 @@ def test_batches_rules_and_models_are_shown_and_made(visit: Visit, api: Service)
     expect(page.get_by_role("heading", name="general-dictionary@1")).to_be_visible()
     visit.go("about")
     expect(page.get_by_text("Largest file")).to_be_visible()
+
+
+def test_the_first_key_may_administer_keys(
+    chromium: Browser, run_stack: Callable[..., AbstractContextManager[RunningStack]]
+) -> None:
+    with run_stack() as stack, visiting(chromium, stack.url) as visit:
+        page = visit.page
+        visit.go("keys")
+        expect(page.get_by_text("The first one must be allowed to administer keys")).to_be_visible()
+        expect(page.get_by_label("administer keys")).to_be_checked()
+        page.get_by_label("Name").fill("office")
+        page.get_by_role("button", name="Make key").click()
+        secret = page.locator(".note code").inner_text()
+        wait_until(lambda: page.request.get(f"{stack.url}/v1/limits").status == 401)
+        page.reload()
+        page.get_by_label("Key").fill(secret)
+        page.get_by_role("button", name="Sign in").click()
+        visit.go("keys")
+        expect(page.get_by_role("row").filter(has_text="office")).to_be_visible()
+        expect(page.get_by_label("administer keys")).not_to_be_checked()
+        expect(page.get_by_text("The first one must be allowed")).to_have_count(0)
 
 
 def test_everything_can_be_done_by_keyboard(visit: Visit, api: Service) -> None:

@@ -9,8 +9,8 @@ export interface Answer<T> {
   reload: () => void;
 }
 
-/** Ask for a path when it changes, and on `reload`; with null nothing is asked. */
-export function useAnswer<T>(path: string | null): Answer<T> {
+/** Ask for a path when it or `version` changes, and on `reload`; with null nothing is asked. */
+export function useAnswer<T>(path: string | null, version = ""): Answer<T> {
   const [state, setState] = useState<{ path: string | null; value: T | null; problem: Problem | null }>({
     path: null,
     value: null,
@@ -26,7 +26,7 @@ export function useAnswer<T>(path: string | null): Answer<T> {
         if (!asking.signal.aborted) setState({ path, value: null, problem: asProblem(error) });
       });
     return () => asking.abort();
-  }, [path, round]);
+  }, [path, version, round]);
   const reload = useCallback(() => setRound((n) => n + 1), []);
   const isOfPath = state.path === path;
   return { value: isOfPath ? state.value : null, problem: isOfPath ? state.problem : null, reload };

@@ -16,7 +16,10 @@ import { State } from "./scans";
 
 export function BatchPage({ id }: { id: string }) {
   const { batch, problem } = useBatch(id);
-  const jobs = useAnswer<JobPage>(`/v1/jobs?batch_id=${encodeURIComponent(id)}`);
+  const jobs = useAnswer<JobPage>(
+    batch && `/v1/jobs?batch_id=${encodeURIComponent(id)}`,
+    JSON.stringify([batch?.state, batch?.counts]),
+  );
   useTitle(batch?.label ?? t("batch"));
   if (problem) return <ProblemNote problem={problem} />;
   if (!batch) return <Loading />;

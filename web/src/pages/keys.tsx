@@ -5,16 +5,20 @@ import type { Key, KeyList, KeyWithSecret, NewKey, Scope } from "../api/types";
 import { useAction, useAnswer, useTitle } from "../hooks";
 import { ActionButton, Check, Field, Table } from "../parts/forms";
 import { Loading, Note, ProblemNote } from "../parts/notes";
+import { key } from "../session";
 import { time } from "../text/format";
 import { t, tCode } from "../text/text";
 
 const SCOPES: readonly Scope[] = ["read", "upload", "repair", "models", "admin"];
+const USUAL_SCOPES: Scope[] = ["read", "upload", "repair"];
 
 export function KeysPage() {
   const keys = useAnswer<KeyList>("/v1/keys");
   const [made, setMade] = useState<KeyWithSecret | null>(null);
   useTitle(t("section_keys"));
   const show = (key: KeyWithSecret | null) => (setMade(key), keys.reload());
+  // Keys of the settings are not listed: who signed in has one of them.
+  const isFirst = keys.value?.items.length === 0 && key() === null;
   return (
     <>
       <h1>{t("section_keys")}</h1>
@@ -35,7 +39,7 @@ export function KeysPage() {
           {keys.value.items.map((key) => <KeyRow key={key.id} of={key} onChange={show} />)}
         </Table>
       )}
-      {keys.value && <NewKeyForm onMade={show} />}
+      {keys.value && <NewKeyForm key={String(isFirst)} isFirst={isFirst} onMade={show} />}
     </>
   );
 }
@@ -69,11 +73,11 @@ function KeyRow({ of: key, onChange }: { of: Key; onChange: (key: KeyWithSecret 
   );
 }
 
-function NewKeyForm({ onMade }: { onMade: (key: KeyWithSecret) => void }) {
+function NewKeyForm({ isFirst, onMade }: { isFirst: boolean; onMade: (key: KeyWithSecret) => void }) {
   const [name, setName] = useState("");
   const [tenant, setTenant] = useState("");
   const [end, setEnd] = useState("");
-  const [scopes, setScopes] = useState<Scope[]>(["read", "upload", "repair"]);
+  const [scopes, setScopes] = useState<Scope[]>(isFirst ? [...USUAL_SCOPES, "admin"] : USUAL_SCOPES);
   const action = useAction();
   const make = async () => {
     const key: NewKey = { name, scopes };
@@ -86,7 +90,7 @@ function NewKeyForm({ onMade }: { onMade: (key: KeyWithSecret) => void }) {
   return (
     <form class="card" onSubmit={(event) => (event.preventDefault(), void action.run(make))}>
       <h2>{t("new_key")}</h2>
-      <p>{t("new_key_why")}</p>
+      <p>{t("new_key_why")} {isFirst && t("first_key_why")}</p>
       <Field label={t("name")} value={name} onInput={setName} required />
       <Field label={t("tenant")} hint={t("tenant_hint")} value={tenant} onInput={setTenant} />
       <Field label={t("expires_at")} type="date" value={end} onInput={setEnd} />

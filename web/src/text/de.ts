@@ -71,6 +71,7 @@ export const de: Record<keyof typeof en, string> = {
   figures_table: "Tabelle seiner Aufträge (CSV)",
   file_name: "Dateiname",
   finished_at: "Beendet",
+  first_key_why: "Der erste muss Schlüssel verwalten dürfen: sonst lässt sich hier kein weiterer erstellen.",
   first_page: "Erste Seite",
   fly_to_hole: "Zu Loch {id} fliegen",
   format: "Format",

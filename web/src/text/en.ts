@@ -70,6 +70,7 @@ export const en = {
   figures_table: "Table of its jobs (CSV)",
   file_name: "File name",
   finished_at: "Finished",
+  first_key_why: "The first one must be allowed to administer keys: without it no other could be made here.",
   first_page: "First page",
   fly_to_hole: "Fly to hole {id}",
   format: "Format",
