@@ -6,6 +6,7 @@ from collections.abc import Callable
 from contextlib import AbstractContextManager
 from pathlib import Path
 
+import numpy as np
 import pytest
 from playwright.sync_api import Browser, Request, Route, expect
 
@@ -213,6 +214,44 @@ def test_the_first_key_may_administer_keys(
         expect(page.get_by_role("row").filter(has_text="office")).to_be_visible()
         expect(page.get_by_label("administer keys")).not_to_be_checked()
         expect(page.get_by_text("The first one must be allowed")).to_have_count(0)
+
+
+def test_a_repair_says_what_came_out_and_marks_holes_that_miss_the_limits(visit: Visit, api: Service) -> None:
+    mesh = api.upload(relief(31), "limits.ply")
+    job = api.repair(mesh, acceptance={"max_expected_error": 1e-12, "otherwise": "warn"})
+    page = visit.page
+    visit.go(f"jobs/{job}")
+    expect(page.get_by_text("4 of 5 holes filled, 1 left open (outer border)")).to_be_visible()
+    report = api.get(f"/v1/jobs/{job}/report")
+    unmet = {str(hole["id"]) for hole in report["acceptance"]["unmet"]}
+    marked = page.locator("tr[data-hole]").filter(has_text="misses the limits of the rule")
+    assert unmet
+    assert {row.get_attribute("data-hole") for row in marked.all()} == unmet
+    # What the service warns of stands above the picture.
+    warning = page.get_by_text(api.get(f"/v1/jobs/{job}")["result"]["warnings"][0]).bounding_box()
+    view = page.locator(".workspace").bounding_box()
+    assert warning is not None
+    assert view is not None
+    assert warning["y"] < view["y"]
+
+
+@pytest.mark.parametrize("locale", ["en-GB", "de-DE"])
+def test_places_far_from_zero_differ_and_no_column_is_cut(
+    chromium: Browser, local_stack: RunningStack, api: Service, locale: str
+) -> None:
+    vertices, triangles = punched_relief(32)
+    mesh = api.upload(ply_bytes(vertices + np.array([4_512_000.0, 532_100.0, 312.4]), triangles, "double"), "map.ply")
+    job = api.repair(mesh)
+    for width in (1280, 1440):
+        size = {"width": width, "height": 900}
+        with visiting(chromium, local_stack.url, locale=locale, viewport=size) as visit:
+            for path in (f"meshes/{mesh}", f"jobs/{job}"):
+                visit.go(path)
+                places = visit.page.locator(".holes td, .holes th").locator(".place")
+                expect(places).to_have_count(5)
+                assert len(set(places.all_inner_texts())) == 5
+                table = visit.page.locator(".holes")
+                assert table.evaluate("(table) => table.scrollWidth - table.clientWidth") <= 0, (width, path)
 
 
 def test_everything_can_be_done_by_keyboard(visit: Visit, api: Service) -> None:

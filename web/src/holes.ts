@@ -1,5 +1,5 @@
 /** What is done with each hole: what a person chose, as rules of a job. */
-import type { HoleRule } from "./api/types";
+import type { HoleReport, HoleRule } from "./api/types";
 
 export const ACTIONS = ["auto", "model", "smooth", "flat", "skip"] as const;
 export type Action = (typeof ACTIONS)[number];
@@ -27,6 +27,10 @@ export function choicesOf(rules: readonly HoleRule[]): Choices {
   return new Map(rules.flatMap((rule) => (rule.ids ?? []).map((id): [number, Action] => [id, rule.action])));
 }
 
+export function isLeftOpen({ verdict }: HoleReport): boolean {
+  return verdict === "skipped" || verdict === "refused";
+}
+
 /** What is known of a hole before a repair, in a plan, or after it. */
 export interface HoleRow {
   id: number;
@@ -39,4 +43,6 @@ export interface HoleRow {
   isOpen: boolean;
   confidence?: number | null;
   expectedError?: number | null;
+  /** Whether it misses a limit of the rule. */
+  isUnmet?: boolean;
 }

@@ -4,20 +4,23 @@ import { post, send } from "../api/client";
 import { hasEnded, hasResult, useJob } from "../api/following";
 import type { FillReport, HoleReport, Job } from "../api/types";
 import { useAnswer, useTitle } from "../hooks";
-import type { HoleRow } from "../holes";
+import { type HoleRow, isLeftOpen } from "../holes";
 import { DropZone } from "../parts/dropzone";
 import { ActionButton, DownloadButton, Facts } from "../parts/forms";
 import { HoleList } from "../parts/hole_list";
 import { FailureNote, Loading, Note, ProblemNote } from "../parts/notes";
+import { Outcome } from "../parts/outcome";
 import { Progress } from "../parts/progress";
 import { go } from "../route";
-import { count, duration, time } from "../text/format";
+import { count, diagonalOf, duration, time } from "../text/format";
 import { t, tCode } from "../text/text";
 import { Workspace } from "../viewer/workspace";
 import { State } from "./scans";
 
 export function JobPage({ id }: { id: string }) {
   const { job, problem } = useJob(id);
+  const isFill = job !== null && hasResult(job) && (job.spec.task ?? "fill") === "fill";
+  const report = useAnswer<FillReport>(isFill ? `/v1/jobs/${id}/report` : null);
   useTitle(job?.mesh_name ?? t("job"));
   if (problem) return <ProblemNote problem={problem} />;
   if (!job) return <Loading />;
@@ -27,9 +30,11 @@ export function JobPage({ id }: { id: string }) {
       <p><State of={job.state} group="job_state" /> {job.spec.label}</p>
       {!hasEnded(job) && <Progress job={job} />}
       {job.error && <FailureNote {...job.error} />}
-      {hasResult(job) && <Downloads job={job} />}
-      {hasResult(job) && (job.spec.task ?? "fill") === "fill" && <Repaired job={job} />}
+      {report.value && <Outcome holes={report.value.holes} />}
       {job.result?.warnings?.map((warning) => <Note key={warning}><span lang="en">{warning}</span></Note>)}
+      {hasResult(job) && <Downloads job={job} />}
+      <ProblemNote problem={report.problem} />
+      {isFill && <Repaired job={job} report={report.value} />}
       <JobFacts job={job} />
     </>
   );
@@ -51,36 +56,38 @@ function Downloads({ job }: { job: Job }) {
   );
 }
 
-function Repaired({ job }: { job: Job }) {
-  const report = useAnswer<FillReport>(`/v1/jobs/${job.id}/report`);
+function Repaired({ job, report }: { job: Job; report: FillReport | null }) {
   const [reference, setReference] = useState<string | null>(null);
-  const holes = useMemo(() => (report.value?.holes ?? []).map(row), [report.value]);
-  const unit = report.value?.length_unit;
+  const holes = useMemo(() => (report ? rows(report) : []), [report]);
+  const unit = report?.length_unit;
+  const diagonal = report && diagonalOf(report.source.bounding_box);
   return (
-    <>
-      <ProblemNote problem={report.problem} />
-      <Workspace
-        before={`/v1/meshes/${job.mesh_id}/view`}
-        after={`/v1/jobs/${job.id}/view`}
-        reference={reference}
-        outlines={`/v1/meshes/${job.mesh_id}/outlines`}
-        holes={holes}
-        unit={unit}
-        list={(selected, onSelect) => (
-          <>
-            <h2>{t("holes")}{report.value && ` (${count(holes.length)})`}</h2>
-            {report.value ? <HoleList {...{ holes, unit, selected, onSelect }} /> : <Loading />}
-          </>
-        )}
-      >
-        <section>
-          <h2>{t("reference")}</h2>
-          <p>{t("reference_why")}</p>
-          <DropZone label={t("drop_reference")} isSmall onMesh={setReference} />
-        </section>
-      </Workspace>
-    </>
+    <Workspace
+      before={`/v1/meshes/${job.mesh_id}/view`}
+      after={`/v1/jobs/${job.id}/view`}
+      reference={reference}
+      outlines={`/v1/meshes/${job.mesh_id}/outlines`}
+      holes={holes}
+      unit={unit}
+      list={(selected, onSelect) => (
+        <>
+          <h2>{t("holes")}{report && ` (${count(holes.length)})`}</h2>
+          {report ? <HoleList {...{ holes, unit, diagonal, selected, onSelect }} /> : <Loading />}
+        </>
+      )}
+    >
+      <section>
+        <h2>{t("reference")}</h2>
+        <p>{t("reference_why")}</p>
+        <DropZone label={t("drop_reference")} isSmall onMesh={setReference} />
+      </section>
+    </Workspace>
   );
+}
+
+function rows({ holes, acceptance }: FillReport): HoleRow[] {
+  const unmet = new Set(acceptance?.unmet?.map(({ id }) => id));
+  return holes.map((hole) => ({ ...row(hole), isUnmet: unmet.has(hole.id) }));
 }
 
 function row(hole: HoleReport): HoleRow {
@@ -92,7 +99,7 @@ function row(hole: HoleReport): HoleRow {
     perimeter: hole.perimeter,
     centre: hole.centre,
     note: `${tCode("verdict", hole.verdict)}${why}`,
-    isOpen: hole.verdict === "skipped" || hole.verdict === "refused",
+    isOpen: isLeftOpen(hole),
     confidence: hole.confidence,
     expectedError: hole.expected_error,
   };

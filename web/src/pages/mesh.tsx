@@ -29,6 +29,7 @@ export function MeshPage({ id }: { id: string }) {
     if (!former.spec.rule) setChoices(choicesOf(former.spec.holes?.rules ?? []));
   }, [former]);
   const unit = mesh?.facts?.unit ?? draft.unit ?? null;
+  const diagonal = mesh?.facts?.diagonal ?? null;
   const spec = useMemo(() => draftSpec(id, draft, choices), [id, draft, choices]);
   const { plan, planProblem } = usePlan(spec, mesh);
   const holes = useMemo(() => rows(mesh, plan), [mesh, plan]);
@@ -53,7 +54,7 @@ export function MeshPage({ id }: { id: string }) {
               <h2>{t("holes")}{mesh.facts && ` (${count(mesh.facts.holes.length)})`}</h2>
               {mesh.state === "analysing" && <p role="status">{t("analysing")}</p>}
               {mesh.state === "ready" && (
-                <HoleList {...{ holes, unit, selected, onSelect, choices }} {...(choose ? { onChoose: choose } : {})} />
+                <HoleList {...{ holes, unit, diagonal, selected, onSelect, choices }} {...(choose ? { onChoose: choose } : {})} />
               )}
             </>
           )}

@@ -10,6 +10,8 @@ const STEP = 100;
 interface Props {
   holes: readonly HoleRow[];
   unit: string | null | undefined;
+  /** Length of the diagonal of the scan's box; null where it is not known. */
+  diagonal: number | null;
   selected: number | null;
   onSelect: (id: number) => void;
   choices?: Choices;
@@ -33,12 +35,11 @@ export function HoleList(props: Props) {
         <caption class="hidden">{t("holes_caption")}</caption>
         <thead>
           <tr>
-            <th scope="col">{t("hole")}</th>
+            <th scope="col">{t("hole")}<small>{t("place")}</small></th>
             <th scope="col">{t("diameter")} ({unitName(unit)})</th>
             <th scope="col">{props.onChoose ? t("choice") : t("verdict")}</th>
             {isReport && <th scope="col">{t("confidence")}</th>}
             {isReport && <th scope="col">{t("expected_error")} ({unitName(unit)})</th>}
-            <th scope="col">{t("place")} ({unitName(unit)})</th>
           </tr>
         </thead>
         <tbody ref={body}>
@@ -65,7 +66,7 @@ function showRow(body: HTMLElement): void {
   list.scrollTop = Math.min(Math.max(list.scrollTop, below), row.offsetTop - head);
 }
 
-function Row({ hole, selected, onSelect, choices, onChoose, isReport }: Props & { hole: HoleRow; isReport: boolean }) {
+function Row({ hole, diagonal, selected, onSelect, choices, onChoose, isReport }: Props & { hole: HoleRow; isReport: boolean }) {
   const isSelected = hole.id === selected;
   return (
     <tr class={isSelected ? "selected" : ""} data-hole={hole.id}>
@@ -80,6 +81,7 @@ function Row({ hole, selected, onSelect, choices, onChoose, isReport }: Props & 
           {hole.id}
         </button>{" "}
         <small>{tCode("kind", hole.kind)}</small>
+        <small class="place">{coordinates(hole.centre, diagonal)}</small>
       </th>
       <td class="number">{number(hole.diameter)}</td>
       <td>
@@ -93,10 +95,10 @@ function Row({ hole, selected, onSelect, choices, onChoose, isReport }: Props & 
           </select>
         )}
         <small class={hole.isOpen ? "open" : "closed"}>{hole.note}</small>
+        {hole.isUnmet && <small class="unmet">{t("misses_limits")}</small>}
       </td>
       {isReport && <td class="number">{percent(hole.confidence)}</td>}
       {isReport && <td class="number">{hole.expectedError != null ? number(hole.expectedError, 2) : "–"}</td>}
-      <td class="place">{coordinates(hole.centre)}</td>
     </tr>
   );
 }

@@ -10,6 +10,9 @@ const UNITS: Record<string, string> = {
   foot: "ft",
 };
 
+/** As many as browsers write. */
+const MOST_DECIMALS = 20;
+
 export function number(value: number, digits = 3): string {
   return new Intl.NumberFormat(language(), { maximumSignificantDigits: digits }).format(value);
 }
@@ -27,8 +30,18 @@ export function length(value: number | null | undefined, unit: string | null | u
   return value === null || value === undefined ? "–" : `${number(value)} ${unitName(unit)}`;
 }
 
-export function coordinates(point: readonly number[] | null): string {
-  return point?.map((value) => number(value, 4)).join(" / ") ?? "–";
+/** A place, to a ten-thousandth of the diagonal of the scan: scans with coordinates of a map lie far from zero. */
+export function coordinates(point: readonly number[] | null, diagonal: number | null): string {
+  if (point === null) return "–";
+  if (!diagonal) return point.map((value) => number(value, 4)).join(" / ");
+  const decimals = Math.min(Math.max(Math.ceil(-Math.log10(diagonal / 10_000)), 0), MOST_DECIMALS);
+  const format = new Intl.NumberFormat(language(), { maximumFractionDigits: decimals });
+  return point.map((value) => format.format(value)).join(" / ");
+}
+
+/** Length of the diagonal of a box. */
+export function diagonalOf({ min, max }: { min: readonly number[]; max: readonly number[] }): number {
+  return Math.hypot(...max.map((value, axis) => value - min[axis]!));
 }
 
 export function percent(share: number | null | undefined): string {
