@@ -152,7 +152,7 @@ def test_all_processes_of_a_browser_end_with_its_job(folder: Path) -> None:
 
     def stop_reason() -> StopReason | None:
         # It has begun where its profile is there.
-        return StopReason.CANCELED if processes() and list(folder.glob("pdf-*/profile/*")) else None
+        return StopReason.CANCELED if processes() and any(folder.glob("pdf-*/profile/*")) else None
 
     with pytest.raises(EngineStoppedError):
         add_pdf(folder, str(CHROMIUM), LIMITS, stop_reason)
