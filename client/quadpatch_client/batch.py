@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from quadpatch_client.errors import ClientError, RefusedError, UnreachableError
 from quadpatch_client.file_repair import FilePlan, JobOptions, Row, failure, repair_file
-from quadpatch_client.journal import Entry, Journal, Stamp, sync
+from quadpatch_client.journal import DONE, Entry, Journal, Stamp, sync
 from quadpatch_client.workers import Workers
 
 if TYPE_CHECKING:
@@ -87,7 +87,7 @@ class Batch:
         """Tell whether an entry is of these bytes and options, and what was made is still there."""
         if entry.options != self._digest or entry.stamp != Stamp.of(plan.source):
             return False
-        return entry.state == "skipped" or (entry.state == "done" and plan.output.exists())
+        return entry.state == "skipped" or (entry.state in DONE and plan.output.exists())
 
     def _repair(self, plan: FilePlan) -> Row:
         stamp = Stamp.of(plan.source)

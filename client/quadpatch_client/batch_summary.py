@@ -15,6 +15,7 @@ from rich.console import Console
 from rich.table import Table
 
 from quadpatch_client.file_repair import Row
+from quadpatch_client.journal import DONE
 from quadpatch_client.outputs import current_umask
 
 _MOST_ROWS = 20
@@ -23,17 +24,18 @@ _FORMULA = ("=", "+", "-", "@", "\t", "\r")
 
 def row_text(row: Row) -> str:
     """Return a row as one line for a log."""
-    if row.state == "done":
+    if row.state in DONE:
         filled = (row.filled or 0) + (row.filled_smooth or 0)
         left_open = (row.skipped or 0) + (row.refused or 0)
-        return f"{row.file}: {filled} of {row.found} holes filled, {left_open} left open, {row.seconds:.1f} s"
+        warning = f"; WARNING: {row.reason}" if row.reason else ""
+        return f"{row.file}: {filled} of {row.found} holes filled, {left_open} left open, {row.seconds:.1f} s{warning}"
     return f"{row.file}: {row.state}: {row.reason}"
 
 
 def print_summary(console: Console, rows: Sequence[Row]) -> None:
-    """Print how many files ended how, and what to look at: those that failed, at most 20 of them."""
+    """Print how many files ended how, and what to look at: warnings and failures, at most 20 of each."""
     counts = Counter(row.state for row in rows)
-    done = [row for row in rows if row.state == "done"]
+    done = [row for row in rows if row.state in DONE]
     table = Table(box=None, header_style="bold", pad_edge=False)
     for name in ("files", "holes", "filled", "left open", "triangles added", "seconds of work"):
         table.add_column(name, justify="right")
@@ -47,12 +49,17 @@ def print_summary(console: Console, rows: Sequence[Row]) -> None:
     )
     table.add_row(*(f"{number:,}" for number in numbers))
     console.print(table)
-    console.print(", ".join(f"{counts[state]:,} {state}" for state in ("done", "skipped", "failed") if counts[state]))
-    failed = [row for row in rows if row.state == "failed"]
-    for row in failed[:_MOST_ROWS]:
-        console.print(row_text(row), markup=False, style="red")
-    if len(failed) > _MOST_ROWS:
-        console.print(f"… and {len(failed) - _MOST_ROWS:,} more; see the CSV file")
+    states = (*DONE, "skipped", "failed")
+    console.print(", ".join(f"{counts[state]:,} {state.replace('_', ' ')}" for state in states if counts[state]))
+    for state, style in (("done_with_warnings", "yellow"), ("failed", "red")):
+        _print_some(console, [row for row in rows if row.state == state], style)
+
+
+def _print_some(console: Console, rows: Sequence[Row], style: str) -> None:
+    for row in rows[:_MOST_ROWS]:
+        console.print(row_text(row), markup=False, style=style)
+    if len(rows) > _MOST_ROWS:
+        console.print(f"… and {len(rows) - _MOST_ROWS:,} more; see the CSV file")
 
 
 def write_csv(path: Path, rows: Sequence[Row]) -> None:

@@ -127,13 +127,13 @@ def repair_file(client: "Client", plan: FilePlan, options: JobOptions, on_job: C
 
 
 def row_of(file: str, job: "Job", reason: str = "") -> Row:
-    """Return the row of a file whose job has a result."""
+    """Return the row of a file whose job has a result; a reason is what to look at in it."""
     if job.result is None:
         return Row(file, "failed", job=job.id, reason=reason)
     counts = job.result.holes
     return Row(
         file,
-        "done",
+        "done_with_warnings" if reason else "done",
         counts.found,
         counts.filled,
         counts.filled_smooth,

@@ -25,7 +25,7 @@ from quadpatch_client.errors import (
 )
 from quadpatch_client.file_repair import FilePlan, JobOptions, Row, failure, repair_file
 from quadpatch_client.folder_files import mesh_files
-from quadpatch_client.journal import Entry, Journal, Stamp, sync
+from quadpatch_client.journal import DONE, Entry, Journal, Stamp, sync
 from quadpatch_client.rejected_files import set_aside
 from quadpatch_client.workers import Workers
 
@@ -121,7 +121,7 @@ class FolderWatch:
             except OSError:
                 continue  # taken away meanwhile
             entry = self._journal.entries.get(path.name)
-            is_over = entry is not None and entry.stamp == stamp and entry.state in ("done", "skipped")
+            is_over = entry is not None and entry.stamp == stamp and entry.state in (*DONE, "skipped")
             if path in self._busy or is_over:
                 continue
             waiting = self._seen.get(path)

@@ -24,7 +24,9 @@ try:
 except ImportError:  # Windows
     fcntl = None  # type: ignore[assignment]
 
-State = Literal["started", "done", "skipped", "failed"]
+State = Literal["started", "done", "done_with_warnings", "skipped", "failed"]
+# There is a result.
+DONE: tuple[State, ...] = ("done", "done_with_warnings")
 
 
 @dataclass(frozen=True)

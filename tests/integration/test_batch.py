@@ -15,6 +15,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+import httpx
 import pytest
 from typer.testing import CliRunner, Result
 
@@ -116,6 +117,28 @@ def test_results_lie_where_their_scans_do_and_the_summary_tells_of_all(
     }
     assert rows["summed_000.ply"]["filled_smooth"] == "2"
     assert rows["summed_001.ply"]["reason"] == "name is summed_001.ply, not != *_001*"
+
+
+def test_a_result_with_warnings_is_no_clean_success(
+    run: Callable[..., Result], local_stack: Any, tmp_path: Path
+) -> None:
+    rule = {"method": {"method": "smooth"}, "acceptance": {"max_expected_error": 1e-9}}
+    httpx.put(f"{local_stack.url}/v1/rules/exact", json=rule, timeout=GUARD_S).raise_for_status()
+    folder, out = tmp_path / "in", tmp_path / "out"
+    small_scans(folder, 1, "warned")
+    for _ in ("repaired", "found in the journal"):
+        done = run("batch", folder, "--out", out, "--saved-rule", "exact")
+        assert done.exit_code == ExitCode.OK, done.stderr
+        assert "1 done with warnings" in done.stdout
+        assert "WARNING: " in done.stdout
+        with (out / "summary.csv").open(encoding="utf-8-sig", newline="") as file:
+            (row,) = csv.DictReader(file)
+        assert row["state"] == "done_with_warnings"
+        assert "exact@1" in row["reason"]
+    assert "1 of 1 files were finished before" in done.stderr
+    watched = run("watch", folder, "--once", "--settle", "0", "--saved-rule", "exact")
+    assert "warned_000.ply: 2 of 3 holes filled, 1 left open" in watched.stderr
+    assert "; WARNING: " in watched.stderr
 
 
 def test_files_are_chosen_by_what_the_analysis_finds(run: Callable[..., Result], tmp_path: Path) -> None:

@@ -20,6 +20,7 @@ from quadpatch_client.workers import Workers
 from tests.waiting import GUARD_S
 
 DONE = Row("a.ply", "done", 5, 1, 2, 1, 1, 70, 2.5, "job_1", "")
+WARNED = Row("w.ply", "done_with_warnings", 3, 0, 2, 1, 0, 70, 1.0, "job_2", "the unit is not known")
 FAILED = Row("b.ply", "failed", reason="=the file is empty (invalid_mesh)")
 
 
@@ -49,15 +50,17 @@ def test_a_key_that_is_refused_is_no_fault_of_any_file(  # noqa: PLR0917 - what 
 
 def test_the_summary_counts_and_names_what_failed() -> None:
     console = Console(width=80, file=io.StringIO())
-    print_summary(console, [DONE, FAILED, Row("c.ply", "skipped", reason="holes is 0, not > 0")])
+    print_summary(console, [DONE, WARNED, FAILED, Row("c.ply", "skipped", reason="holes is 0, not > 0")])
     text = console.file.getvalue()  # type: ignore[attr-defined]
-    assert "1 done, 1 skipped, 1 failed" in text
+    assert "1 done, 1 done with warnings, 1 skipped, 1 failed" in text
+    assert "WARNING: the unit is not known" in " ".join(text.split())
     assert "b.ply: failed: =the file is empty (invalid_mesh)" in text
     assert all(len(line) <= 80 for line in text.splitlines())
 
 
 def test_a_file_is_told_in_a_line() -> None:
     assert row_text(DONE) == "a.ply: 3 of 5 holes filled, 2 left open, 2.5 s"
+    assert row_text(WARNED) == "w.ply: 2 of 3 holes filled, 1 left open, 1.0 s; WARNING: the unit is not known"
 
 
 def test_no_text_of_others_becomes_a_formula_in_a_spreadsheet(tmp_path: Path) -> None:
