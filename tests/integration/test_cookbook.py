@@ -5,6 +5,7 @@ import re
 import shlex
 import subprocess
 import sys
+import zipfile
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -20,6 +21,8 @@ from tests.waiting import GUARD_S
 
 ROOT = Path(__file__).resolve().parents[2]
 COOKBOOK = (ROOT / "docs" / "cookbook.md").read_text("utf-8")
+# As the cookbook says.
+SHELL = ["bash", "-eu", "-o", "pipefail", "-c"]
 STATIONS = (ROOT / "docs" / "stations.md").read_text("utf-8")
 
 
@@ -39,6 +42,7 @@ def folder(relief_file: Callable[[str], Path], tmp_path: Path, monkeypatch: pyte
     relief_file("float.ply").rename(tmp_path / "scan.ply")
     for name in ("scans", "drop"):
         small_scans(tmp_path / name, 2, "documented")
+    (tmp_path / "scans" / "broken.ply").write_bytes(b"ply\n" + bytes(range(256)))
     monkeypatch.chdir(tmp_path)
     return tmp_path
 
@@ -58,10 +62,14 @@ def run(command: list[str], folder: Path, **environment: str) -> None:
 
 @pytest.mark.parametrize("script", blocks(COOKBOOK, "sh"))
 def test_scripts_of_the_cookbook_run(script: str, local_stack: Any, folder: Path) -> None:
-    run(["bash", "-euo", "pipefail", "-c", script], folder, URL=local_stack.url, SCAN="scan.ply")
-    written = re.findall(r"(?:-o |> )(\S+)", script)
+    run([*SHELL, script], folder, URL=local_stack.url, SCAN="scan.ply")
+    written = re.findall(r"(?:-o |> )(\w\S+?)(?=;|$|\s)", script)
     assert written
     assert all((folder / name).stat().st_size for name in written)
+    if "batches" in script:
+        assert (folder / "left_out.txt").read_text() == "scans/broken.ply is no mesh\n"
+        with zipfile.ZipFile(folder / "results.zip") as archive:
+            assert sum(name.endswith(".ply") for name in archive.namelist()) == 2
 
 
 @pytest.mark.parametrize("program", blocks(COOKBOOK, "python"))

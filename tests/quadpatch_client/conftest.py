@@ -34,7 +34,7 @@ def server() -> Iterator[ScriptedServer]:
         def do_GET(self) -> None:
             script.handle(self)
 
-        do_POST = do_HEAD = do_PATCH = do_GET  # noqa: N815 - names that the base class looks for
+        do_POST = do_PUT = do_HEAD = do_PATCH = do_GET  # noqa: N815 - names that the base class looks for
 
         def log_message(self, *_: object) -> None:
             pass
