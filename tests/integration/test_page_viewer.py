@@ -70,6 +70,15 @@ def test_the_view_shows_the_mesh_with_its_holes_outlined_and_numbered(visit: Vis
     expect(visit.page.locator(".hole-number:visible")).to_have_count(0)
 
 
+@pytest.mark.parametrize("axis", [0, 1, 2])
+def test_an_open_scan_is_first_seen_from_outside(visit: Visit, api: Service, axis: int) -> None:
+    vertices, triangles = punched_relief(30)
+    turned = np.roll(vertices * [1.0, 1.0, -1.0], axis, axis=1)
+    open_mesh(visit, api.upload(ply_bytes(turned, triangles[:, ::-1]), f"turned_{axis}.ply"))
+    expect(visit.page.locator(".hole-number:visible")).to_have_count(5)
+    assert 0.15 < covered(visit.picture()) < 0.85
+
+
 def test_a_click_on_hole_3_flies_there_in_the_view_and_in_the_list(visit: Visit, mesh: str) -> None:
     page = visit.page
     open_mesh(visit, mesh)

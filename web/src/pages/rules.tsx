@@ -6,7 +6,7 @@ import { useAction, useAnswer, useTitle } from "../hooks";
 import { EffortChoice, type Effort } from "../parts/effort";
 import { ActionButton, Choice, Field } from "../parts/forms";
 import { Loading, ProblemNote } from "../parts/notes";
-import { number, percent, time } from "../text/format";
+import { limitPercent, number, time } from "../text/format";
 import { t, tCode } from "../text/text";
 
 export function RulesPage() {
@@ -53,8 +53,8 @@ export function inWords({ holes, method, acceptance }: RuleContent): string[] {
   if (method?.method === "auto") lines.push(`${t("effort")}: ${t(`effort_${method.effort ?? "standard"}`)}`);
   else if (method) lines.push(`${t("method")}: ${tCode("method", method.method)}`);
   if (acceptance?.max_expected_error != null) lines.push(t("rule_max_error", { value: number(acceptance.max_expected_error) }));
-  if (acceptance?.max_error_share != null) lines.push(t("rule_max_share", { value: percent(acceptance.max_error_share) }));
-  if (acceptance?.min_confidence != null) lines.push(t("rule_min_confidence", { value: percent(acceptance.min_confidence) }));
+  if (acceptance?.max_error_share != null) lines.push(t("rule_max_share", { value: limitPercent(acceptance.max_error_share) }));
+  if (acceptance?.min_confidence != null) lines.push(t("rule_min_confidence", { value: limitPercent(acceptance.min_confidence) }));
   if (acceptance) lines.push(t(acceptance.otherwise === "fail" ? "rule_else_fail" : "rule_else_warn"));
   return lines;
 }

@@ -49,6 +49,11 @@ export function percent(share: number | null | undefined): string {
   return new Intl.NumberFormat(language(), { style: "percent", maximumFractionDigits: 0 }).format(share);
 }
 
+/** A limit that was typed as a share: as it was meant, also where it is below a percent. */
+export function limitPercent(share: number): string {
+  return new Intl.NumberFormat(language(), { style: "percent", maximumSignificantDigits: 3 }).format(share);
+}
+
 export function bytes(value: number): string {
   const names = ["B", "KiB", "MiB", "GiB", "TiB"];
   let step = 0;

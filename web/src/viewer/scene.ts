@@ -23,6 +23,8 @@ const FIELD_OF_VIEW = 35;
 const RIM_PIXELS = 8;
 /** Few scans fill the sphere around their box: they are seen whole from nearer, as from a sphere of this many diagonals. */
 const NARROW = 0.42;
+/** Length of the mean normal from which on a scan is taken for open; that of a hemisphere is 0.5. */
+const OPEN = 0.5;
 export type Role = "before" | "after";
 export type Axis = "x" | "y" | "z";
 
@@ -81,7 +83,7 @@ export class MeshScene {
     if (isFirst) {
       const { min, max } = surface.about.bounding_box;
       this.box.set(new Vector3().fromArray(min).sub(this.origin), new Vector3().fromArray(max).sub(this.origin));
-      this.placeCamera();
+      this.placeCamera(surface.meanNormal());
     }
     this.canvas.dataset[role] = surface.about.level;
     this.draw();
@@ -236,10 +238,11 @@ export class MeshScene {
   }
 
   /** The first place of the camera, and how near and far it sees. */
-  private placeCamera(): void {
+  private placeCamera(meanNormal: Vector3): void {
     const [target, diagonal] = [this.box.getCenter(new Vector3()), this.diagonal()];
-    // Scans of range cameras and reliefs look along z.
-    this.camera.position.copy(this.seenFrom(target, new Vector3(0.25, 0.2, 1), NARROW * diagonal));
+    // An open scan is seen from outside. Others look along z, as range cameras do.
+    const front = meanNormal.length() > OPEN ? meanNormal.normalize() : new Vector3(0, 0, 1);
+    this.camera.position.copy(this.seenFrom(target, aslant(front, this.camera.up), NARROW * diagonal));
     this.camera.near = diagonal / 2000;
     this.camera.far = diagonal * 20;
     this.camera.updateProjectionMatrix();
@@ -258,4 +261,13 @@ export class MeshScene {
     this.camera.updateProjectionMatrix();
     this.draw();
   }
+}
+
+/** A direction a little to the right of and above a normal, so that relief is seen. */
+function aslant(normal: Vector3, up: Vector3): Vector3 {
+  const right = new Vector3().crossVectors(up, normal);
+  if (right.length() < 0.01) right.set(1, 0, 0);
+  right.normalize();
+  const above = new Vector3().crossVectors(normal, right);
+  return normal.clone().addScaledVector(right, 0.25).addScaledVector(above, 0.2);
 }

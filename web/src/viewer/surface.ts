@@ -8,6 +8,7 @@ import {
   Mesh,
   MeshStandardMaterial,
   type Plane,
+  Triangle,
   Vector3,
 } from "three";
 import { GLTFLoader } from "three/examples/jsm/loaders/GLTFLoader.js";
@@ -81,6 +82,23 @@ export class Surface {
       }
     }
     return low <= high ? [low, high] : [0, 1];
+  }
+
+  /** The mean normal of its triangles by area: as long as the share of the area that faces its way, near 0 if closed. */
+  meanNormal(): Vector3 {
+    const [triangle, normal, mean] = [new Triangle(), new Vector3(), new Vector3()];
+    let area = 0;
+    for (const { geometry } of this.meshes) {
+      const corners = geometry.getAttribute("position");
+      const index = geometry.getIndex();
+      const at = (i: number) => (index ? index.getX(i) : i);
+      for (let i = 0; i + 2 < (index ?? corners).count; i += 3) {
+        triangle.setFromAttributeAndIndices(corners, at(i), at(i + 1), at(i + 2));
+        mean.addScaledVector(triangle.getNormal(normal), triangle.getArea());
+        area += triangle.getArea();
+      }
+    }
+    return area > 0 ? mean.divideScalar(area) : mean;
   }
 
   /** Colour all vertices. */
