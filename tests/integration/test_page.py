@@ -148,6 +148,21 @@ def test_errors_are_told_in_words(visit: Visit) -> None:
     expect(alert).to_contain_text("There is no such job, or no longer.")
 
 
+@pytest.mark.parametrize(
+    ("address", "sentence"),
+    [
+        ("nonsense", "There is no such page."),
+        ("scans/nonsense", "There is no such page."),
+        ("jobs/job_nope", "There is no such job, or no longer."),
+        ("batches/bat_nope", "There is no such batch, or no longer."),
+        ("meshes/nope", "There is no such scan, or no longer."),
+    ],
+)
+def test_an_address_of_nothing_is_told(visit: Visit, address: str, sentence: str) -> None:
+    visit.go(address)
+    expect(visit.page.get_by_role("alert")).to_have_text(sentence)
+
+
 def test_lists_are_filtered_and_the_address_keeps_the_filter(visit: Visit, api: Service) -> None:
     mesh = api.upload(relief(24), "filtered.ply")
     job = api.repair(mesh, label="hall 7")
@@ -320,7 +335,7 @@ def test_where_keys_are_set_the_page_asks_for_one(
             assert visit.violations() == []
         page.get_by_label("Key").fill("a-wrong-key")
         page.get_by_role("button", name="Sign in").click()
-        expect(page.get_by_role("alert")).to_contain_text("This key is not valid.")
+        expect(page.get_by_role("alert")).to_have_text("This key is not valid.")
         page.get_by_label("Key").fill("the-key-of-station-1")
         page.get_by_role("button", name="Sign in").click()
         visit.drop(page.locator(".dropzone"), "behind-keys.ply", relief(22))

@@ -84,3 +84,13 @@ def test_reasons_why_holes_stay_open_have_sentences() -> None:
     codes = re.findall(r"^\| `(\w+)`", table, re.MULTILINE)
     assert len(codes) >= 9
     assert [code for code in codes if f"  reason_{code}:" not in sentences] == []
+
+
+def test_the_page_and_its_document_name_the_same_keys() -> None:
+    table = (ROOT / "docs" / "page.md").read_text("utf-8").split("| keys | do |")[1].split("\n\n")[0]
+    documented = re.findall(r"^\| ([^|-]+) \|", table, re.MULTILINE)
+    about = (WEB / "src" / "pages" / "about.tsx").read_text("utf-8")
+    named = re.findall(r"^ +\[(?:\"(.+?)\"|t\(\"(arrow_keys)\"\)), t\(\"shortcut_", about, re.MULTILINE)
+    shown = [key or name.replace("_", " ") for key, name in named]
+    assert [keys.replace(", then ", ", ") for keys in documented] == shown
+    assert len(shown) == 6

@@ -2,7 +2,7 @@
 import type { ComponentType } from "preact";
 import { useEffect, useReducer, useRef, useState } from "preact/hooks";
 import { get } from "./api/client";
-import { asProblem, type Problem } from "./api/problem";
+import { asProblem, Problem } from "./api/problem";
 import type { Limits } from "./api/types";
 import { AboutPage } from "./pages/about";
 import { BatchPage } from "./pages/batch";
@@ -121,10 +121,13 @@ function Page({ parts: [first, id] }: { parts: string[] }) {
   if (first === "meshes" && id) return <MeshPage key={id} id={id} />;
   if (first === "jobs" && id) return <JobPage key={id} id={id} />;
   if (first === "batches" && id) return <BatchPage key={id} id={id} />;
-  const List = LISTS[sectionOf(first)];
+  const section = id ? undefined : sectionOf(first);
+  if (!section) return <ProblemNote problem={new Problem("page_not_found", "", 404)} />;
+  const List = LISTS[section];
   return <List />;
 }
 
-function sectionOf(first: string | undefined): Section {
-  return SECTIONS.find((name) => name === first) ?? "scans";
+/** The part of the page that an address names first; an empty one is that of the scans. */
+function sectionOf(first = "scans"): Section | undefined {
+  return SECTIONS.find((name) => name === first);
 }

@@ -29,6 +29,11 @@ export function problemOfText(text: string, status: number): Problem {
   return new Problem("http_error", `HTTP ${status}`, status);
 }
 
+/** Where the id in an address is none, such as `job_nope`, nothing has it. */
+export function missingOf(problem: Problem, code: "mesh_not_found" | "job_not_found" | "batch_not_found"): Problem {
+  return problem.status === 422 ? new Problem(code, "", 404) : problem;
+}
+
 export function asProblem(error: unknown): Problem {
   if (error instanceof Problem) return error;
   if (error instanceof TypeError) return new Problem("unreachable", error.message, 0);

@@ -29,13 +29,13 @@ export function AboutPage() {
       <h2>{t("shortcuts")}</h2>
       <Facts
         facts={[
-          ["N / P", t("shortcut_next")],
+          ["N, P", t("shortcut_next")],
+          ["F, S, X, L, A", t("shortcut_choose")],
           [t("arrow_keys"), t("shortcut_turn")],
-          ["+ / −", t("shortcut_zoom")],
+          ["+, −", t("shortcut_zoom")],
           ["0", t("shortcut_all")],
           ["M, Enter", t("shortcut_measure")],
-          ["F / L / S / X", t("shortcut_choose")],
-        ]}
+                  ]}
       />
       <h2>{t("more")}</h2>
       <ul>

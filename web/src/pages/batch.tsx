@@ -2,7 +2,7 @@
 import { useEffect, useState } from "preact/hooks";
 import { get, post } from "../api/client";
 import { readEvents } from "../api/events";
-import { asProblem, type Problem } from "../api/problem";
+import { asProblem, missingOf, type Problem } from "../api/problem";
 import type { Batch, JobPage } from "../api/types";
 import { useAnswer, useTitle } from "../hooks";
 import { ActionButton, DownloadButton, Facts } from "../parts/forms";
@@ -21,7 +21,7 @@ export function BatchPage({ id }: { id: string }) {
     JSON.stringify([batch?.state, batch?.counts]),
   );
   useTitle(batch?.label ?? t("batch"));
-  if (problem) return <ProblemNote problem={problem} />;
+  if (problem) return <ProblemNote problem={missingOf(problem, "batch_not_found")} />;
   if (!batch) return <Loading />;
   const ended = Object.entries(batch.counts)
     .filter(([state]) => !["queued", "running", "canceling"].includes(state))

@@ -2,6 +2,7 @@
 import { useMemo, useState } from "preact/hooks";
 import { post, send } from "../api/client";
 import { hasEnded, hasResult, useJob } from "../api/following";
+import { missingOf } from "../api/problem";
 import type { FillReport, HoleReport, Job } from "../api/types";
 import { useAnswer, useTitle } from "../hooks";
 import { type HoleRow, isLeftOpen } from "../holes";
@@ -22,7 +23,7 @@ export function JobPage({ id }: { id: string }) {
   const isFill = job !== null && hasResult(job) && (job.spec.task ?? "fill") === "fill";
   const report = useAnswer<FillReport>(isFill ? `/v1/jobs/${id}/report` : null);
   useTitle(job?.mesh_name ?? t("job"));
-  if (problem) return <ProblemNote problem={problem} />;
+  if (problem) return <ProblemNote problem={missingOf(problem, "job_not_found")} />;
   if (!job) return <Loading />;
   return (
     <>

@@ -2,7 +2,7 @@
 import { useEffect, useMemo, useState } from "preact/hooks";
 import { post, send } from "../api/client";
 import { useMesh } from "../api/following";
-import { asProblem, type Problem } from "../api/problem";
+import { asProblem, missingOf, type Problem } from "../api/problem";
 import type { Hole, Job, JobSpec, Mesh, Plan } from "../api/types";
 import { useAnswer, useTitle } from "../hooks";
 import { type Action, type Choices, choicesOf, type HoleRow, withChoice } from "../holes";
@@ -34,7 +34,7 @@ export function MeshPage({ id }: { id: string }) {
   const { plan, planProblem } = usePlan(spec, mesh);
   const holes = useMemo(() => rows(mesh, plan), [mesh, plan]);
   useTitle(mesh?.filename ?? t("scan"));
-  if (problem) return <ProblemNote problem={problem} />;
+  if (problem) return <ProblemNote problem={missingOf(problem, "mesh_not_found")} />;
   if (!mesh) return <Loading />;
   const choose = draft.rule ? undefined : (hole: number, action: Action) => setChoices(withChoice(choices, hole, action));
   return (
@@ -78,7 +78,7 @@ function MeshFacts({ mesh, unit }: { mesh: Mesh; unit: string | null }) {
   if (facts?.format) lines.push([t("format"), facts.format]);
   if (facts?.triangles != null) lines.push([t("triangles"), count(facts.triangles)]);
   if (facts?.vertices != null) lines.push([t("vertices"), count(facts.vertices)]);
-  if (facts) lines.push([t("diagonal"), length(facts.diagonal, unit)], [t("unit"), unitName(unit)]);
+  if (facts) lines.push([t("diagonal"), length(facts.diagonal, unit)], [t("unit"), unit ? unitName(unit) : t("unit_not_stated")]);
   return (
     <section>
       <h2>{t("about_scan")}</h2>
