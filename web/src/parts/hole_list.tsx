@@ -38,8 +38,9 @@ export function HoleList(props: Props) {
             <th scope="col">{t("hole")}<small>{t("place")}</small></th>
             <th scope="col">{t("diameter")} ({unitName(unit)})</th>
             <th scope="col">{props.onChoose ? t("choice") : t("verdict")}</th>
-            {isReport && <th scope="col">{t("confidence")}</th>}
-            {isReport && <th scope="col">{t("expected_error")} ({unitName(unit)})</th>}
+            {isReport && (
+              <th scope="col">{t("confidence")}<small>{t("expected_error")} ({unitName(unit)})</small></th>
+            )}
           </tr>
         </thead>
         <tbody ref={body}>
@@ -97,8 +98,12 @@ function Row({ hole, diagonal, selected, onSelect, choices, onChoose, isReport }
         <small class={hole.isOpen ? "open" : "closed"}>{hole.note}</small>
         {hole.isUnmet && <small class="unmet">{t("misses_limits")}</small>}
       </td>
-      {isReport && <td class="number">{percent(hole.confidence)}</td>}
-      {isReport && <td class="number">{hole.expectedError != null ? number(hole.expectedError, 2) : "–"}</td>}
+      {isReport && (
+        <td class="number">
+          {percent(hole.confidence)}
+          <small>{hole.expectedError != null ? number(hole.expectedError, 2) : "–"}</small>
+        </td>
+      )}
     </tr>
   );
 }
