@@ -23,9 +23,10 @@ def check_acceptance(folder: Path, spec: JobSpec) -> None:
         return
     path = folder / REPORT_NAME
     report: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
-    accepted = Accepted.model_validate(judge(report["holes"], spec.acceptance.model_dump()))
+    limits = spec.acceptance.model_dump()
+    accepted = Accepted.model_validate(judge(report["holes"], limits))
     if not accepted.is_met:
-        message = unmet_in_words(accepted.model_dump(), spec.rule)
+        message = unmet_in_words(accepted.model_dump(), spec.rule, limits)
         if spec.acceptance.otherwise == "fail":
             raise EngineFailedError(Failure("acceptance_not_met", message, "judge"))
         report["warnings"].append(message)

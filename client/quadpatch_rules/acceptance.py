@@ -5,6 +5,8 @@ from typing import Any
 
 # Holes that a sentence names; the judgement lists all of them.
 _MOST_NAMED = 20
+# Holes of which a sentence says why.
+_MOST_EXPLAINED = 3
 
 
 def judge(holes: Sequence[Mapping[str, Any]], limits: Mapping[str, Any]) -> dict[str, Any]:
@@ -32,13 +34,40 @@ def judge(holes: Sequence[Mapping[str, Any]], limits: Mapping[str, Any]) -> dict
     return {"is_met": not unmet, "holes": len(chosen), "unmet": unmet}
 
 
-def unmet_in_words(judged: Mapping[str, Any], rule: str | None) -> str:
-    """Say which holes do not meet the limits, of a rule where it has a name."""
-    ids = [str(hole["id"]) for hole in judged["unmet"]]
-    named = ", ".join(ids[:_MOST_NAMED]) + (", …" if len(ids) > _MOST_NAMED else "")
-    limits = "the limits" if rule is None else f"the rule {rule}"
-    verb = "does" if len(ids) == 1 else "do"
-    return f"{len(ids)} of {judged['holes']} holes {verb} not meet {limits}: {named}"
+def unmet_in_words(judged: Mapping[str, Any], rule: str | None, limits: Mapping[str, Any]) -> str:
+    """Say which holes miss the limits, of a rule where it has a name; of a few also by which figure.
+
+    Parameters
+    ----------
+    judged : mapping
+        As `judge` returns it.
+    rule : str, optional
+    limits : mapping
+        As for `judge`.
+    """
+    unmet = judged["unmet"]
+    chosen = f"{judged['holes']} chosen {'hole' if judged['holes'] == 1 else 'holes'}"
+    of_rule = "" if rule is None else f" of {rule}"
+    if len(unmet) <= _MOST_EXPLAINED:
+        named = ", ".join(f"hole {hole['id']} ({_why(hole, limits)})" for hole in unmet)
+    else:
+        named = "holes " + ", ".join(str(hole["id"]) for hole in unmet[:_MOST_NAMED])
+        named += ", …" if len(unmet) > _MOST_NAMED else ""
+    return f"{len(unmet)} of {chosen} {'misses' if len(unmet) == 1 else 'miss'} the limits{of_rule}: {named}"
+
+
+def _why(hole: Mapping[str, Any], limits: Mapping[str, Any]) -> str:
+    return "; ".join(_fault_in_words(fault, hole, limits) for fault in hole["faults"])
+
+
+def _fault_in_words(fault: str, hole: Mapping[str, Any], limits: Mapping[str, Any]) -> str:
+    if fault == "expected_error":
+        return f"expected error {hole['expected_error']:.3g}, at most {limits['max_expected_error']:g}"
+    if fault == "error_share":
+        return f"expected error {hole['expected_error']:.3g}, at most {limits['max_error_share']:g} of its diameter"
+    if fault == "confidence":
+        return f"confidence {hole['confidence']:.3g}, at least {limits['min_confidence']:g}"
+    return "it has no such figure" if fault == "unknown" else "refused"
 
 
 def _faults(hole: Mapping[str, Any], limits: Mapping[str, Any]) -> list[str]:

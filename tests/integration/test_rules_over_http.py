@@ -33,7 +33,7 @@ def test_a_rule_is_met_warned_of_or_failed_by(
         warned, chosen = ended({"max_expected_error": 1e-9})
         assert warned.state == "succeeded_with_warnings"
         assert [hole.id for hole in warned.result.acceptance.unmet] == sorted(chosen)
-        sentence = f"{len(chosen)} of {len(chosen)} holes do not meet the rule {warned.spec.rule}: "
+        sentence = f"{len(chosen)} of {len(chosen)} chosen holes miss the limits of {warned.spec.rule}: "
         assert any(text.startswith(sentence) for text in warned.result.warnings)
         failed, _ = ended({"max_expected_error": 1e-9, "otherwise": "fail"})
         assert (failed.state, failed.error.code, failed.result) == ("failed", "acceptance_not_met", None)

@@ -1,3 +1,5 @@
+from typing import Any
+
 import pytest
 
 from quadpatch_rules.acceptance import judge, unmet_in_words
@@ -37,9 +39,37 @@ def test_a_hole_without_the_figure_does_not_meet_its_limit(limits: dict[str, flo
     assert unmet["faults"] == ["unknown"]
 
 
-def test_holes_that_do_not_meet_the_limits_are_named() -> None:
-    judged = judge(HOLES, {"max_expected_error": 0.1})
-    assert unmet_in_words(judged, None) == "2 of 4 holes do not meet the limits: 2, 4"
-    assert unmet_in_words(judge([hole(7, 0.2)], {"max_expected_error": 0.1}), "castings@3") == (
-        "1 of 1 holes does not meet the rule castings@3: 7"
-    )
+@pytest.mark.parametrize(
+    ("holes", "limits", "rule", "sentence"),
+    [
+        (
+            HOLES,
+            {"max_expected_error": 0.1},
+            None,
+            "2 of 4 chosen holes miss the limits: hole 2 (refused), hole 4 (expected error 0.3, at most 0.1)",
+        ),
+        (
+            [hole(7, 0.25)],
+            {"max_error_share": 0.1, "min_confidence": 0.9},
+            "castings@3",
+            "1 of 1 chosen hole misses the limits of castings@3: "
+            "hole 7 (expected error 0.25, at most 0.1 of its diameter; confidence 0.8, at least 0.9)",
+        ),
+        (
+            [hole(0), hole(1, None)],
+            {"max_expected_error": 0.1},
+            "castings@3",
+            "1 of 2 chosen holes misses the limits of castings@3: hole 1 (it has no such figure)",
+        ),
+        (
+            [hole(i, 0.2) for i in range(4)],
+            {"max_expected_error": 0.1},
+            "castings@3",
+            "4 of 4 chosen holes miss the limits of castings@3: holes 0, 1, 2, 3",
+        ),
+    ],
+)
+def test_holes_that_miss_the_limits_are_named(
+    holes: list[Any], limits: dict[str, float], rule: str | None, sentence: str
+) -> None:
+    assert unmet_in_words(judge(holes, limits), rule, limits) == sentence

@@ -39,7 +39,10 @@ def test_what_is_not_met_is_a_warning_that_names_the_holes(tmp_path: Path) -> No
     path = written(tmp_path, HOLES)
     check_acceptance(tmp_path, spec(max_expected_error=0.1))
     report = json.loads(path.read_text())
-    assert report["warnings"] == ["unit unknown", "2 of 4 holes do not meet the rule castings@3: 2, 4"]
+    sentence = (
+        "2 of 4 chosen holes miss the limits of castings@3: hole 2 (refused), hole 4 (expected error 0.3, at most 0.1)"
+    )
+    assert report["warnings"] == ["unit unknown", sentence]
     assert report["acceptance"]["is_met"] is False
     assert [hole["id"] for hole in report["acceptance"]["unmet"]] == [2, 4]
 
@@ -59,7 +62,7 @@ def test_a_job_fails_where_its_rule_says_so(tmp_path: Path) -> None:
     failure = caught.value.failure
     assert (failure.code, failure.retryable, failure.stage) == ("acceptance_not_met", False, "judge")
     assert failure.message == (
-        "25 of 25 holes do not meet the rule castings@3: " + ", ".join(map(str, range(20))) + ", …"
+        "25 of 25 chosen holes miss the limits of castings@3: holes " + ", ".join(map(str, range(20))) + ", …"
     )
 
 

@@ -151,7 +151,7 @@ def test_the_page_says_whether_the_limits_are_met_and_by_which_holes_not(tmp_pat
     for cells, hole in zip(rows, unmet, strict=True):
         assert numbers(cells) == [hole["id"], hole["expected_error"], hole["confidence"]]
         assert ", ".join(words.FAULTS[fault] for fault in hole["faults"]) in [cell.text for cell in cells]
-    assert "Not accepted: 2 of 2 chosen holes do not meet the limits of the rule castings@3." in page.text
+    assert "Not accepted: 2 of 2 chosen holes miss the limits of the rule castings@3." in page.text
     assert "1e-09" in [cell.text for cell in page.all("td")]
 
 
