@@ -1,6 +1,7 @@
 """Also tests `quadpatch_client.batch_summary`, `quadpatch_client.folder_files` and `quadpatch_client.workers`."""
 
 import io
+import re
 import threading
 from pathlib import Path
 from typing import Any
@@ -69,6 +70,13 @@ def test_no_text_of_others_becomes_a_formula_in_a_spreadsheet(tmp_path: Path) ->
     assert lines[0].startswith("file,state,found,filled")
     assert lines[1] == "a.ply,done,5,1,2,1,1,70,2.5,job_1,"
     assert lines[2].endswith(",'=the file is empty (invalid_mesh)")
+
+
+def test_the_document_names_every_column_of_the_summary(tmp_path: Path) -> None:
+    write_csv(tmp_path / "s.csv", [])
+    columns = (tmp_path / "s.csv").read_text("utf-8-sig").strip().split(",")
+    text = (Path(__file__).resolve().parents[2] / "docs" / "client.md").read_text("utf-8")
+    assert re.findall(r"^\| `(\w+)` \|", text.partition("| column |")[2].partition("\n\n")[0], re.M) == columns
 
 
 def test_meshes_are_found_by_their_suffix(tmp_path: Path) -> None:
