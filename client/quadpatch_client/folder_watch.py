@@ -69,13 +69,11 @@ class FolderWatch:
         Gets lines for people: what came of a file, and what is in the way.
     with_html : bool
         Whether the report comes as a page, too.
+    is_patient : bool
+        Whether files wait while the service refuses the key or the options, and with them every file; else that is
+        raised.
     clock : callable
         Seconds that only grow.
-
-    Attributes
-    ----------
-    refusal : RefusedError, optional
-        The latest one by which the service refused the key or the options, and with them every file.
     """
 
     def __init__(  # noqa: PLR0913, PLR0917 - what a station may choose
@@ -88,16 +86,17 @@ class FolderWatch:
         settle_s: float,
         tell: Callable[[str], None],
         with_html: bool = False,
+        is_patient: bool = True,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         self._client, self._folder, self._options, self._journal = client, folder, options, journal
         self._settle_s, self._tell, self._with_html, self._clock = settle_s, tell, with_html, clock
+        self._is_patient = is_patient
         self._workers = Workers(n_parallel)
         self._n_parallel = n_parallel
         self._seen: dict[Path, _Waiting] = {}
         self._busy: dict[Path, Future[Row]] = {}
         self._pause_s = 0.0
-        self.refusal: RefusedError | None = None
 
     @property
     def is_idle(self) -> bool:
@@ -105,7 +104,13 @@ class FolderWatch:
         return not any(waiting.stamp.size for waiting in self._seen.values())
 
     def look(self) -> None:
-        """Look at the folder once: take what has become whole, and tell what has come of the others."""
+        """Look at the folder once: take what has become whole, and tell what has come of the others.
+
+        Raises
+        ------
+        RefusedError
+            If every file would be refused, and that is not waited for.
+        """
         for path in [path for path, future in self._busy.items() if future.done()]:
             self._end(path, self._busy.pop(path))
         self._note_files()
@@ -163,12 +168,15 @@ class FolderWatch:
             self._tell(_told(row))
         elif isinstance(error, FileNotFoundError):
             del self._seen[path]
-        elif isinstance(error, ClientError | OSError) and self._may_pass(error, waiting):
-            self._wait_for(path, waiting, error)
-        elif isinstance(error, ClientError | OSError):
-            self._set_aside(path, waiting, error)
-        else:
+        elif not isinstance(error, ClientError | OSError) or self._is_final(error):
             raise error
+        elif self._may_pass(error, waiting):
+            self._wait_for(path, waiting, error)
+        else:
+            self._set_aside(path, waiting, error)
+
+    def _is_final(self, error: ClientError | OSError) -> bool:
+        return not self._is_patient and isinstance(error, RefusedError) and error.concerns_every_file
 
     def _may_pass(self, error: ClientError | OSError, waiting: _Waiting) -> bool:
         """Tell whether the same file may be repaired another time."""
@@ -181,8 +189,6 @@ class FolderWatch:
         return retryable and waiting.n_tries < _MOST_TRIES
 
     def _wait_for(self, path: Path, waiting: _Waiting, error: Exception) -> None:
-        if isinstance(error, RefusedError) and error.concerns_every_file:
-            self.refusal = error
         self._pause_s = min(max(2 * self._pause_s, _FIRST_PAUSE_S), _LONGEST_PAUSE_S)
         waiting.not_before = self._clock() + self._pause_s
         n_waiting = len(self._seen)

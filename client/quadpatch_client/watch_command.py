@@ -95,11 +95,9 @@ def watch(  # noqa: PLR0913 - one parameter per option of the command line
         (folder / STATE).mkdir(exist_ok=True)
         with one_client_alone(folder / STATE), Journal(folder / STATE / "journal.jsonl") as journal:
             remove_partial_files(folder)
-            work = FolderWatch(client, folder, options, journal, parallel, settle, screen.say, html)
+            work = FolderWatch(client, folder, options, journal, parallel, settle, screen.say, html, not once)
             screen.say(f"watching {folder}; end with Ctrl-C" if not once else f"repairing what lies in {folder}")
             work.look()
             while not (once and work.is_idle):
-                if once and work.refusal is not None:
-                    raise work.refusal
                 time.sleep(_LOOK_S)
                 work.look()

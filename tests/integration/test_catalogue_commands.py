@@ -15,6 +15,7 @@ from typer.testing import CliRunner, Result
 
 from quadpatch_client.cli import app
 from quadpatch_client.exit_codes import ExitCode
+from tests.integration.test_batch import small_scans
 from tests.waiting import GUARD_S
 
 KEY = "0123456789abcdef0123456789abcdef"
@@ -57,9 +58,15 @@ def test_a_plan_names_model_and_limits(run: Callable[..., Result], relief_file: 
     assert json.loads(run("plan", relief_file("float.ply"), "--json").stdout)["selected"] == 4
 
 
-def test_keys_are_made_listed_and_revoked(run_stack: Callable[..., Any]) -> None:
+def test_keys_are_made_listed_and_revoked_and_others_are_told_as_wrong(
+    run_stack: Callable[..., Any], tmp_path: Path
+) -> None:
     with run_stack(QUADPATCH_API_KEYS=KEY) as stack:
-        check_keys(partial(run_with, stack.url, QUADPATCH_CLIENT_API_KEY=KEY))
+        run = partial(run_with, stack.url, QUADPATCH_CLIENT_API_KEY=KEY)
+        check_keys(run)
+        assert run("doctor").exit_code == ExitCode.OK
+        reader = json.loads(run("keys", "make", "reader", "--scope", "read", "--json").stdout)["key"]
+        check_refusals(partial(run_with, stack.url), reader, tmp_path)
 
 
 def check_keys(run: Callable[..., Result]) -> None:
@@ -77,6 +84,24 @@ def check_keys(run: Callable[..., Result]) -> None:
     assert "there is no scope 'repiar'; did you mean 'repair'?" in wrong.stderr
     states = {k["id"]: k["revoked_at"] for k in json.loads(run("keys", "list", "--json").stdout)}
     assert states[key["id"]] is not None
+
+
+def check_refusals(run: Callable[..., Result], reader: str, folder: Path) -> None:
+    small_scans(folder / "in", 2, "refused")
+    for key, looked, said in (
+        ("", "asks for a key", "--api-key or QUADPATCH_CLIENT_API_KEY"),
+        ("wrong", "does not know this key", "--api-key or QUADPATCH_CLIENT_API_KEY"),
+        (reader, "of tenant default", "(scope_missing)"),
+    ):
+        look = run("doctor", QUADPATCH_CLIENT_API_KEY=key)
+        assert looked in look.stdout
+        assert look.exit_code == (ExitCode.OK if key == reader else ExitCode.REJECTED)
+        for words in (["batch", folder / "in", "--out", folder / "out"], ["watch", folder / "in", "--once"]):
+            done = run(*words, QUADPATCH_CLIENT_API_KEY=key)
+            assert done.exit_code == ExitCode.REJECTED, done.stderr
+            assert said in done.stderr
+            assert "next try" not in done.stderr
+    assert not (folder / "out" / "summary.csv").exists()
 
 
 def test_a_model_is_learned_and_judged(run: Callable[..., Result], relief_file: Callable[[str], Path]) -> None:
