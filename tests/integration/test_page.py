@@ -25,6 +25,7 @@ def test_a_scan_is_dropped_repaired_and_its_result_saved(visit: Visit, api: Serv
     visit.drop(page.locator(".dropzone"), "dropped.ply", relief(41))
     expect(page).to_have_url(re.compile("#/meshes/"))
     expect(page.get_by_role("heading", level=1)).to_have_text("dropped.ply")
+    expect(page.locator("nav [aria-current]")).to_have_text("Scans")
     expect(page.get_by_role("status").filter(has_text="4 of 5 holes would be filled.")).to_be_visible()
 
     page.get_by_label("What to do with hole 2").select_option("leave open")

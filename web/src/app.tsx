@@ -70,7 +70,8 @@ function useAccess(): Access {
 
 function Header({ isOpen }: { isOpen: boolean }) {
   const route = useRoute();
-  const section = sectionOf(route.parts[0]);
+  const [first] = route.parts;
+  const section = first === "meshes" ? "scans" : sectionOf(first);
   return (
     <header>
       <a class="brand" href="#/scans">Quadpatch</a>
