@@ -27,7 +27,7 @@ from benchmarks.quality.pictures import PUNCHED, TRUTH, DrawnCase, percent_of_ra
 from benchmarks.quality.results import MODELS, Key
 from benchmarks.quality.sheets import Row, compose
 from benchmarks.quality.tables import Table, figure, ratio, scientific
-from quadpatch.errors import StageError
+from quadpatch.errors import OptionError
 from quadpatch.inpainters.model_file import save_dictionary
 from quadpatch.model_choice import SELF
 from training.dictionary import LearningOptions, learn_dictionary
@@ -108,7 +108,7 @@ def learn_ours(paper: Paper, shape: Shape) -> Method | None:
     def learn() -> dict[str, Any]:
         try:
             learned = learn_dictionary([Source(shape.name, shape.truth, shape.sha256)], [], LearningOptions())
-        except StageError:
+        except OptionError:  # fewer patches than atoms
             return {"file": None}
         folder.mkdir(parents=True, exist_ok=True)
         file = f"{label}_{shape.sha256[:10]}.safetensors"
