@@ -6,13 +6,14 @@ Tested in `tests/integration/test_demo.py`.
 import importlib.util
 import os
 import shutil
+import signal
 import subprocess
 import sys
 import threading
 import time
 import webbrowser
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -22,6 +23,7 @@ from onebox.errors import DemoError
 from onebox.local_stack import ADDRESS_FILE, LOCK_NAME
 from onebox.logs import log_tail
 from onebox.processes import stop
+from onebox.serve import STOP_SIGNALS
 from quadpatch_client.errors import ClientError
 from quadpatch_client.options import MethodChoice
 from quadpatch_client.repairing import Task, repair
@@ -124,11 +126,13 @@ def _repair_relief(client: Client, screen: Screen, folder: Path) -> None:
 
 
 def _stay(screen: Screen, page: str) -> None:
-    """Open a page in the browser, where there is one, and wait for Ctrl-C."""
+    """Open a page in the browser, where there is one, and wait for Ctrl-C or SIGTERM."""
+    ended = threading.Event()
+    for number in STOP_SIGNALS:
+        signal.signal(number, lambda *_: ended.set())
     screen.say(f"the page of the first job: {page}\nCtrl-C ends the service; the files stay")
     webbrowser.open(page)
-    with suppress(KeyboardInterrupt):
-        threading.Event().wait()
+    ended.wait()
 
 
 def find_scan() -> Path:

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from onebox.local_stack import ADDRESS_FILE, LocalStack, owned_folder, programs
 from onebox.processes import Supervisor
 
-_STOP_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+STOP_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
 def serve(stack: LocalStack, say: Callable[[str], None]) -> None:
@@ -26,7 +26,7 @@ def serve(stack: LocalStack, say: Callable[[str], None]) -> None:
     with owned_folder(stack.data):
         address = stack.data / ADDRESS_FILE
         supervisor = Supervisor(programs(stack), stack.log_folder, say)
-        for number in _STOP_SIGNALS:
+        for number in STOP_SIGNALS:
             signal.signal(number, supervisor.request_stop)
         try:
             address.unlink(missing_ok=True)
