@@ -6,7 +6,7 @@ from functools import partial
 import numpy as np
 
 from quadpatch.filling.filled_mesh import FilledMesh
-from quadpatch.mesh.intersections import crossing_pairs, heights, touching_boxes
+from quadpatch.mesh.intersections import box_contacts, crossing_pairs, heights
 from quadpatch.mesh.normals import triangle_normals
 from quadpatch.mesh.topology import compacted, neighbouring_triangles, touching
 from quadpatch.processes import ProcessPool, Shared
@@ -176,90 +176,82 @@ def _near(filled: FilledMesh, looked_at: BoolArray) -> BoolArray:
     return touching(triangles, touched)
 
 
-# A mesh, some of its triangles (k,), and the boxes (n, 3), by two corners, that hold them; without, the mesh holds
-# nothing that is far from them.
-_Task = tuple[TriangleMesh, IntArray, tuple[FloatArray, FloatArray] | None]
-
-
 @dataclass(frozen=True)
 class _Search:
     """A search for crossings that has begun.
 
     Attributes
     ----------
-    n_loops, n_near : int
-        Loops, and triangles besides the fills that are looked at.
-    mine : (n,) int64
-        Triangles of those fills.
-    owner : (n,) int64
-        Their loops.
+    n_loops : int
+    mine, owner : (n,) int64
+        Triangles of the fills that are looked at, and their loops.
+    chosen : list of (k,) int64
+        What each part looks at: triangles of some fills and what is near them. Obstacles count behind the filled mesh.
     pairs : Shared
-        Finds the crossing pairs; triangles that are near count behind those of the fills.
+        Finds the crossing pairs of each part.
     """
 
     n_loops: int
-    n_near: int
     mine: IntArray
     owner: IntArray
-    pairs: Shared[_Task, IntArray]
+    chosen: list[IntArray]
+    pairs: Shared[tuple[TriangleMesh, int], IntArray]
 
     @classmethod
     def begin(
         cls, filled: FilledMesh, looked_at: BoolArray, obstacles: Triangles | None, pool: ProcessPool
     ) -> "_Search":
-        n_loops = len(filled.disagreement)
-        vertices, triangles = filled.mesh.vertices, filled.mesh.triangles
-        is_mine = np.zeros(len(triangles), bool)
-        is_mine[filled.n_measured_triangles :] = looked_at[filled.triangle_hole]
-        mine, owner = np.flatnonzero(is_mine), filled.triangle_hole[is_mine[filled.n_measured_triangles :]]
+        n_loops, n = len(filled.disagreement), filled.n_measured_triangles
+        is_mine = looked_at[filled.triangle_hole]
+        mine, owner = n + np.flatnonzero(is_mine), filled.triangle_hole[is_mine]
         if not len(mine):
-            return cls(n_loops, 0, mine, owner, Shared(_crossing_pairs_of, [], []))
-        others = triangles[~is_mine] if obstacles is None else np.concatenate([triangles[~is_mine], obstacles])
+            return cls(n_loops, mine, owner, [], Shared(_crossing_pairs_of, [], []))
+        vertices, every = filled.mesh.vertices, filled.mesh.triangles
+        if obstacles is not None:
+            every = np.concatenate([every, obstacles])
         low, high = _boxes(filled)
-        there = looked_at & np.isfinite(low[:, 0])
-        touching = partial(touching_boxes, low[there], high[there])
-        starts = range(0, max(len(others), 1), _PIECE_TRIANGLES)
-        pieces = [TriangleMesh(vertices, others[at : at + _PIECE_TRIANGLES]) for at in starts]
-        near = others[np.concatenate(pool.map_in_threads(touching, pieces))]
-        used, local = compacted(np.concatenate([triangles[mine], near]), len(vertices))
-        mesh, parts = TriangleMesh(vertices[used], local), _parts(owner, n_loops)
-        if len(parts) > 1:
-            tasks = [(mesh, np.flatnonzero(part[owner]), (low[part & there], high[part & there])) for part in parts]
-            return cls(n_loops, len(near), mine, owner, pool.begin(_crossing_pairs_of, tasks))
-        alone: Shared[_Task, IntArray] = Shared(_crossing_pairs_of, [(mesh, np.arange(len(owner)), None)], [])
-        return cls(n_loops, len(near), mine, owner, alone)
+        boxes = np.flatnonzero(looked_at & np.isfinite(low[:, 0]))
+        touching = partial(box_contacts, low[boxes], high[boxes])
+        starts = range(0, len(every), _PIECE_TRIANGLES)
+        pieces = [TriangleMesh(vertices, every[at : at + _PIECE_TRIANGLES]) for at in starts]
+        contacts = pool.map_in_threads(touching, pieces)
+        box, near = np.concatenate([found + np.array([0, at]) for found, at in zip(contacts, starts, strict=True)]).T
+        part = _part_of_each(owner, n_loops)
+        part_of_contact, chosen, tasks = part[boxes[box]], [], []
+        for i in np.unique(part[owner]):
+            own = mine[part[owner] == i]
+            chosen.append(np.concatenate([own, np.setdiff1d(near[part_of_contact == i], own)]))
+            used, local = compacted(every[chosen[-1]], len(vertices))
+            tasks.append((TriangleMesh(vertices[used], local), len(own)))
+        shared = pool.begin(_crossing_pairs_of, tasks) if len(tasks) > 1 else Shared(_crossing_pairs_of, tasks, [])
+        return cls(n_loops, mine, owner, chosen, shared)
 
     def finish(self) -> tuple[IntArray, IntArray, IntArray, BoolArray]:
         """Find crossings, their triangles, rivals and lost loops, as `Faults` has them."""
-        pairs = np.concatenate([np.zeros((0, 2), np.int64), *self.pairs.finish()])
-        crossing = np.unique(pairs[pairs < len(self.owner)])
-        crossings = np.bincount(self.owner[crossing], minlength=self.n_loops)
-        # What is near has no loop.
-        loops = np.concatenate([self.owner, np.full(self.n_near, -1)])[pairs]
-        loops = np.unique(np.sort(loops, axis=1), axis=0)
+        found = [chosen[pairs] for chosen, pairs in zip(self.chosen, self.pairs.finish(), strict=True)]
+        pairs = np.concatenate([np.zeros((0, 2), np.int64), *found])
+        # What is no fill that is looked at has no loop.
+        at = np.searchsorted(self.mine, pairs).clip(max=len(self.mine) - 1)
+        is_mine = self.mine[at] == pairs
+        crossing, first = np.unique(pairs[is_mine], return_index=True)
+        crossings = np.bincount(self.owner[at[is_mine][first]], minlength=self.n_loops)
+        loops = np.unique(np.sort(np.where(is_mine, self.owner[at], -1), axis=1), axis=0)
         is_invalid = np.zeros(self.n_loops, bool)
         is_invalid[loops[(loops[:, 0] < 0) & (loops[:, 1] >= 0), 1]] = True
         is_invalid[loops[(loops[:, 0] == loops[:, 1]) & (loops[:, 0] >= 0), 0]] = True
         crossing_fills = loops[(loops[:, 0] >= 0) & (loops[:, 0] < loops[:, 1])]
-        return crossings, self.mine[crossing], crossing_fills, is_invalid
+        return crossings, crossing, crossing_fills, is_invalid
 
 
-def _parts(owner: IntArray, n_loops: int) -> list[BoolArray]:
-    """Divide loops, by that of each new triangle (n,), into parts (n_loops,) of about as many triangles."""
+def _part_of_each(owner: IntArray, n_loops: int) -> IntArray:
+    """Divide loops, by that of each new triangle (n,), into parts of about as many triangles: the part (n_loops,)."""
     n_parts = max(len(owner) // _PART_TRIANGLES, 1)
-    part = np.cumsum(np.bincount(owner, minlength=n_loops)) * n_parts // (len(owner) + 1)
-    return [part == i for i in np.unique(part)]
+    return np.cumsum(np.bincount(owner, minlength=n_loops)) * n_parts // (len(owner) + 1)
 
 
-def _crossing_pairs_of(task: _Task) -> IntArray:
-    """Find the crossing pairs of some triangles of a mesh with all of it; others may be among them."""
-    mesh, own, boxes = task
-    if boxes is None:
-        return crossing_pairs(mesh, len(own))
-    others = np.delete(np.arange(len(mesh.triangles)), own)
-    others = others[touching_boxes(*boxes, TriangleMesh(mesh.vertices, mesh.triangles[others]))]
-    chosen = np.concatenate([own, others])
-    return np.asarray(chosen[crossing_pairs(TriangleMesh(mesh.vertices, mesh.triangles[chosen]), len(own))])
+def _crossing_pairs_of(task: tuple[TriangleMesh, int]) -> IntArray:
+    """Find the crossing pairs of the first so many triangles of a mesh with all of it; others may be among them."""
+    return crossing_pairs(*task)
 
 
 def _boxes(filled: FilledMesh) -> tuple[FloatArray, FloatArray]:

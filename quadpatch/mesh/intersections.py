@@ -23,9 +23,6 @@ _LEAST_HEIGHT_ON_SURFACE = 1e-3
 _PAIRS_AT_A_TIME = 1_000_000
 # Triangles that are looked at to estimate how many pairs there are.
 _SAMPLE = 256
-_BOXES_AT_A_TIME = 4096
-# Triangles larger than so many mean radii count as large.
-_LARGE = 4.0
 
 
 def crossing_pairs(mesh: TriangleMesh, n_looked_at: int | None = None) -> IntArray:
@@ -151,27 +148,44 @@ def touching_boxes(low: FloatArray, high: FloatArray, mesh: TriangleMesh) -> Boo
     (n_triangles,) bool
     """
     touched = np.zeros(len(mesh.triangles), bool)
+    touched[box_contacts(low, high, mesh)[:, 1]] = True
+    return touched
+
+
+def box_contacts(low: FloatArray, high: FloatArray, mesh: TriangleMesh) -> IntArray:
+    """Find which bounding boxes of triangles touch which of some boxes.
+
+    Parameters
+    ----------
+    low, high : (n_boxes, 3) float64
+        In mesh units.
+    mesh : TriangleMesh
+
+    Returns
+    -------
+    (n_contacts, 2) int64
+        Positions of boxes and of triangles, in no order.
+    """
     near = _in_box(low.min(axis=0, initial=np.inf), high.max(axis=0, initial=-np.inf), mesh)
     corners = mesh.vertices[mesh.triangles[near]]
     centres = mean_of_corners(corners)
     radii = length(corners - centres[:, None]).max(axis=1)
-    # Few triangles are far larger than the others; those are taken unseen, or every query would have to reach as far.
-    reach = _LARGE * float(radii.mean()) if len(radii) else 0.0
-    touched[near[radii > reach]] = True
-    ordinary = np.flatnonzero(radii <= reach)
-    if not len(ordinary):
-        return touched
     a, b, c = (corners[:, k] for k in range(3))
     lowest, highest = np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
-    tree, middles, reaches = cKDTree(centres[ordinary]), (low + high) / 2, length(high - low) / 2 + reach
-    for at in range(0, len(low), _BOXES_AT_A_TIME):
-        part = slice(at, at + _BOXES_AT_A_TIME)
-        found = tree.query_ball_point(middles[part], reaches[part], return_sorted=False)
-        box = at + np.repeat(np.arange(len(found)), [len(row) for row in found])
-        triangle = ordinary[np.concatenate(found).astype(np.int64)]
-        is_disjoint = (lowest[triangle] > high[box]) | (highest[triangle] < low[box])
-        touched[near[triangle[~is_disjoint.any(axis=1)]]] = True
-    return touched
+    middles, size = (low + high) / 2, np.frexp(radii)[1]
+    found = [np.zeros((0, 2), np.int64)]
+    # Triangles up to twice as large share a tree: a few large ones do not widen the search among all others.
+    for alike in (np.flatnonzero(size == s) for s in np.unique(size)):
+        tree, reaches = cKDTree(centres[alike]), length(high - low) / 2 + radii[alike].max()
+        n_near = np.cumsum(tree.query_ball_point(middles, reaches, return_length=True))
+        for boxes in np.split(np.arange(len(low)), np.flatnonzero(np.diff(n_near // _PAIRS_AT_A_TIME)) + 1):
+            rows = tree.query_ball_point(middles[boxes], reaches[boxes], return_sorted=False)
+            box = np.repeat(boxes, [len(row) for row in rows])
+            triangle = alike[np.concatenate(rows).astype(np.int64)]
+            is_disjoint = (lowest[triangle] > high[box]) | (highest[triangle] < low[box])
+            touching = ~is_disjoint.any(axis=1)
+            found.append(np.stack([box[touching], near[triangle[touching]]], axis=1))
+    return np.concatenate(found)
 
 
 def _in_box(low: FloatArray, high: FloatArray, mesh: TriangleMesh) -> IntArray:

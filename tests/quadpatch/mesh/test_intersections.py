@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from quadpatch.mesh.intersections import LEAST_HEIGHT, crossing_pairs, heights, touching_boxes
+from quadpatch.mesh.intersections import LEAST_HEIGHT, box_contacts, crossing_pairs, heights, touching_boxes
 from quadpatch.types import FloatArray, IntArray, TriangleMesh
 from tests.quadpatch.shapes import bumpy_plate, joined, moved, open_grid, random_rotation, sphere
 
@@ -140,7 +140,10 @@ def test_boxes_touch_the_triangles_whose_own_boxes_meet_them(seed: int, size: fl
     apart = (corners.min(1)[:, None] > high[None]) | (corners.max(1)[:, None] < low[None])
     expected: IntArray = np.flatnonzero((~apart.any(axis=2)).any(axis=1))
     found = np.flatnonzero(touching_boxes(low, high, mesh))
-    assert set(expected.tolist()) <= set(found.tolist()) <= set(expected.tolist()) | {0, 1, 2}
+    assert found.tolist() == expected.tolist()
+    contacts = box_contacts(low, high, mesh)
+    triangle, box = np.nonzero(~apart.any(axis=2))
+    assert sorted(contacts.tolist()) == sorted(np.stack([box, triangle], axis=1).tolist())
 
 
 def test_no_box_and_no_triangle_touch_nothing() -> None:
