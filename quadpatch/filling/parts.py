@@ -26,8 +26,10 @@ Fill = Callable[[TriangleMesh, list[IntArray], Fraction], FilledMesh]
 
 # A hole of n edges gets about as many new vertices as n squared. Parts of this many cost no more than all at once do.
 _PART_WORK = 40_000
-# Holes whose second rings of triangles touch are filled together.
-_NEIGHBOURS = 2
+# Holes whose second rings of triangles touch are filled together. Where that joins too many, those whose first rings
+# touch: other rims, three edges away at least, are in none of a fill's equations, but move with the rims let go.
+_NEIGHBOURS = (2, 1)
+_LARGEST_GROUP = 10 * _PART_WORK
 # Rings of triangles around a part: leaving one ring out reads three, and finds new loops by the ring behind them.
 _RINGS = 4
 
@@ -110,12 +112,9 @@ def _part_of_each(triangles: Triangles, loops: list[IntArray]) -> IntArray:
     n_parts = int(work.sum() // _PART_WORK)
     if n_parts < 2:
         return np.zeros(len(loops), np.int64)
-    rim, starts = np.concatenate(loops), laid_out(loops)[0]
-    n_vertices = int(triangles.max()) + 1
-    near = triangles[triangles_around(triangles, rim, n_vertices, _NEIGHBOURS)]
-    used, local = compacted(near, n_vertices)
-    at_vertex = components(local[:, [0, 1, 1, 2]].reshape(-1, 2), len(used))
-    group = at_vertex[np.searchsorted(used, rim[starts[:-1]])]
+    wider, closer = (_groups(triangles, loops, n_rings) for n_rings in _NEIGHBOURS)
+    is_too_large = np.bincount(wider, work)[wider] > _LARGEST_GROUP
+    group = np.where(is_too_large, wider.max() + 1 + closer, wider)
     # Groups in the order of their first loops.
     _, first, group = np.unique(group, return_index=True, return_inverse=True)
     rank = np.empty(len(first), np.int64)
@@ -126,6 +125,16 @@ def _part_of_each(triangles: Triangles, loops: list[IntArray]) -> IntArray:
     part = (middle * n_parts / work.sum()).astype(np.int64).clip(max=n_parts - 1)
     # A large group leaves parts without a loop.
     return np.unique(part, return_inverse=True)[1][group]
+
+
+def _groups(triangles: Triangles, loops: list[IntArray], n_rings: int) -> IntArray:
+    """Find the groups of loops whose rings of triangles touch: the number (n_loops,) of each."""
+    rim, starts = np.concatenate(loops), laid_out(loops)[0]
+    n_vertices = int(triangles.max()) + 1
+    near = triangles[triangles_around(triangles, rim, n_vertices, n_rings)]
+    used, local = compacted(near, n_vertices)
+    at_vertex = components(local[:, [0, 1, 1, 2]].reshape(-1, 2), len(used))
+    return np.asarray(at_vertex[np.searchsorted(used, rim[starts[:-1]])])
 
 
 def _joined(mesh: TriangleMesh, parts: list[_Part], fills: list[FilledMesh]) -> FilledMesh:
