@@ -15,8 +15,9 @@ from scipy.spatial import cKDTree
 from quadpatch.calibration.error_model import ErrorModel, fit_error_model
 from quadpatch.calibration.synthetic_holes import MeshWithHoles, Spacing, UncutSurface, cut_holes
 from quadpatch.filling.fairing import Energy, triangles_around
-from quadpatch.filling.fill import ClosedMesh, close_holes
+from quadpatch.filling.fill import ClosedMesh, close_rims
 from quadpatch.filling.filled_mesh import FilledMesh
+from quadpatch.filling.rim_neighbourhood import RimNeighbourhood
 from quadpatch.mesh.averages import mean_by, mean_of_corners
 from quadpatch.mesh.distance import DistanceTree, distance_to_mesh
 from quadpatch.mesh.loop_diameter import loop_diameter
@@ -85,7 +86,15 @@ class CalibrationSet:
     @cached_property
     def closed(self) -> ClosedMesh:
         """The calibration holes, closed again: by few vertices where they are large for their edges."""
-        return close_holes(self.opened, self.loops, graded=True)
+        return close_rims(self._near, self._near.grading)
+
+    def closed_uniformly(self) -> ClosedMesh:
+        """Close them as densely as real holes."""
+        return close_rims(self._near)
+
+    @cached_property
+    def _near(self) -> RimNeighbourhood:
+        return RimNeighbourhood.of(self.opened, self.loops).straightened()
 
     @property
     def is_graded(self) -> bool:

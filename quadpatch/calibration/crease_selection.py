@@ -44,4 +44,4 @@ def fill_uniformly(holes: CalibrationSet, blend: EnergyBlend, filled: FilledMesh
     """Fill the calibration holes as densely as real ones: what is found on graded fills is another thing."""
     if filled.energy_weights is None or not holes.is_graded:
         return filled
-    return blend.fill_weighted(holes.opened, holes.loops, filled.energy_weights)
+    return blend.fill_weighted(holes.closed_uniformly(), filled.energy_weights)

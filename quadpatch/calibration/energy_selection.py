@@ -79,15 +79,10 @@ class EnergyBlend:
         misses, closed = np.full((len(loops), len(self.energies)), np.nan), close_holes(mesh, loops)
         if self.belief:
             misses = rim_residuals(closed.coarse(), self.energies, part_of(reach, 0.0, 0.5))
-        return self._fair_weighted(closed, self.weights(misses, is_wide), part_of(reach, 0.5, 1.0))
+        return self.fill_weighted(closed, self.weights(misses, is_wide), part_of(reach, 0.5, 1.0))
 
-    def fill_weighted(
-        self, mesh: TriangleMesh, loops: list[IntArray], weights: FloatArray, reach: Fraction = no_fraction
-    ) -> FilledMesh:
-        """Close boundary loops, by weights (n_loops, n_energies) whose rows sum to 1."""
-        return self._fair_weighted(close_holes(mesh, loops), weights, reach)
-
-    def _fair_weighted(self, closed: ClosedMesh, weights: FloatArray, reach: Fraction) -> FilledMesh:
+    def fill_weighted(self, closed: ClosedMesh, weights: FloatArray, reach: Fraction = no_fraction) -> FilledMesh:
+        """Fair closed holes by weights (n_holes, n_energies) whose rows sum to 1."""
         weights = np.where(weights >= _LEAST_WEIGHT, weights, 0.0)
         weights /= weights.sum(axis=1, keepdims=True)
         used = np.flatnonzero(weights.any(axis=0)).tolist()

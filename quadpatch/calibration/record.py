@@ -56,7 +56,7 @@ class CalibrationRecord:
         """Fill the calibration holes, of which there are some, like real ones."""
         weights = np.zeros((0, 0)) if self.weights is None else self.weights
         if self.is_graded:
-            filled = self.blend.fill_weighted(holes.opened, holes.loops, weights)
+            filled = self.blend.fill_weighted(holes.closed_uniformly(), weights)
         else:
             filled = self.blend.fair(holes.closed, weights)
         return filled.displaced(self.crease_share * crease_displacement(filled)) if self.crease_share else filled

@@ -74,7 +74,7 @@ def test_an_energy_of_little_weight_takes_no_part() -> None:
     mesh = punched(bumpy_plate(50, 2.0), (0.4, 0.4, 0), (-0.4, 0.2, 0), radius=0.2)
     loops = [hole.loop for hole in find_holes(mesh) if hole.diameter < 1.0]
     blend = blend_of([0.0, 0.0], [0.0, 0.0])
-    filled = blend.fill_weighted(mesh, loops, np.array([[0.995, 0.005], [1.0, 0.0]]))
+    filled = blend.fill_weighted(close_holes(mesh, loops), np.array([[0.995, 0.005], [1.0, 0.0]]))
     assert filled.energy_weights is not None
     assert filled.energy_weights.tolist() == [[1.0, 0.0], [1.0, 0.0]]
     plate = fair_holes(close_holes(mesh, loops), THIN_PLATE)
