@@ -1,5 +1,6 @@
 """Also tests `service/contract/messages.py` and `service/contract/tags.py`."""
 
+import tomllib
 from collections.abc import Iterator
 from importlib.metadata import version
 from pathlib import Path
@@ -155,3 +156,19 @@ def test_every_message_to_subscribers_is_described_with_its_signature(document: 
         assert {"webhook-id", "webhook-timestamp", "webhook-signature"} == names
         assert operation["security"] == []
         assert "422" not in operation["responses"]
+
+
+def test_every_answer_under_if_match_may_be_412_for_schemathesis(document: dict[str, Any]) -> None:
+    operations = tomllib.loads((ROOT / "schemathesis.toml").read_text())["operations"]
+    (listed,) = (
+        rule["include-name"]
+        for rule in operations
+        if "416" in rule["checks"].get("positive_data_acceptance", {}).get("expected-statuses", [])
+    )
+    conditional = {
+        f"{method.upper()} {path}"
+        for path, methods in document["paths"].items()
+        for method, operation in methods.items()
+        if any(parameter["name"] == "If-Match" for parameter in operation.get("parameters", []))
+    }
+    assert set(listed) == conditional
