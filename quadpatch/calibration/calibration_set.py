@@ -8,6 +8,7 @@ error to expect.
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from math import sqrt
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -26,6 +27,8 @@ from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Verti
 
 # Calibration holes. On scans, 16 to 64 of them lead to the same errors of repairs within half a percent.
 MAX_HOLES = 24
+# Where these leave it open whether a model gains, so many are cut, the first ones among them.
+MORE_HOLES = 3 * MAX_HOLES
 _ENOUGH = 16
 # Fewer holes than this decide nothing.
 MIN_HOLES = 12
@@ -49,6 +52,10 @@ _LEAST_GAIN = 0.02
 # The same in standard errors of the gain: chance alone comes so far at one mesh in twenty, and to one of them at one in
 # six.
 _LEAST_GAIN_IN_ERRORS = 1.64
+# Gains of fewer standard errors than the first would hardly come to those above with `MORE_HOLES`; gains of more than
+# the second are believed at once: the boundaries of O'Brien and Fleming for a first look at a third of the data.
+_LOOKS = sqrt(MORE_HOLES / MAX_HOLES)
+_OPEN_IN_ERRORS = (_LEAST_GAIN_IN_ERRORS / _LOOKS, _LEAST_GAIN_IN_ERRORS * _LOOKS)
 # What holes may lose together, as a share of what others gain, for a gain to be no chance.
 _MOST_LOST = 0.05
 
@@ -113,7 +120,7 @@ class CalibrationSet:
 
 
 def cut_calibration_set(
-    mesh: TriangleMesh, diameter: float, edge_length: float, rng: np.random.Generator
+    mesh: TriangleMesh, diameter: float, edge_length: float, rng: np.random.Generator, most: int = MAX_HOLES
 ) -> CalibrationSet | None:
     """Cut holes into undamaged surface.
 
@@ -126,6 +133,8 @@ def cut_calibration_set(
         Mean edge length, in mesh units.
     rng : numpy.random.Generator
         Picks the places.
+    most : int
+        At most so many holes. With more of them, the same generator picks the same places first.
 
     Returns
     -------
@@ -137,7 +146,7 @@ def cut_calibration_set(
     for size, margin in _TRIES:
         if size < 1.0 and size * diameter < _NARROWEST * edge_length:
             break
-        spacing = Spacing(edge_length, margin * edge_length, MAX_HOLES)
+        spacing = Spacing(edge_length, margin * edge_length, most)
         punched = cut_holes(surface, size * diameter, spacing, rng)
         # A few holes without the spare ring are no better than none.
         least = MIN_HOLES if margin == MARGIN_EDGES else _ENOUGH
@@ -173,11 +182,28 @@ def choose_blend_factor(calibration: CalibrationSet, filled: FilledMesh, displac
 
     It is 0 where that gains less than two percent, or may be chance (`_is_no_chance`).
     """
-    errors = error_by_share(calibration, filled, displacement)
+    return SHARES[choose_share(error_by_share(calibration, filled, displacement))]
+
+
+def choose_share(errors: FloatArray) -> int:
+    """Choose one of `SHARES` by the errors (n_shares, n_holes) that it leaves, as `choose_blend_factor` does."""
     best = int(errors.mean(axis=1).argmin())
     gains = errors[0] - errors[best]
-    is_worth_it = float(gains.mean()) > _LEAST_GAIN * float(errors[0].mean())
-    return SHARES[best] if is_worth_it and _is_no_chance(gains) else 0.0
+    return best if _is_worth_it(errors[0], gains) and _is_no_chance(gains) else 0
+
+
+def is_open(errors: FloatArray) -> bool:
+    """Whether more holes may well tell if a share gains, by the errors (n_shares, n_holes) that `SHARES` leave.
+
+    The gain of the best one is worth it, and is neither hopeless nor sure.
+
+    References
+    ----------
+    P. O'Brien, T. Fleming, "A multiple testing procedure for clinical trials", Biometrics 35, 1979.
+    """
+    gains = errors[0] - errors[int(errors.mean(axis=1).argmin())]
+    low, high = _OPEN_IN_ERRORS
+    return _is_worth_it(errors[0], gains) and low < _in_standard_errors(gains) < high and not _is_loss_small(gains)
 
 
 def may_gain(calibration: CalibrationSet, filled: FilledMesh, displacement: FloatArray) -> bool:
@@ -186,13 +212,26 @@ def may_gain(calibration: CalibrationSet, filled: FilledMesh, displacement: Floa
     return any(_is_no_chance(errors[0] - of_share) for of_share in errors[1:])
 
 
+def _is_worth_it(errors: FloatArray, gains: FloatArray) -> bool:
+    return float(gains.mean()) > _LEAST_GAIN * float(errors.mean())
+
+
 def _is_no_chance(gains: FloatArray) -> bool:
     """Whether gains (n_holes,) have a mean of over 1.64 standard errors: a few dozen holes can't tell more.
 
     Where hardly any hole loses, the rare ones that gain much are enough.
     """
-    is_sure = float(gains.mean()) > _LEAST_GAIN_IN_ERRORS * float(gains.std()) / np.sqrt(len(gains))
-    return is_sure or float(-gains[gains < 0].sum()) < _MOST_LOST * float(gains[gains > 0].sum())
+    return _in_standard_errors(gains) > _LEAST_GAIN_IN_ERRORS or _is_loss_small(gains)
+
+
+def _in_standard_errors(gains: FloatArray) -> float:
+    """Give the mean of gains (n_holes,) in its standard errors; 0 where all are the same."""
+    error = float(gains.std()) / np.sqrt(len(gains))
+    return float(gains.mean()) / error if error > 0 else 0.0
+
+
+def _is_loss_small(gains: FloatArray) -> bool:
+    return float(-gains[gains < 0].sum()) < _MOST_LOST * float(gains[gains > 0].sum())
 
 
 def error_by_share(calibration: CalibrationSet, filled: FilledMesh, displacement: FloatArray) -> FloatArray:

@@ -16,6 +16,8 @@ from quadpatch.calibration.error_model import ErrorModel
 from quadpatch.filling.creases import crease_displacement
 from quadpatch.filling.fairing import Energy
 from quadpatch.filling.filled_mesh import FilledMesh
+from quadpatch.filling.parts import FillInParts
+from quadpatch.processes import ProcessPool
 from quadpatch.types import FloatArray
 
 
@@ -59,6 +61,15 @@ class CalibrationRecord:
             filled = self.blend.fill_weighted(holes.closed_uniformly(), weights)
         else:
             filled = self.blend.fair(holes.closed, weights)
+        return self._with_creases(filled)
+
+    def fill_others(self, holes: CalibrationSet, pool: ProcessPool) -> FilledMesh:
+        """Fill calibration holes like real ones, of which it is not known by which weights; a pool shares the work."""
+        filling = FillInParts(holes.opened, holes.loops, pool)
+        filling.begin(self.blend.fill)
+        return self._with_creases(filling.finish())
+
+    def _with_creases(self, filled: FilledMesh) -> FilledMesh:
         return filled.displaced(self.crease_share * crease_displacement(filled)) if self.crease_share else filled
 
     def plain(self) -> dict[str, Any]:

@@ -4,7 +4,7 @@ A mean of predictions has the smaller error where models err in different ways (
 "The Elements of Statistical Learning", 2009, section 8.8).
 """
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from itertools import chain, combinations
 
@@ -55,6 +55,10 @@ class CompetingInpainters:
         """See `Inpainter`: that of the first model that has one."""
         known = (member.resolution for member in self.members.values())
         return next((resolution for resolution in known if resolution is not None), None)
+
+    def limited_to(self, names: Collection[str]) -> "CompetingInpainters":
+        """Leave out all models but some."""
+        return CompetingInpainters({name: member for name, member in self.members.items() if name in names})
 
     def fitted_to(self, undamaged: UndamagedSurface) -> FittedCompetitors | None:
         """See `Inpainter`; models for which the mesh shows too little are left out."""

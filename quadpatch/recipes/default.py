@@ -11,7 +11,7 @@ from functools import cached_property, partial
 
 import numpy as np
 
-from quadpatch.calibration.calibration_set import MAX_HOLES, CalibrationSet, cut_calibration_set, expect
+from quadpatch.calibration.calibration_set import MAX_HOLES, MORE_HOLES, CalibrationSet, cut_calibration_set, expect
 from quadpatch.calibration.crease_selection import calibrate_creases
 from quadpatch.calibration.error_model import PRIOR
 from quadpatch.calibration.kept import KeptCalibrations, array_digest, key_of
@@ -260,19 +260,21 @@ def _calibrate(
         holes = cut() if record.n_holes and task.inpainter is not None and task.by_model.any() else None
         if holes is None or len(holes.loops) == record.n_holes:
             filling.begin(record.blend.fill)
-            return Calibration(task.diameters, edge, record, holes, is_reused=True)
+            return Calibration(task.diameters, edge, record, holes, partial(cut, MORE_HOLES), is_reused=True)
     calibration = _calibrated(task, cut, filling, reach, pool)
     kept.add(key, calibration.record)
     return calibration
 
 
-def _cut(mesh: TriangleMesh, diameter: float | None, edge: float, seed: int) -> CalibrationSet | None:
-    return None if diameter is None else cut_calibration_set(mesh, diameter, edge, np.random.default_rng(seed))
+def _cut(
+    mesh: TriangleMesh, diameter: float | None, edge: float, seed: int, most: int = MAX_HOLES
+) -> CalibrationSet | None:
+    return None if diameter is None else cut_calibration_set(mesh, diameter, edge, np.random.default_rng(seed), most)
 
 
 def _calibrated(
     task: _Task,
-    cut: Callable[[], CalibrationSet | None],
+    cut: Callable[..., CalibrationSet | None],
     filling: FillInParts,
     reach: Fraction,
     pool: ProcessPool,
@@ -289,4 +291,5 @@ def _calibrated(
     seconds = time.perf_counter() - start
     record = CalibrationRecord(blend, model, creases.share, holes.is_graded, filled.energy_weights, seconds)
     # A graded fill is denser once models are tried on it.
-    return Calibration(task.diameters, edge, record, holes, creases.filled or (None if holes.is_graded else filled))
+    uniform = creases.filled or (None if holes.is_graded else filled)
+    return Calibration(task.diameters, edge, record, holes, partial(cut, MORE_HOLES), uniform)

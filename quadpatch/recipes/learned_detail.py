@@ -3,6 +3,7 @@
 Tested in `tests/quadpatch/recipes/test_default.py`.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -12,7 +13,7 @@ from quadpatch.calibration.calibration_set import CalibrationSet
 from quadpatch.calibration.record import CalibrationRecord
 from quadpatch.calibration.training_pairs import TrainingSurface
 from quadpatch.filling.filled_mesh import FilledMesh
-from quadpatch.inpainters.competing import FittedCompetitors
+from quadpatch.inpainters.competing import CompetingInpainters, FittedCompetitors
 from quadpatch.inpainters.inpainter import Fitting, Inpainter, TellsOfFitting, UndamagedSurface
 from quadpatch.options import RepairOptions
 from quadpatch.patches.layout import Sampled, lay_out, seeds_near, take, unfolded
@@ -28,6 +29,8 @@ from quadpatch.types import BoolArray, FloatArray, Patches, TriangleMesh
 
 # Patches that a self-similar dictionary is learned from.
 _MAX_SEEDS_TO_LEARN_FROM = 1000
+# More calibration holes have to be so many times as many to say more.
+_MORE = 1.5
 
 
 @dataclass(frozen=True)
@@ -43,6 +46,8 @@ class Calibration:
     record : CalibrationRecord
     holes : CalibrationSet or None
         None where the surface has no room for calibration holes, or nothing but the record is asked for.
+    cut_more : callable or None
+        Cuts more of them, these among them.
     filled : FilledMesh or None
         The calibration holes, filled like the real ones and as densely; None where that is still to be done.
     is_reused : bool
@@ -53,12 +58,20 @@ class Calibration:
     edge_length: float
     record: CalibrationRecord
     holes: CalibrationSet | None = None
+    cut_more: Callable[[], CalibrationSet | None] | None = None
     filled: FilledMesh | None = None
     is_reused: bool = False
 
     def uniform_fill(self) -> FilledMesh | None:
         """Give the calibration holes, filled like the real ones and as densely; None without any."""
         return self.filled if self.holes is None or self.filled is not None else self.record.fill(self.holes)
+
+    def with_more_holes(self, pool: ProcessPool) -> "Calibration | None":
+        """Cut more calibration holes and fill them; None where the surface has no room for half as many again."""
+        more = None if self.cut_more is None else self.cut_more()
+        if self.holes is None or more is None or len(more.loops) < _MORE * len(self.holes.loops):
+            return None
+        return replace(self, holes=more, cut_more=None, filled=self.record.fill_others(more, pool))
 
 
 def complete(
@@ -92,9 +105,68 @@ def complete(
         If the base surface can't carry one quad.
     """
     scale = choose_scale(calibration.diameters, calibration.edge_length, options.patches, inpainter.resolution)
+    learned = _learn(_Learning(filled, coarse_copy, calibration, inpainter, scale), options, stages)
+    if learned is None:
+        return None
+    if learned.choice.is_open:
+        learned = _learn_from_more(learned, options, stages)
+    choice = learned.choice
+    with stages.stage("inpaint"):
+        # A model with a blend factor of 0 need not be asked: then patches that show the fills are not cut.
+        sampled = predicted = None
+        if choice.blend_factor:
+            sampled = _around_fills(filled, learned.surface, learned.base_surface, learned.seeds, scale)
+            predicted = choice.model.predict(sampled.patches, sampled.base_heights)
+    with stages.stage("reconstruct"):
+        completion = _completion(filled, sampled, predicted, choice, scale)
+        completion = replace(completion, fitting=_fitting(learned.competitors))
+    return completion if learned.is_competition else replace(completion, shares={}, trials=())
+
+
+@dataclass(frozen=True)
+class _Learning:
+    """What a model learns from, see `complete`; it has been screened where only models are left that may gain."""
+
+    filled: FilledMesh
+    coarse_copy: CoarseCopy | None
+    calibration: Calibration
+    inpainter: Inpainter
+    scale: PatchScale
+    is_screened: bool = False
+
+
+@dataclass(frozen=True)
+class _Learned:
+    """Models that were fitted to a mesh, and which of them fills its holes.
+
+    Attributes
+    ----------
+    source : _Learning
+    surface : PatchSurface
+        What the patches around the fills are cut from.
+    base_surface : TriangleMesh
+    seeds : Seeds
+    competitors : FittedCompetitors
+    choice : Choice
+    is_competition : bool
+        Whether there may be more than one model.
+    """
+
+    source: _Learning
+    surface: PatchSurface
+    base_surface: TriangleMesh
+    seeds: Seeds
+    competitors: FittedCompetitors
+    choice: Choice
+    is_competition: bool
+
+
+def _learn(source: _Learning, options: RepairOptions, stages: Stages) -> _Learned | None:
+    """Fit a model to the mesh and try it on calibration holes; None where the mesh shows too little."""
+    filled, calibration, scale = source.filled, source.calibration, source.scale
     with stages.stage("smooth"):
         fill = calibration.uniform_fill()
-        surfaces = _surfaces(filled, coarse_copy, calibration, fill)
+        surfaces = _surfaces(filled, source.coarse_copy, calibration, fill)
         base_surface = surfaces.filled.smoothed(scale)
     with stages.stage("quadrangulate"):
         seeds = lay_out(base_surface, scale)
@@ -107,20 +179,30 @@ def complete(
         training_surface = partial(_training_surface, surfaces.filled, calibration, seeds, scale)
         held_out = None if tried is None else tried.pairs
         undamaged = UndamagedSurface(known_patches, shown.base_heights, training_surface, held_out)
-        fitted = inpainter.fitted_to(undamaged)
+        fitted = source.inpainter.fitted_to(undamaged)
         if fitted is None:
             return None
         competitors = fitted if isinstance(fitted, FittedCompetitors) else FittedCompetitors({"": fitted}, {"": 1.0})
-        choice = Choice(competitors) if tried is None else try_models(tried, competitors)
-    with stages.stage("inpaint"):
-        # A model with a blend factor of 0 need not be asked: then patches that show the fills are not cut.
-        sampled = predicted = None
-        if choice.blend_factor:
-            sampled = _around_fills(filled, surfaces.filled, base_surface, seeds, scale)
-            predicted = choice.model.predict(sampled.patches, sampled.base_heights)
-    with stages.stage("reconstruct"):
-        completion = replace(_completion(filled, sampled, predicted, choice, scale), fitting=_fitting(competitors))
-    return completion if isinstance(fitted, FittedCompetitors) else replace(completion, shares={}, trials=())
+        screened = source.is_screened
+        choice = Choice(competitors) if tried is None else try_models(tried, competitors, is_screened=screened)
+    is_competition = isinstance(fitted, FittedCompetitors)
+    return _Learned(source, surfaces.filled, base_surface, seeds, competitors, choice, is_competition)
+
+
+def _learn_from_more(first: _Learned, options: RepairOptions, stages: Stages) -> _Learned:
+    """Fit the models that may gain anew, and try them on more calibration holes, where there is room for these."""
+    source = first.source
+    with stages.stage("learn"):
+        more = source.calibration.with_more_holes(stages.pool)
+    if more is None:
+        return first
+    inpainter, promising = source.inpainter, first.choice.promising
+    if isinstance(inpainter, CompetingInpainters):
+        inpainter = inpainter.limited_to(promising)
+    # The further holes may have been learned from: they are hidden now.
+    again = replace(source, calibration=more, inpainter=inpainter, is_screened=True)
+    second = _learn(again, options, stages)
+    return first if second is None else replace(second, choice=second.choice.after(first.choice))
 
 
 def _around_fills(

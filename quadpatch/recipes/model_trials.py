@@ -13,11 +13,13 @@ import numpy as np
 
 from quadpatch.calibration.calibration_set import (
     ROUNDING,
+    SHARES,
     CalibrationSet,
-    choose_blend_factor,
+    choose_share,
     error_by_share,
     error_per_hole,
     expect,
+    is_open,
 )
 from quadpatch.calibration.error_model import ErrorModel
 from quadpatch.calibration.training_pairs import TrainingPairs, pairs_of
@@ -53,12 +55,26 @@ class Choice:
         Of the calibration holes, completed by it; None without these.
     trials : sequence of Trial
         Of geometry alone, and of every model; empty without calibration.
+    promising : sequence of str
+        Names of the models that were not dropped after the first holes.
+    is_open : bool
+        Whether more calibration holes may well tell if one of them gains, see `calibration_set.is_open`.
     """
 
     model: FittedCompetitors
     blend_factor: float = PRIOR_BLEND_FACTOR
     error_model: ErrorModel | None = None
     trials: Sequence[Trial] = ()
+    promising: Sequence[str] = ()
+    is_open: bool = False
+
+    def after(self, first: "Choice") -> "Choice":
+        """Add to the trials on more holes the models that had been dropped on the first ones."""
+        geometry = self.trials[0].error
+        dropped = [
+            trial for trial in first.trials if len(trial.shares) == 1 and not set(trial.shares) & {*first.promising}
+        ]
+        return replace(self, trials=[*self.trials, *(replace(trial, error=geometry) for trial in dropped)])
 
 
 @dataclass(frozen=True)
@@ -142,25 +158,29 @@ def _cut(cutting: _Cutting) -> Sampled:
     return unfolded(surface.patchify(surface.smoothed(scale), seeds, scale))
 
 
-def try_models(calibration: CalibrationPatches, competitors: FittedCompetitors) -> Choice:
-    """Complete the calibration holes by models and by the means of several: take what leaves the least error."""
-    promising = promising_models(calibration, competitors)
+def try_models(calibration: CalibrationPatches, competitors: FittedCompetitors, *, is_screened: bool = False) -> Choice:
+    """Complete the calibration holes by models and by the means of several: take what leaves the least error.
+
+    Models that gain nothing on the first few holes are dropped, unless that was looked at before (`is_screened`).
+    """
+    promising = list(competitors.members) if is_screened else promising_models(calibration, competitors)
     holes, filled, n_holes = calibration.holes, calibration.filled, calibration.n_holes
     geometry = Trial({}, 0.0, float(error_per_hole(holes, filled).mean()), n_holes)
-    trials, best, best_fill, chosen = [geometry], geometry, filled, competitors
+    trials, best, best_fill, chosen, may_change = [geometry], geometry, filled, competitors, False
     predicted = _predict_all(calibration, competitors, promising)
     for model in competitors.mixtures():
         if set(model.shares) <= set(promising):
             displacement = _displacement(calibration, calibration.every.patches, model.mixed(predicted))
-            factor = choose_blend_factor(holes, filled, displacement)
-            completed = filled.displaced(factor * displacement)
-            trial = Trial(dict(model.shares), factor, float(error_per_hole(holes, completed).mean()), n_holes)
+            errors = error_by_share(holes, filled, displacement)
+            share = choose_share(errors)
+            may_change |= is_open(errors)
+            trial = Trial(dict(model.shares), SHARES[share], float(errors[share].mean()), n_holes)
             trials.append(trial)
             if trial.error < best.error:
-                best, best_fill, chosen = trial, completed, model
+                best, best_fill, chosen = trial, filled.displaced(trial.blend_factor * displacement), model
         elif len(model.shares) == 1:
             trials.append(replace(geometry, shares=dict(model.shares), n_holes=int(calibration.is_first.sum())))
-    return Choice(chosen, best.blend_factor, expect(holes, best_fill), trials)
+    return Choice(chosen, best.blend_factor, expect(holes, best_fill), trials, promising, may_change)
 
 
 def promising_models(calibration: CalibrationPatches, competitors: FittedCompetitors) -> list[str]:

@@ -7,13 +7,16 @@ from quadpatch.calibration.calibration_set import (
     MARGIN_EDGES,
     MAX_HOLES,
     MIN_HOLES,
+    MORE_HOLES,
     CalibrationSet,
     choose_blend_factor,
     choose_energy,
+    choose_share,
     cut_calibration_set,
     distance_per_hole,
     error_per_hole,
     expect,
+    is_open,
 )
 from quadpatch.calibration.synthetic_holes import Spacing, UncutSurface, cut_holes
 from quadpatch.filling.fairing import THIN_PLATE, Energy
@@ -253,3 +256,45 @@ def test_a_model_that_helps_one_hole_a_lot_and_harms_the_others_a_little_is_not_
     # It gains in the mean, by less than chance does.
     assert gains.mean() > 0
     assert choose_blend_factor(calibration, filled, says) == 0.0
+
+
+def gains_of(mean: float, in_errors: float, n_holes: int = 24) -> FloatArray:
+    """Errors (n_shares, n_holes): 1 without a model, with all of it less by a mean and so many standard errors."""
+    pattern = np.tile([1.0, -1.0], n_holes // 2)
+    gains = mean + (mean / in_errors) * np.sqrt(n_holes) * pattern
+    return np.array([np.ones(n_holes), *(1.0 - share * gains for share in (0.25, 0.5, 0.75, 1.0))])
+
+
+@pytest.mark.parametrize(
+    ("mean", "in_errors", "is_taken", "is_left_open"),
+    [
+        (0.15, 0.8, False, False),
+        (0.15, 1.1, False, True),
+        (0.15, 1.5, False, True),
+        (0.15, 2.0, True, True),
+        (0.15, 3.0, True, False),
+        (0.015, 1.5, False, False),
+    ],
+)
+def test_a_gain_is_open_where_it_is_worth_it_and_neither_hopeless_nor_sure(
+    mean: float, in_errors: float, is_taken: bool, is_left_open: bool
+) -> None:
+    errors = gains_of(mean, in_errors)
+    assert (choose_share(errors) > 0, is_open(errors)) == (is_taken, is_left_open)
+
+
+def test_gains_at_hardly_any_loss_are_not_open() -> None:
+    gains = np.zeros(24)
+    gains[:2] = 1.0
+    errors = np.array([np.ones(24), *(1.0 - share * gains for share in (0.25, 0.5, 0.75, 1.0))])
+    assert choose_share(errors) == 4
+    assert not is_open(errors)
+
+
+def test_more_holes_have_the_first_ones_among_them() -> None:
+    few, edge = some_calibration(RELIEF, diameter=0.12), mean_edge_length(RELIEF)
+    more = cut_calibration_set(RELIEF, 0.12, edge, np.random.default_rng(0), MORE_HOLES)
+    assert more is not None
+    first, every = ({tuple(sorted(loop.tolist())) for loop in holes.loops} for holes in (few, more))
+    assert len(first) == MAX_HOLES < 1.5 * MAX_HOLES < len(every) <= MORE_HOLES
+    assert first < every

@@ -4,7 +4,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from quadpatch.calibration.calibration_set import cut_calibration_set
+from quadpatch.calibration.calibration_set import MAX_HOLES, cut_calibration_set
+from quadpatch.calibration.kept import KeptCalibrations
 from quadpatch.filling.fairing import THIN_PLATE
 from quadpatch.filling.fill import close_holes, fair_holes
 from quadpatch.inpainters.competing import CompetingInpainters, FittedCompetitors
@@ -87,6 +88,23 @@ def test_a_model_that_loses_on_the_first_holes_is_dropped_and_the_other_patches_
     assert len(pool.counts) == 2
 
 
+def test_models_that_were_looked_at_before_are_tried_on_all_holes_at_once() -> None:
+    calibration = patches_of(ProcessPool())
+    rivals = competitors(up=0.5, down=-0.5)
+    choice = try_models(calibration, rivals, is_screened=True)
+    assert [trial.n_holes for trial in choice.trials] == [calibration.n_holes] * 4
+    assert choice.promising == ["up", "down"]
+    dropped = try_models(calibration, rivals)
+    again = try_models(calibration, competitors(up=0.5), is_screened=True).after(dropped)
+    # Of those that had been dropped the number of holes says so; nothing was left to try but them here.
+    assert [(*trial.shares, trial.n_holes) for trial in again.trials] == [
+        (calibration.n_holes,),
+        ("up", calibration.n_holes),
+        ("up", FIRST_HOLES),
+        ("down", FIRST_HOLES),
+    ]
+
+
 def test_the_first_holes_are_spread_over_all_lengths_of_rims() -> None:
     calibration = patches_of(ProcessPool())
     first = np.flatnonzero(calibration.is_first)
@@ -121,3 +139,37 @@ def test_repairs_have_the_same_bits_with_any_number_of_processes(alone: Repair) 
     assert together.completion is not None
     assert alone.completion is not None
     assert together.completion.trials == alone.completion.trials
+
+
+# Waves between which the dictionary gains in some holes and loses in others, and room for more calibration holes.
+UNSURE = punched(relief(160, 2.0, 0.02, 14), *PLACES[:4], radius=0.06)
+
+
+@pytest.fixture(scope="module")
+def unsure() -> Repair:
+    return inpaint(UNSURE, RIVALS, RepairOptions())
+
+
+def test_a_gain_that_may_be_chance_is_tried_on_more_holes_by_the_models_that_may_gain(unsure: Repair) -> None:
+    assert unsure.completion is not None
+    assert unsure.calibration is not None
+    geometry, of_self, wrong = unsure.completion.trials
+    assert geometry.n_holes == of_self.n_holes >= 1.5 * MAX_HOLES
+    assert (wrong.shares, wrong.n_holes, wrong.error) == ({"wrong": 1.0}, FIRST_HOLES, geometry.error)
+    # What calibration finds of energies rests on the first holes alone.
+    assert unsure.calibration.n_holes == MAX_HOLES
+
+
+def test_more_holes_leave_the_same_bits_with_any_number_of_processes_and_with_a_kept_calibration(
+    unsure: Repair,
+) -> None:
+    kept = KeptCalibrations()
+    with ProcessPool(3) as pool:
+        together = inpaint(UNSURE, RIVALS, RepairOptions(), Stages(pool=pool), kept=kept)
+    reused = inpaint(UNSURE, RIVALS, RepairOptions(), kept=kept)
+    assert reused.is_calibration_reused
+    for other in (together, reused):
+        assert other.filled.mesh.vertices.tobytes() == unsure.filled.mesh.vertices.tobytes()
+        assert other.completion is not None
+        assert unsure.completion is not None
+        assert other.completion.trials == unsure.completion.trials
