@@ -165,6 +165,7 @@ NUMBERS_OF_THE_METHOD: dict[str, set[float]] = {
         energy_selection.AS_WIDE,
         calibration_set.MIN_HOLES,
         calibration_set.MAX_HOLES,
+        calibration_set.MORE_HOLES,
     },
     "quadpatch/recipes/model_trials.py": set(calibration_set.SHARES),
     "quadpatch/patches/scale.py": {

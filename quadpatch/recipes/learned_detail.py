@@ -108,7 +108,7 @@ def complete(
     learned = _learn(_Learning(filled, coarse_copy, calibration, inpainter, scale), options, stages)
     if learned is None:
         return None
-    if learned.choice.is_open:
+    if learned.choice.is_open and not learned.fits_a_network:
         learned = _learn_from_more(learned, options, stages)
     choice = learned.choice
     with stages.stage("inpaint"):
@@ -119,7 +119,7 @@ def complete(
             predicted = choice.model.predict(sampled.patches, sampled.base_heights)
     with stages.stage("reconstruct"):
         completion = _completion(filled, sampled, predicted, choice, scale)
-        completion = replace(completion, fitting=_fitting(learned.competitors))
+        completion = replace(completion, fitting=learned.fitting)
     return completion if learned.is_competition else replace(completion, shares={}, trials=())
 
 
@@ -146,19 +146,23 @@ class _Learned:
         What the patches around the fills are cut from.
     base_surface : TriangleMesh
     seeds : Seeds
-    competitors : FittedCompetitors
     choice : Choice
     is_competition : bool
         Whether there may be more than one model.
+    fitting : Fitting or None
+        How a network was fitted; None where none was.
+    fits_a_network : bool
+        Whether one that was fitted may gain: to fit it once more would take as long again.
     """
 
     source: _Learning
     surface: PatchSurface
     base_surface: TriangleMesh
     seeds: Seeds
-    competitors: FittedCompetitors
     choice: Choice
     is_competition: bool
+    fitting: Fitting | None = None
+    fits_a_network: bool = False
 
 
 def _learn(source: _Learning, options: RepairOptions, stages: Stages) -> _Learned | None:
@@ -185,8 +189,10 @@ def _learn(source: _Learning, options: RepairOptions, stages: Stages) -> _Learne
         competitors = fitted if isinstance(fitted, FittedCompetitors) else FittedCompetitors({"": fitted}, {"": 1.0})
         screened = source.is_screened
         choice = Choice(competitors) if tried is None else try_models(tried, competitors, is_screened=screened)
+    told = {name: member.fitting for name, member in competitors.members.items() if isinstance(member, TellsOfFitting)}
+    fitting, may_gain = next(iter(told.values()), None), bool(told.keys() & {*choice.promising})
     is_competition = isinstance(fitted, FittedCompetitors)
-    return _Learned(source, surfaces.filled, base_surface, seeds, competitors, choice, is_competition)
+    return _Learned(source, surfaces.filled, base_surface, seeds, choice, is_competition, fitting, may_gain)
 
 
 def _learn_from_more(first: _Learned, options: RepairOptions, stages: Stages) -> _Learned:
@@ -202,7 +208,9 @@ def _learn_from_more(first: _Learned, options: RepairOptions, stages: Stages) ->
     # The further holes may have been learned from: they are hidden now.
     again = replace(source, calibration=more, inpainter=inpainter, is_screened=True)
     second = _learn(again, options, stages)
-    return first if second is None else replace(second, choice=second.choice.after(first.choice))
+    if second is None:
+        return first
+    return replace(second, choice=second.choice.after(first.choice), fitting=first.fitting)
 
 
 def _around_fills(
@@ -211,12 +219,6 @@ def _around_fills(
     """Cut the patches that show fills."""
     near = seeds_near(seeds, filled.mesh.vertices[filled.n_measured_vertices :], scale.length)
     return unfolded(surface.patchify(base_surface, take(seeds, near), scale))
-
-
-def _fitting(competitors: FittedCompetitors) -> Fitting | None:
-    """Find out how a network was fitted to the mesh; None where none was."""
-    told = (member.fitting for member in competitors.members.values() if isinstance(member, TellsOfFitting))
-    return next(told, None)
 
 
 def _completion(
