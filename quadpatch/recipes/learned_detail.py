@@ -25,7 +25,7 @@ from quadpatch.recipes.model_trials import CalibrationPatches, Choice, joined_di
 from quadpatch.recipes.patch_surfaces import CoarseCopy, PatchSurface, PatchSurfaces
 from quadpatch.recipes.result import Completion
 from quadpatch.stages import Stages
-from quadpatch.types import BoolArray, FloatArray, Patches, TriangleMesh
+from quadpatch.types import FloatArray, Patches, TriangleMesh
 
 # Patches that a self-similar dictionary is learned from.
 _MAX_SEEDS_TO_LEARN_FROM = 1000
@@ -125,14 +125,19 @@ def complete(
 
 @dataclass(frozen=True)
 class _Learning:
-    """What a model learns from, see `complete`; it has been screened where only models are left that may gain."""
+    """What a model learns from, see `complete`; after a first time only models are left that may gain."""
 
     filled: FilledMesh
     coarse_copy: CoarseCopy | None
     calibration: Calibration
     inpainter: Inpainter
     scale: PatchScale
-    is_screened: bool = False
+    first: "_Learned | None" = None
+
+    @property
+    def is_laid_out(self) -> bool:
+        """Whether the patches of the first time serve again: a coarse copy depends on the calibration holes."""
+        return self.first is not None and self.coarse_copy is None
 
 
 @dataclass(frozen=True)
@@ -146,6 +151,8 @@ class _Learned:
         What the patches around the fills are cut from.
     base_surface : TriangleMesh
     seeds : Seeds
+    shown : Sampled
+        Patches that are learned from.
     choice : Choice
     is_competition : bool
         Whether there may be more than one model.
@@ -159,6 +166,7 @@ class _Learned:
     surface: PatchSurface
     base_surface: TriangleMesh
     seeds: Seeds
+    shown: Sampled
     choice: Choice
     is_competition: bool
     fitting: Fitting | None = None
@@ -171,13 +179,13 @@ def _learn(source: _Learning, options: RepairOptions, stages: Stages) -> _Learne
     with stages.stage("smooth"):
         fill = calibration.uniform_fill()
         surfaces = _surfaces(filled, source.coarse_copy, calibration, fill)
-        base_surface = surfaces.filled.smoothed(scale)
+        kept = source.first if source.is_laid_out else None
+        base_surface = kept.base_surface if kept else surfaces.filled.smoothed(scale)
     with stages.stage("quadrangulate"):
-        seeds = lay_out(base_surface, scale)
+        seeds = kept.seeds if kept else lay_out(base_surface, scale)
     with stages.stage("patchify"):
         tried = _calibration_patches(calibration, fill, surfaces.calibration, seeds, scale, stages.pool)
-        to_learn = _some(len(seeds), np.random.default_rng([options.seed, 2]))
-        shown = surfaces.filled.patchify(base_surface, take(seeds, to_learn), scale)
+        shown = kept.shown if kept else _shown(surfaces.filled, base_surface, seeds, scale, options.seed)
     with stages.stage("learn"):
         known_patches = _without_calibration_holes(shown.patches, surfaces.filled)
         training_surface = partial(_training_surface, surfaces.filled, calibration, seeds, scale)
@@ -187,12 +195,12 @@ def _learn(source: _Learning, options: RepairOptions, stages: Stages) -> _Learne
         if fitted is None:
             return None
         competitors = fitted if isinstance(fitted, FittedCompetitors) else FittedCompetitors({"": fitted}, {"": 1.0})
-        screened = source.is_screened
+        screened = source.first is not None
         choice = Choice(competitors) if tried is None else try_models(tried, competitors, is_screened=screened)
     told = {name: member.fitting for name, member in competitors.members.items() if isinstance(member, TellsOfFitting)}
     fitting, may_gain = next(iter(told.values()), None), bool(told.keys() & {*choice.promising})
     is_competition = isinstance(fitted, FittedCompetitors)
-    return _Learned(source, surfaces.filled, base_surface, seeds, choice, is_competition, fitting, may_gain)
+    return _Learned(source, surfaces.filled, base_surface, seeds, shown, choice, is_competition, fitting, may_gain)
 
 
 def _learn_from_more(first: _Learned, options: RepairOptions, stages: Stages) -> _Learned:
@@ -206,7 +214,7 @@ def _learn_from_more(first: _Learned, options: RepairOptions, stages: Stages) ->
     if isinstance(inpainter, CompetingInpainters):
         inpainter = inpainter.limited_to(promising)
     # The further holes may have been learned from: they are hidden now.
-    again = replace(source, calibration=more, inpainter=inpainter, is_screened=True)
+    again = replace(source, calibration=more, inpainter=inpainter, first=first)
     second = _learn(again, options, stages)
     if second is None:
         return first
@@ -277,8 +285,8 @@ def _training_surface(
     return TrainingSurface(surface.undamaged, seeds, scale, calibration.record.blend, diameters, surface.edge_length)
 
 
-def _some(count: int, rng: np.random.Generator) -> BoolArray:
-    """Pick seeds (count,) to learn from."""
-    chosen = np.zeros(count, bool)
-    chosen[rng.permutation(count)[:_MAX_SEEDS_TO_LEARN_FROM]] = True
-    return chosen
+def _shown(surface: PatchSurface, base_surface: TriangleMesh, seeds: Seeds, scale: PatchScale, seed: int) -> Sampled:
+    """Cut patches anywhere to learn from."""
+    chosen = np.zeros(len(seeds), bool)
+    chosen[np.random.default_rng([seed, 2]).permutation(len(seeds))[:_MAX_SEEDS_TO_LEARN_FROM]] = True
+    return surface.patchify(base_surface, take(seeds, chosen), scale)

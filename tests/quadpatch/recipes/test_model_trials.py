@@ -1,4 +1,4 @@
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -10,6 +10,7 @@ from quadpatch.filling.fairing import THIN_PLATE
 from quadpatch.filling.fill import close_holes, fair_holes
 from quadpatch.inpainters.competing import CompetingInpainters, FittedCompetitors
 from quadpatch.inpainters.dictionary import SelfDictionary
+from quadpatch.inpainters.inpainter import Fitting
 from quadpatch.mesh.measures import mean_edge_length
 from quadpatch.options import RepairOptions
 from quadpatch.patches.layout import lay_out
@@ -40,6 +41,28 @@ class Shifted:
     def predict(self, patches: Patches, base_heights: FloatArray) -> FloatArray:
         hill = np.hanning(self.resolution)
         return patches.heights + self.share * patches.length * np.where(patches.known, 0.0, np.outer(hill, hill))
+
+
+ONE_STEP = Fitting(1, 1, "steps")
+
+
+@dataclass(frozen=True)
+class FittedAsNetworksAre:
+    """Another model, which says that it was fitted in one step."""
+
+    model: Any
+    fitting: Fitting = ONE_STEP
+
+    @property
+    def resolution(self) -> Any:
+        return self.model.resolution
+
+    def fitted_to(self, undamaged: Any) -> "FittedAsNetworksAre":
+        return replace(self, model=self.model.fitted_to(undamaged))
+
+    def predict(self, patches: Patches, base_heights: FloatArray) -> FloatArray:
+        predicted: FloatArray = self.model.predict(patches, base_heights)
+        return predicted
 
 
 class CountingPool(ProcessPool):
@@ -173,3 +196,18 @@ def test_more_holes_leave_the_same_bits_with_any_number_of_processes_and_with_a_
         assert other.completion is not None
         assert unsure.completion is not None
         assert other.completion.trials == unsure.completion.trials
+
+
+def test_no_network_is_fitted_a_second_time_to_be_tried_on_more_holes() -> None:
+    rivals = CompetingInpainters({"self": FittedAsNetworksAre(SelfDictionary()), "wrong": Shifted(0.5)})
+    completion = inpaint(UNSURE, rivals, RepairOptions()).completion
+    assert completion is not None
+    assert [trial.n_holes for trial in completion.trials] == [MAX_HOLES, MAX_HOLES, FIRST_HOLES]
+
+
+def test_how_a_network_was_fitted_that_is_dropped_is_told_after_more_holes() -> None:
+    rivals = CompetingInpainters({"self": SelfDictionary(), "wrong": FittedAsNetworksAre(Shifted(0.5))})
+    completion = inpaint(UNSURE, rivals, RepairOptions()).completion
+    assert completion is not None
+    assert completion.trials[0].n_holes >= 1.5 * MAX_HOLES
+    assert completion.fitting == ONE_STEP
