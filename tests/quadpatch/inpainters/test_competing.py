@@ -34,6 +34,11 @@ NOTHING: Any = None
 HEIGHTS = np.zeros((2, 4, 4))
 
 
+def test_models_that_are_not_named_are_left_out() -> None:
+    rivals = CompetingInpainters({"low": Constant(1.0), "high": Constant(2.0, 8)})  # type: ignore[dict-item]
+    assert rivals.limited_to(["high", "other"]).resolution == 8
+
+
 def fitted(**members: float) -> FittedCompetitors | None:
     models = {name: Constant(height) for name, height in members.items()}
     return CompetingInpainters(models).fitted_to(NOTHING)  # type: ignore[arg-type]
