@@ -14,6 +14,7 @@ from quadpatch.mesh.weld import Weld
 from quadpatch.options import RepairOptions
 from quadpatch.stages import Stages, failure_of
 from quadpatch.types import FloatArray
+from quadpatch_rules.coded_warnings import warning
 
 # The format that has no place for colours of vertices.
 _COLOURLESS = ".stl"
@@ -83,7 +84,7 @@ def colour_fill(
     failure = failure_of(look)
     if failure is None:
         return found[0]
-    return ColouredFill("harmonic", warnings=(f"colours were not carried on over the fills: {failure}",))
+    return ColouredFill("harmonic", warnings=(warning("colours_not_continued", reason=failure),))
 
 
 def _continued(welded: Weld, filled: FilledMesh, colours: FloatArray, seed: int) -> ColouredFill:

@@ -40,6 +40,7 @@ from quadpatch.report import (
 )
 from quadpatch.stages import Stages, harmless
 from quadpatch.textured_fill import texture_fill
+from quadpatch_rules.coded_warnings import described, warning
 from quadpatch_rules.hole_selection import Choice, choose_holes, join_islands
 from quadpatch_rules.option_words import LengthUnit
 
@@ -169,7 +170,7 @@ def inspect_file(source: Path, weld_tolerance: Tolerance = "auto") -> dict[str, 
             **describe_mesh(scan, mesh),
             "length_unit": scan.unit or UNKNOWN_UNIT,
             "welded": asdict(welded.counts),
-            "warnings": describe_redundancy(welded.counts),
+            **described(describe_redundancy(welded.counts)),
             "holes": [
                 {
                     **describe_hole(hole),
@@ -214,10 +215,7 @@ def _unit_warnings(scan: Scan, output: Path) -> list[str]:
     implied = IMPLIED_UNITS.get(output.suffix.lower())
     if implied is None or scan.unit is not None:
         return []
-    return [
-        f"the scan states no length unit, and {output.suffix} always means {implied}: the numbers are unchanged; "
-        "length_unit says what they are in"
-    ]
+    return [warning("unit_implied", suffix=output.suffix, unit=implied)]
 
 
 def _learn_from(reference: Path, model: str | Path | None, options: RepairOptions) -> tuple[Inpainter, dict[str, Any]]:

@@ -23,6 +23,7 @@ from quadpatch.options import RepairOptions
 from quadpatch.recipes.result import Completion, HoleResult, Repair
 from quadpatch.stages import Stages
 from quadpatch.types import TriangleMesh
+from quadpatch_rules.coded_warnings import described, warning
 from quadpatch_rules.text import printable
 
 VERDICTS = ("filled", "filled_smooth", "skipped", "refused")
@@ -65,24 +66,15 @@ def describe_hole(hole: Hole) -> dict[str, Any]:
 def describe_redundancy(counts: WeldCounts) -> list[str]:
     """Say what the file holds more than once, or the wrong way round, in sentences for people."""
     n, copies = counts.triangles, counts.duplicate_triangles
-    warnings = []
+    warnings = list[str]()
     if copies > DOUBLED_SHARE * (n - copies):
-        warnings.append(
-            f"{copies:,} of {n:,} faces are exact copies of others: the surface is doubled; "
-            "holes were looked for on one copy, and the file keeps all"
-        )
+        warnings.append(warning("surface_doubled", copies=copies, faces=n))
     elif copies:
-        warnings.append(f"{copies:,} faces are exact copies of others: ignored, and kept in the file")
+        warnings.append(warning("copies_ignored", copies=copies))
     if counts.fin_triangles:
-        warnings.append(
-            f"{counts.fin_triangles:,} faces hang on edges that have two faces without them: ignored as fins, "
-            "and kept in the file"
-        )
+        warnings.append(warning("fins_ignored", fins=counts.fin_triangles))
     if counts.turned_triangles:
-        warnings.append(
-            f"{counts.turned_triangles:,} faces are turned over against their neighbours: taken for facing the other "
-            "way, and kept in the file as they are"
-        )
+        warnings.append(warning("faces_turned_over", turned=counts.turned_triangles))
     return warnings
 
 
@@ -120,7 +112,7 @@ def build_report(
         },
         "calibration": _calibration(repair),
         "stages": describe_stages(stages),
-        "warnings": repair.warnings,
+        **described(repair.warnings),
     }
     return {**json_ready(report), "holes": [_hole(result) for result in repair.results]}
 

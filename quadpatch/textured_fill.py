@@ -17,6 +17,7 @@ from quadpatch.mesh.weld import Weld
 from quadpatch.options import RepairOptions
 from quadpatch.stages import Stages, failure_of
 from quadpatch.types import BoolArray
+from quadpatch_rules.coded_warnings import warning
 
 
 @dataclass(frozen=True)
@@ -71,14 +72,14 @@ def texture_fill(  # noqa: PLR0913, PLR0917  a repair, and how it is to be writt
         if texture is None:
             return
         if not takes_page(scan, output):
-            found.append(TexturedFill(warnings=(f"{named.suffix} is written without the texture images of the scan",)))
+            found.append(TexturedFill(warnings=(warning("textures_not_written", suffix=named.suffix),)))
             return
         with stages.stage("colour"):
             found.append(_painted(scan, welded, filled, fill, texture, named, options))
 
     failure = failure_of(look)
     if failure is not None:
-        return TexturedFill(warnings=(f"the texture images of the scan are not carried on: {failure}",))
+        return TexturedFill(warnings=(warning("textures_not_continued", reason=failure),))
     return found[0] if found else TexturedFill()
 
 
@@ -120,7 +121,7 @@ def _painted(  # noqa: PLR0913, PLR0917  see above
 def _without_page(problems: list[ImageProblem]) -> TexturedFill:
     """Say what is wrong with images, in the report and to people."""
     warnings = tuple(
-        f"the texture image {problem.image!r} is not carried on ({problem.code}): {problem.message}"
+        warning("texture_image_not_continued", image=problem.image, image_code=problem.code, reason=problem.message)
         for problem in problems
     )
     report = {"method": None, "calibration": None, "page": None, "problems": [asdict(problem) for problem in problems]}

@@ -5,6 +5,7 @@ Only this module gives the contract's errors an HTTP status.
 Tested in `tests/service/test_handlers.py`.
 """
 
+import math
 from collections.abc import Mapping, Sequence
 from enum import IntEnum
 from http import HTTPStatus
@@ -57,6 +58,7 @@ _WAITING_HELPS = (errors.JobQuotaError, errors.StreamQuotaError, errors.StoreFul
 
 # A body of a megabyte may hold a hundred thousand wrong fields; its sender corrects some and tries again.
 MOST_FIELD_ERRORS = 50
+_LONGEST_VALUE = 200
 # Fields of a spec that hold one of several models, told apart by a tag.
 _UNIONS = (("method",), ("restore", "missing"), ("denoise", "region"))
 
@@ -170,7 +172,17 @@ def _field_error(detail: Mapping[str, Any], root: str | None) -> FieldError:
     where = _without_tag(steps)
     pointer = "".join("/" + step.replace("~", "~0").replace("/", "~1") for step in where) if is_body else where[-1]
     message = printable(str(detail["msg"]))
-    return FieldError(location=location, pointer=printable(pointer), message=message, code=str(detail["type"]))
+    values = {name: value for name, value in detail.get("ctx", {}).items() if _is_plain(value)}
+    return FieldError(
+        location=location, pointer=printable(pointer), message=message, code=str(detail["type"]), values=values or None
+    )
+
+
+def _is_plain(value: object) -> bool:
+    """Whether a value of pydantic's context may go into an answer: no bytes of the request, and nothing long."""
+    if isinstance(value, str):
+        return len(value) <= _LONGEST_VALUE and printable(value) == value
+    return isinstance(value, int | float) and math.isfinite(value)
 
 
 def _without_tag(where: list[str]) -> list[str]:

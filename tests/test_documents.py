@@ -29,6 +29,7 @@ from quadpatch_client.cli import app as client_app
 from quadpatch_client.exit_codes import MEANINGS
 from quadpatch_client.schema import STAGES, JobState
 from quadpatch_client.schema.codes import FAILURE_CODES
+from quadpatch_rules.coded_warnings import OTHER, WARNINGS
 from service.contract.codes import problem_codes
 from service.problems import to_problem_error
 
@@ -117,6 +118,8 @@ def test_the_tables_of_codes_are_those_of_the_document() -> None:
     tables = document[document.index("| code | status | meaning |") :].split("\n\n")
     assert set(rows(tables[0])) - {"code", "---"} == set(problem_codes())
     assert set(rows(tables[2])) - {"code", "---"} == set(FAILURE_CODES)
+    warnings = document[document.index("| code | warning |") :].split("\n\n")[0]
+    assert set(rows(warnings)) - {"code", "---"} == {*WARNINGS, OTHER}
 
 
 def test_every_state_verdict_and_stage_is_explained() -> None:

@@ -15,6 +15,7 @@ import numpy as np
 from quadpatch.errors import QuadpatchError, StageError
 from quadpatch.model_choice import SMOOTH
 from quadpatch.stages import Stages
+from quadpatch_rules.coded_warnings import warning
 from quadpatch_rules.training_verdict import Verdict, mean_ratio, verdict_of
 from training.corpus import read_mesh
 from training.judgement import KnownHoles, cut_known_holes, repair_error
@@ -91,7 +92,7 @@ def split_meshes(
         source = readable[i]
         holes = cut_known_holes(read_mesh(source.path), folder / f"punched-{i}.ply", rng)
         if holes is None:
-            warnings.append(f"mesh {source.name} has no room for holes to judge by")
+            warnings.append(warning("mesh_without_room", mesh=source.name))
         else:
             judge[source.name] = holes
         stages.part(0.5, 1.0)((done + 1) / len(chosen))
@@ -110,7 +111,7 @@ def judge_model(split: Split, model: Path, seed: int, stages: Stages, warnings: 
         try:
             plain, learned = (repair_error(holes, way, seed) for way in (SMOOTH, model))
         except QuadpatchError as error:
-            warnings.append(f"mesh {name} can't be judged ({error.code}): {error}")
+            warnings.append(warning("mesh_not_judged", mesh=name, mesh_code=error.code, reason=str(error)))
             continue
         # On a surface that is closed without any error both are equally good.
         ratio = learned / plain if plain > 0 and learned > 0 else 1.0
@@ -124,6 +125,6 @@ def _is_readable(source: Source, warnings: list[str]) -> bool:
     try:
         read_mesh(source.path)
     except QuadpatchError as error:
-        warnings.append(f"mesh {source.name} is left out ({error.code}): {error}")
+        warnings.append(warning("mesh_left_out", mesh=source.name, mesh_code=error.code, reason=str(error)))
         return False
     return True

@@ -13,6 +13,7 @@ from quadpatch.progress import Progress, no_progress
 from quadpatch.report import describe_stages
 from quadpatch.sparse.ksvd import KsvdOptions
 from quadpatch.stages import Stages, harmless
+from quadpatch_rules.coded_warnings import described
 from training.card import dictionary_card
 from training.corpus import PatchRecipe
 from training.dictionary import Learned, LearningOptions, learn_dictionary
@@ -102,7 +103,7 @@ def train_dictionary(
         "patches": learned.n_patches,
         "learning_errors": [round(float(error), 5) for error in learned.errors],
         **judgement.report(),
-        "warnings": warnings,
+        **described(warnings),
     }
 
 

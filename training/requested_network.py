@@ -24,6 +24,7 @@ from quadpatch.networks.weights import load_residual
 from quadpatch.progress import Progress, no_progress
 from quadpatch.report import describe_stages
 from quadpatch.stages import Stages, harmless
+from quadpatch_rules.coded_warnings import described
 from training.architectures import Architecture, find_architecture
 from training.build_corpus import RESOLUTIONS, CorpusOptions, build_corpus
 from training.checkpoint import TrainingState
@@ -133,7 +134,7 @@ def train_network(
         "patches": sum(mesh["count"] for mesh in corpus.meshes("train")),
         "learning_errors": [round(loss, 5) for _, loss in trainer.state.validation],
         **judgement.report(),
-        "warnings": warnings,
+        **described(warnings),
     }
 
 

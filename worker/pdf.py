@@ -19,6 +19,7 @@ from pathlib import Path
 import psutil
 
 from quadpatch.formats.output_files import write_whole
+from quadpatch_rules.coded_warnings import warning
 from worker.engine.confinement import weaknesses
 from worker.engine.limits import EngineLimits
 from worker.engine.renderer import MOST_PDF_MB
@@ -75,7 +76,7 @@ def add_pdf(
     problem = _print(folder, renderer, limits, stop_reason)
     if problem is not None:
         _log.warning("there is no PDF: %s", problem)
-        add_warning(folder, f"there is no PDF: {problem}")
+        add_warning(folder, warning("no_pdf_report", reason=problem))
 
 
 def _print(

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from quadpatch_client.schema import HoleCounts
+from quadpatch_rules.coded_warnings import add_warning, warning
 
 
 def facts_of_fill(report: Mapping[str, Any]) -> dict[str, Any]:
@@ -16,7 +17,7 @@ def facts_of_fill(report: Mapping[str, Any]) -> dict[str, Any]:
         "holes": counts,
         "new_vertices": sum(hole.get("new_vertices", 0) for hole in report["holes"]),
         "new_triangles": sum(hole.get("new_triangles", 0) for hole in report["holes"]),
-        "warnings": _warnings(report, counts),
+        **_warnings(report, counts),
         "acceptance": report.get("acceptance"),
     }
 
@@ -28,7 +29,7 @@ def facts_of_task(report: Mapping[str, Any]) -> dict[str, Any]:
         "moved_vertices": report.get("moved_vertices"),
         "shift_95": report.get("shift_95"),
         "max_error": _largest_error(report),
-        "warnings": [str(text) for text in report["warnings"]],
+        **_warnings(report),
     }
 
 
@@ -37,7 +38,7 @@ def facts_of_training(report: Mapping[str, Any], model: str, sha256: str) -> dic
     names = ("kind", "learned_from", "patches", "judged", "is_better", "verdict")
     unnumbered = {"model": model, "version": 1, "is_new": True, "sha256": sha256}
     learned = {**unnumbered, **{name: report[name] for name in names}}
-    return {"training": learned, "warnings": [str(text) for text in report["warnings"]]}
+    return {"training": learned, **_warnings(report)}
 
 
 def _largest_error(report: Mapping[str, Any]) -> float | None:
@@ -48,10 +49,10 @@ def _largest_error(report: Mapping[str, Any]) -> float | None:
     return error
 
 
-def _warnings(report: Mapping[str, Any], counts: HoleCounts) -> list[str]:
+def _warnings(report: Mapping[str, Any], counts: HoleCounts | None = None) -> dict[str, Any]:
     """Collect the report's warnings; a refused hole is one, whether or not the report says so in words."""
-    warnings = [str(text) for text in report["warnings"]]
-    if counts.refused and not warnings:
-        noun = "hole was" if counts.refused == 1 else "holes were"
-        warnings.append(f"{counts.refused} {noun} refused and left open; the report says why")
-    return warnings
+    found = {name: list(report.get(name, [])) for name in ("warnings", "warning_details")}
+    refused = 0 if counts is None else counts.refused
+    if refused and not found["warnings"]:
+        add_warning(found, warning("hole_refused") if refused == 1 else warning("holes_refused", refused=refused))
+    return found

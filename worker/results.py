@@ -12,6 +12,8 @@ from jobkit.storage.digests import sha256_of
 from quadpatch.formats.output_files import write_whole
 from quadpatch.stages import failure_of
 from quadpatch_client.schema import FileRole, JobResult, JobSpec, ResultFile
+from quadpatch_rules import coded_warnings
+from quadpatch_rules.coded_warnings import warning
 from quadpatch_rules.tasks import TRAIN
 from worker.engine.request import CLOSE_UPS_NAME, PAGE_NAME, PDF_NAME, PREVIEW_NAME, REPORT_NAME, EngineRequest
 from worker.failures import Failure
@@ -32,7 +34,7 @@ _MEDIA_TYPES = {
 
 @dataclass(frozen=True)
 class Picture:
-    """A file that a repair may do without; `stage` draws it, `warning` says that it is missing."""
+    """A file that a repair may do without; `stage` draws it, `warning` is the code that says that it is missing."""
 
     role: FileRole
     name: str
@@ -40,12 +42,12 @@ class Picture:
     warning: str
 
 
-_PREVIEW = Picture("preview", PREVIEW_NAME, "preview", "there is no picture")
-_CLOSE_UPS = Picture("closeups", CLOSE_UPS_NAME, "closeups", "there are no close-ups")
-_PAGE = Picture("html_report", PAGE_NAME, "html_report", "there is no HTML report")
+_PREVIEW = Picture("preview", PREVIEW_NAME, "preview", "no_preview")
+_CLOSE_UPS = Picture("closeups", CLOSE_UPS_NAME, "closeups", "no_close_ups")
+_PAGE = Picture("html_report", PAGE_NAME, "html_report", "no_html_report")
 _OPTIONAL = (_PREVIEW, _CLOSE_UPS, _PAGE)
 # No engine draws it: `worker.pdf` prints the page.
-_PDF = Picture("pdf_report", PDF_NAME, "html_report", "there is no PDF")
+_PDF = Picture("pdf_report", PDF_NAME, "html_report", "no_pdf_report")
 
 
 @dataclass(frozen=True)
@@ -107,7 +109,12 @@ def missing_pictures(folder: Path, request: EngineRequest) -> list[Picture]:
 
 def note_deprecation(folder: Path, reference: str, reason: str) -> None:
     """Write into the report that the model should be used no more."""
-    add_warning(folder, f"the model {reference} is deprecated" + (f": {reason}" if reason else ""))
+    add_warning(
+        folder,
+        warning("deprecated_model_for", model=reference, reason=reason)
+        if reason
+        else warning("deprecated_model", model=reference),
+    )
 
 
 def note_lost_pictures(folder: Path, request: EngineRequest, failure: Failure) -> None:
@@ -118,7 +125,7 @@ def note_lost_pictures(folder: Path, request: EngineRequest, failure: Failure) -
     drawn_stages = {stage["name"] for stage in _read_report(folder).get("stages", [])}
     for picture in missing_pictures(folder, request):
         if picture.stage not in drawn_stages:
-            add_warning(folder, f"{picture.warning}: {failure.message}")
+            add_warning(folder, warning(picture.warning, reason=failure.message))
 
 
 def _store_picture(picture: Picture, folder: Path, attempt: Attempt, store: ObjectStore) -> list[ResultFile]:
@@ -128,14 +135,14 @@ def _store_picture(picture: Picture, folder: Path, attempt: Attempt, store: Obje
     if path.exists():
         failure = failure_of(lambda: stored.append(_store_file(path, picture.role, attempt, store)))
         if failure is not None:
-            add_warning(folder, f"{picture.warning}: the store failed")
+            add_warning(folder, warning(picture.warning, reason="the store failed"))
     return stored
 
 
-def add_warning(folder: Path, warning: str) -> None:
+def add_warning(folder: Path, sentence: str) -> None:
     """Add a warning to the report; on a full disk the report stays as it was."""
     report = _read_report(folder)
-    report["warnings"].append(warning)
+    coded_warnings.add_warning(report, sentence)
     failure_of(lambda: write_whole(folder / REPORT_NAME, json.dumps(report).encode()))
 
 

@@ -25,6 +25,7 @@ from quadpatch.patches.scale import EDGES_PER_BIN, OVERLAP, PatchScale, preset_s
 from quadpatch.sparse.dictionary import Dictionary
 from quadpatch.stages import Stages
 from quadpatch.types import BoolArray, FloatArray, IntArray, TriangleMesh, Vertices
+from quadpatch_rules.coded_warnings import warning
 
 __all__ = ["Box", "DenoiseOptions", "Denoised", "PatchModel", "denoise"]
 
@@ -176,13 +177,13 @@ def denoise(
         return _unchanged(mesh, options)
     with stages.stage("smooth"):
         noisy, pilot = _pilot(mesh, noise, rng)
-    scale, n_patches, warnings, estimate = None, 0, [], pilot
+    scale, n_patches, warnings, estimate = None, 0, list[str](), pilot
     if model.kind != "none":
         scale = denoising_scale(mesh, options, model)
         try:
             estimate, n_patches = _with_patches(noisy, pilot, scale, model, rng, stages)
         except NoQuadsError as error:
-            warnings.append(f"{error}; no patches took part")
+            warnings.append(warning("no_patches_to_denoise", reason=str(error)))
             scale = None
     with stages.stage("judge"):
         max_shift = options.max_shift or SHIFT_PER_NOISE * noise
@@ -191,7 +192,7 @@ def denoise(
         vertices = mesh.vertices + unfolded.moves
     shares = {**estimate.shares, "none": max(0.0, 1.0 - sum(estimate.shares.values()))}
     if len(unfolded.left):
-        warnings.append(f"{len(unfolded.left):,} pairs of triangles fold over each other that did not before")
+        warnings.append(warning("folds_left", folds=len(unfolded.left)))
     return Denoised(
         vertices,
         length(unfolded.moves),
@@ -230,10 +231,10 @@ def _allowed(mesh: TriangleMesh, options: DenoiseOptions, movable: BoolArray | N
 def _unchanged(mesh: TriangleMesh, options: DenoiseOptions) -> Denoised:
     n = len(mesh.vertices)
     nothing = without_new_folds(mesh, np.zeros((n, 3)))
-    warning = "the surface shows no noise: nothing was moved"
+    warnings: list[str] = [warning("no_noise")]
     bound = options.max_shift or 0.0
     return Denoised(
-        mesh.vertices, np.zeros(n), 0.0, bound, np.zeros(n, bool), {"none": 1.0}, None, 0, nothing, 0, [warning]
+        mesh.vertices, np.zeros(n), 0.0, bound, np.zeros(n, bool), {"none": 1.0}, None, 0, nothing, 0, warnings
     )
 
 

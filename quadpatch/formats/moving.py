@@ -23,6 +23,7 @@ from quadpatch.formats.scene_parts import used_vertices
 from quadpatch.formats.writing import ENCODERS, check_suffix, written_as
 from quadpatch.stages import failure_of
 from quadpatch.types import BoolArray, Vertices
+from quadpatch_rules.coded_warnings import warning
 
 __all__ = ["Moved", "write_moved"]
 
@@ -88,7 +89,7 @@ def _encode(suffix: str, scan: Scan, moved: Moved) -> tuple[bytes, list[str]]:
     if suffix == scan.format and scan.source is not None:
         failure = failure_of(lambda: own.append(_in_its_own_file(scan, moved)), passing=(FormatError,))
         if failure is not None:
-            warnings.append(f"the mesh is written anew, without what its file held besides it: {failure}")
+            warnings.append(warning("file_written_anew", reason=failure))
     data, more = own[0] if own else _converted(suffix, scan, moved)
     return data, [*warnings, *more, *_lost_properties(suffix, moved.properties)]
 
@@ -123,14 +124,14 @@ def _diagonal(moved: Moved) -> float:
 def _rounded(rounding: float, moved: Moved) -> list[str]:
     if not rounding > QUIET_ROUNDING * _diagonal(moved):
         return []
-    return [f"coordinates are rounded to the numbers of the file, by up to {rounding:.3g}"]
+    return [warning("coordinates_rounded", rounding=rounding)]
 
 
 def _stale_normals(scan: Scan, moved: Moved) -> list[str]:
     n_moved = int(moved.is_moved(scan).sum())
     if n_moved == 0 or scan.source is None or scan.source.vertex_attributes(scan).normals is None:
         return []
-    return [f"the stored normals of {n_moved:,} vertices that moved are computed anew"]
+    return [warning("normals_computed_anew", vertices=n_moved)]
 
 
 def _converted(suffix: str, scan: Scan, moved: Moved) -> tuple[bytes, list[str]]:
@@ -144,7 +145,7 @@ def _converted(suffix: str, scan: Scan, moved: Moved) -> tuple[bytes, list[str]]
     if failure is None:
         warnings += _stale_normals(scan, moved) if suffix in _WITH_NORMALS else []
     else:
-        warnings.append(f"colours, normals and the like are left out of the mesh: {failure}")
+        warnings.append(warning("attributes_left_out", reason=failure))
         scenes.append(moved_scene(replace(scan, source=None), moved))
     single = moved.vertices.astype(np.float32).astype(np.float64)
     rounding = _largest_shift(single, moved.vertices, used_vertices(scan, moved)) if suffix in _SINGLE else 0.0
@@ -154,4 +155,4 @@ def _converted(suffix: str, scan: Scan, moved: Moved) -> tuple[bytes, list[str]]
 def _lost_properties(suffix: str, properties: Mapping[str, Any]) -> list[str]:
     if suffix == "ply" or not properties:
         return []
-    return [f"{suffix} has no place for numbers of vertices: {', '.join(properties)} left out, which PLY keeps"]
+    return [warning("numbers_left_out", format=suffix, names=", ".join(properties))]

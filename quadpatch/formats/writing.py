@@ -10,6 +10,7 @@ from quadpatch.formats.merged_scene import MergedScene, merge_scene
 from quadpatch.formats.output_files import is_stream, write_whole
 from quadpatch.formats.scan import FileBytes, Fill, Scan, Source
 from quadpatch.stages import failure_of
+from quadpatch_rules.coded_warnings import warning
 from quadpatch_rules.option_words import CarriedAttribute
 
 
@@ -128,5 +129,4 @@ def _encode(
     if failure is None:
         return encoded[0], []
     bare = replace(scan, source=None)
-    warning = f"colours, normals and the like are left out of the repaired mesh, which holds the shape alone: {failure}"
-    return ENCODERS[suffix](merge_scene(bare, fill)), [warning]
+    return ENCODERS[suffix](merge_scene(bare, fill)), [warning("attributes_left_out", reason=failure)]

@@ -15,6 +15,7 @@ from quadpatch.progress import Progress, no_progress
 from quadpatch.repair import RepairedFile
 from quadpatch.stages import failure_of, peak_memory_mib
 from quadpatch_rules.acceptance import judge
+from quadpatch_rules.coded_warnings import add_warning, warning
 from quadpatch_rules.option_words import Tint
 
 # Close-ups in a page: with their base64 at most 5.4 MiB of it.
@@ -63,7 +64,7 @@ def add_html_report(repaired: RepairedFile, order: PageOrder, page: Path, progre
     progress(STAGE, 0.0)
     failure = failure_of(lambda: _write(repaired, order, page, progress))
     if failure is not None:
-        repaired.report["warnings"].append(f"there is no HTML report: {failure}")
+        add_warning(repaired.report, warning("no_html_report", reason=failure))
     seconds = round(time.perf_counter() - begun, 4)
     repaired.report["stages"].append({"name": STAGE, "seconds": seconds, "peak_memory_mib": peak_memory_mib()})
 
@@ -87,5 +88,5 @@ def _overview(repaired: RepairedFile, order: PageOrder) -> bytes | None:
     repair, found = repaired.repair, list[bytes]()
     failure = failure_of(lambda: found.append(before_after_png(repair.filled.mesh, invented_in(repair, order.tint))))
     if failure is not None:
-        repaired.report["warnings"].append(f"the HTML report has no picture of the whole: {failure}")
+        add_warning(repaired.report, warning("no_overview", reason=failure))
     return found[0] if found else None

@@ -29,6 +29,7 @@ from quadpatch.recipes.result import Repair
 from quadpatch.repair import RepairedFile
 from quadpatch.stages import failure_of, peak_memory_mib
 from quadpatch.tasks.result import TaskResult
+from quadpatch_rules.coded_warnings import add_warning, warning
 from quadpatch_rules.option_words import Tint
 
 # Of an archive of close-ups. One takes about a tenth of a second of a core and a hundred kilobytes.
@@ -57,7 +58,7 @@ def add_picture(repaired: RepairedFile, picture: Path, tint: Tint = "invented") 
             lambda: render_before_after(repaired.repair.filled.mesh, invented_in(repaired.repair, tint), picture)
         )
     if failure is not None:
-        repaired.report["warnings"].append(f"there is no picture: {failure}")
+        add_warning(repaired.report, warning("no_preview", reason=failure))
 
 
 def add_comparison(result: TaskResult, picture: Path) -> None:
@@ -73,7 +74,7 @@ def add_comparison(result: TaskResult, picture: Path) -> None:
     with _stage(result.report, "preview"):
         failure = failure_of(lambda: render_comparison(result.before, result.after, change, picture))
     if failure is not None:
-        result.report["warnings"].append(f"there is no picture: {failure}")
+        add_warning(result.report, warning("no_preview", reason=failure))
 
 
 def invented_in(repair: Repair, tint: Tint) -> Invented:
@@ -111,7 +112,7 @@ def add_close_ups(repaired: RepairedFile, folder: Path, tint: Tint = "invented")
         if failure is None:
             _draw_each(repaired, repaired.repair.chosen, save, tint, no_progress)
         else:
-            repaired.report["warnings"].append(f"there are no close-ups: {failure}")
+            add_warning(repaired.report, warning("no_close_ups", reason=failure))
 
 
 def add_close_up_archive(
@@ -138,7 +139,7 @@ def add_close_up_archive(
     with _stage(repaired.report, "closeups"):
         failure = failure_of(lambda: _write_archive(repaired, archive, progress, most, tint))
     if failure is not None:
-        repaired.report["warnings"].append(f"there are no close-ups: {failure}")
+        add_warning(repaired.report, warning("no_close_ups", reason=failure))
 
 
 def draw_widest(
@@ -189,7 +190,7 @@ def _write_archive(repaired: RepairedFile, archive: Path, progress: Progress, mo
 
         _draw_each(repaired, chosen[:most], save, tint, progress, lambda: is_full)
     if is_full or len(chosen) > most:
-        repaired.report["warnings"].append(f"close-ups show {n_packed} of {len(chosen)} holes, the widest")
+        add_warning(repaired.report, warning("close_ups_limited", shown=n_packed, holes=len(chosen)))
     if n_packed or not chosen:
         write_whole(archive, packed.getvalue())
 
@@ -214,18 +215,17 @@ def _draw_each(
 ) -> None:
     """Draw holes one by one until it is enough, and add a warning for each that could not be drawn."""
     pairs = list[Pair]()
-    warnings = repaired.report["warnings"]
     if not holes:
         return
     failure = failure_of(lambda: pairs.append(_pair_around(repaired.repair, holes, tint)))
     if failure is not None:
-        warnings.append(f"there are no close-ups: {failure}")
+        add_warning(repaired.report, warning("no_close_ups", reason=failure))
         return
     for i, hole in enumerate(holes):
         if is_full():
             return
         progress("closeups", i / len(holes))
-        warnings += _close_up(pairs[0], repaired, hole, save)
+        _close_up(pairs[0], repaired, hole, save)
 
 
 def _pair_around(repair: Repair, holes: list[Hole], tint: Tint) -> Pair:
@@ -237,10 +237,12 @@ def _pair_around(repair: Repair, holes: list[Hole], tint: Tint) -> Pair:
     return filled_pair(mesh, invented)
 
 
-def _close_up(pair: Pair, repaired: RepairedFile, hole: Hole, save: Callable[[int, bytes], None]) -> list[str]:
+def _close_up(pair: Pair, repaired: RepairedFile, hole: Hole, save: Callable[[int, bytes], None]) -> None:
+    """Draw a hole and save the picture, or warn."""
     numbered = _numbered(pair, repaired.repair, hole)
     failure = failure_of(lambda: save(hole.id, draw_hole(pair, numbered)))
-    return [] if failure is None else [f"there is no close-up of hole {hole.id}: {failure}"]
+    if failure is not None:
+        add_warning(repaired.report, warning("no_close_up", hole=hole.id, reason=failure))
 
 
 def _numbered(pair: Pair, repair: Repair, hole: Hole) -> NumberedHole:

@@ -39,6 +39,7 @@ from quadpatch.recipes.result import Repair
 from quadpatch.recipes.verification import verified_results, with_ribs, without_faults
 from quadpatch.stages import Stages
 from quadpatch.types import BoolArray, TriangleMesh, Triangles
+from quadpatch_rules.coded_warnings import warning
 from quadpatch_rules.hole_selection import HoleAction
 
 # Calibration holes are at most so many mean edges wide: wider ones cost more and tell the same.
@@ -206,15 +207,15 @@ def _repair(task: _Task, part: RepairRegion, stages: Stages) -> Repair:
         reach = stages.part(0.0 if calibration.is_reused else share, 1.0)
         checked = fill_checked(mesh, wanted, lambda *_: filling.finish(reach), obstacles, stages.pool)
         checked = with_creases(checked, found.crease_share, obstacles, stages.pool)
-    completion, warnings, by_model = None, [], task.by_model
+    completion, warnings, by_model = None, list[str](), task.by_model
     if inpainter is not None and by_model[checked.filled.vertex_hole].any():
         try:
             copy = part.coarse_copy(task.reach())
             completion = complete(checked.filled, copy, calibration, inpainter, task.options, stages)
             if completion is None:
-                warnings.append("too little undamaged surface to learn from; the holes were filled by geometry alone")
+                warnings.append(warning("too_little_surface"))
         except NoQuadsError as error:
-            warnings.append(f"{error}; the holes were filled by geometry alone")
+            warnings.append(warning("no_patches", reason=str(error)))
     with stages.stage("judge"):
         if completion and not by_model.all():
             completion = replace(completion.limited_to(by_model, checked.filled), left_out=~by_model)

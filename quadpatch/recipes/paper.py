@@ -34,6 +34,7 @@ from quadpatch.reconstruction.displacement import rim_vertices
 from quadpatch.reconstruction.placement import place, with_ring_means
 from quadpatch.stages import Stages
 from quadpatch.types import FloatArray, Patches, TriangleMesh, Triangles
+from quadpatch_rules.coded_warnings import warning
 from quadpatch_rules.hole_selection import MODEL_FILLS_ONLY
 
 # The paper gives patch length, resolution and overlap for each of its objects. Where none are given, patches are twice
@@ -102,14 +103,14 @@ def inpaint_as_paper(
             raise OptionError(MODEL_FILLS_ONLY)
     with stages.stage("fill"):
         filled = close_by_meshlab(mesh, [hole.loop for hole in selection.chosen])
-    completion, warnings = None, []
+    completion, warnings = None, list[str]()
     if len(filled.vertex_hole):
         try:
             completion = _complete(filled, _scale(mesh, selection, options, inpainter), inpainter, options.seed, stages)
             if completion is None:
-                warnings.append("too little undamaged surface to learn from; the holes were closed, nothing more")
+                warnings.append(warning("too_little_surface_for_paper"))
         except NoQuadsError as error:
-            warnings.append(f"{error}; the holes were closed, nothing more")
+            warnings.append(warning("no_patches_for_paper", reason=str(error)))
     placed = completion.apply(filled) if completion else filled
     with stages.stage("judge"):
         results = _results(holes, selection, filled, completion)

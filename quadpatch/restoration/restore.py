@@ -25,6 +25,7 @@ from quadpatch.restoration.patch_detail import PatchDetail, continue_detail
 from quadpatch.restoration.placements import EDGE_NORMALS, LEAST_SQUARES, SMOOTH_NORMALS, placements, poisson_base
 from quadpatch.stages import Stages
 from quadpatch.types import BoolArray, FloatArray, TriangleMesh, Triangles, Vertices
+from quadpatch_rules.coded_warnings import warning
 from quadpatch_rules.option_words import LengthUnit
 
 # Where the measured vertices are too few to hide some of them.
@@ -190,8 +191,8 @@ class _Choice:
 def _chosen(mesh: TriangleMesh, placed: dict[str, Vertices], trial: Trial | None) -> _Choice:
     """Take the way that leaves the hidden vertices closest to the surface."""
     if trial is None:
-        warning = "too few vertices are measured to hide some of them: the expected error is not known"
-        return _Choice(placed[PRIOR_PLACEMENT], PRIOR_PLACEMENT, {}, None, mesh.vertices, warnings=[warning])
+        warnings: list[str] = [warning("expected_error_unknown")]
+        return _Choice(placed[PRIOR_PLACEMENT], PRIOR_PLACEMENT, {}, None, mesh.vertices, warnings=warnings)
     rms = {
         way: trial.rms(trial.errors(trial.placed[way], TriangleMesh(vertices, mesh.triangles)))
         for way, vertices in placed.items()
@@ -217,7 +218,7 @@ def _with_detail(
             TriangleMesh(chosen.tried, mesh.triangles), trial.missing, inpainter, options.patches, stages
         )
         if tried is None:
-            return _warned(chosen, "too little surface to learn from; the vertices were restored by geometry alone")
+            return _warned(chosen, warning("too_little_surface_to_restore"))
         rms = {
             factor: trial.rms(trial.errors(chosen.tried + factor * tried.moves, surface)) for factor in BLEND_FACTORS
         }
@@ -227,7 +228,7 @@ def _with_detail(
             return replace(chosen, trials=trials)
         detail = continue_detail(surface, missing, inpainter, options.patches, stages)
     except NoQuadsError as error:
-        return _warned(chosen, f"{error}; the vertices were restored by geometry alone")
+        return _warned(chosen, warning("no_patches_to_restore", reason=str(error)))
     if detail is None:
         return replace(chosen, trials=trials)
     return replace(
@@ -240,8 +241,8 @@ def _with_detail(
     )
 
 
-def _warned(chosen: _Choice, warning: str) -> _Choice:
-    return replace(chosen, warnings=[*chosen.warnings, warning])
+def _warned(chosen: _Choice, sentence: str) -> _Choice:
+    return replace(chosen, warnings=[*chosen.warnings, sentence])
 
 
 def _expected_error(chosen: _Choice, placed: dict[str, Vertices], triangles: Triangles) -> FloatArray:

@@ -18,6 +18,7 @@ from quadpatch.sparse.dictionary import Dictionary
 from quadpatch.stages import Stages, harmless
 from quadpatch.tasks.encode import load_dictionary
 from quadpatch.tasks.result import TaskResult
+from quadpatch_rules.coded_warnings import described
 
 
 def decode_file(
@@ -71,7 +72,7 @@ def decode_file(
         "keeps_connectivity": content.kept is not None,
         "patches": {"count": len(content.walk.polygons), "resolution": 2**content.levels},
         "stages": describe_stages(stages),
-        "warnings": warnings,
+        **described(warnings),
     }
     plain = json.loads(json.dumps(json_ready(report)))
     return TaskResult(plain, mesh, mesh, np.zeros(len(mesh.triangles), np.bool_))

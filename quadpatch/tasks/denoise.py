@@ -24,6 +24,7 @@ from quadpatch.report import describe_redundancy, describe_task, json_ready
 from quadpatch.stages import Stages, harmless
 from quadpatch.tasks.result import TaskResult
 from quadpatch.types import BoolArray, FloatArray, TriangleMesh
+from quadpatch_rules.coded_warnings import described, warning
 
 # The vertex property that says how far each vertex moved.
 SHIFT = "shift"
@@ -79,7 +80,7 @@ def denoise_file(
     warnings = [*denoised.warnings, *describe_redundancy(welded.counts), *losses]
     warnings += _beyond_bound(output, scan, denoised.max_shift)
     report = _report(scan, welded, denoised, options, card, stages)
-    return _result(scan, moved, denoised, {**report, "warnings": warnings})
+    return _result(scan, moved, denoised, {**report, **described(warnings)})
 
 
 def _choose_model(model: str | Path, reference: Path | None) -> tuple[PatchModel, dict[str, Any]]:
@@ -118,7 +119,7 @@ def _beyond_bound(output: Path, scan: Scan, max_shift: float) -> list[str]:
     if not n_beyond:
         return []
     excess = shift.max() - max_shift
-    return [f"the numbers of the file put {n_beyond:,} vertices beyond max_shift, by up to {excess:.3g}"]
+    return [warning("beyond_max_shift", vertices=n_beyond, excess=excess)]
 
 
 def _report(

@@ -24,6 +24,7 @@ from quadpatch.stages import Stages, failure_of, harmless
 from quadpatch.tasks.measures import corrected_patches, entities
 from quadpatch.tasks.result import TaskResult
 from quadpatch.types import TriangleMesh
+from quadpatch_rules.coded_warnings import described, warning
 
 SUFFIX = ".qpz"
 # Rounding of distances, relative.
@@ -89,11 +90,13 @@ def encode_file(
     report = {
         **describe_task("encode", scan, welded.mesh, card, options, stages),
         **measures,
-        "warnings": [
-            *_attribute_warnings(scan),
-            *describe_redundancy(welded.counts),
-            *_suggestion(len(encoding.data), draco, options),
-        ],
+        **described(
+            [
+                *_attribute_warnings(scan),
+                *describe_redundancy(welded.counts),
+                *_suggestion(len(encoding.data), draco, options),
+            ]
+        ),
     }
     changed = np.ones(len(decoded.mesh.triangles), np.bool_)
     return TaskResult(json_ready(report), welded.mesh, decoded.mesh, changed)
@@ -182,10 +185,7 @@ def _suggestion(n_bytes: int, draco: float | None, options: EncodeOptions) -> li
     """Suggest edge collapse and Draco where these would take fewer bytes."""
     if options.keep_connectivity or draco is None or draco >= n_bytes:
         return []
-    return [
-        f"edge collapse and Draco would take about {draco:,.0f} bytes in place of {n_bytes:,} at the same RMS error, "
-        "without a promised largest error"
-    ]
+    return [warning("larger_than_draco", draco=draco, bytes=n_bytes)]
 
 
 def _attribute_warnings(scan: Scan) -> list[str]:
@@ -198,4 +198,4 @@ def _attribute_warnings(scan: Scan) -> list[str]:
             found.extend(name for name in ("colours", "normals", "texture") if getattr(attributes, name) is not None)
 
     failure_of(look)
-    return [f"{', '.join(found)} are left out: an encoded mesh holds the shape alone"] if found else []
+    return [warning("shape_alone", names=", ".join(found))] if found else []

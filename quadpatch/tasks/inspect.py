@@ -9,6 +9,7 @@ from quadpatch.errors import ReadError
 from quadpatch.formats.limits import ReadLimits
 from quadpatch.repair import inspect_file
 from quadpatch.report import UNKNOWN_UNIT, json_ready
+from quadpatch_rules.coded_warnings import described
 
 
 def inspect_any(source: Path) -> dict[str, Any]:
@@ -68,7 +69,7 @@ def describe_encoded(source: Path) -> dict[str, Any]:
                 **_model(header),
             },
             "holes": [],
-            "warnings": [],
+            **described([]),
         }
     )
     return facts

@@ -20,6 +20,7 @@ from quadpatch.report import describe_redundancy, describe_task, json_ready
 from quadpatch.stages import Stages, harmless
 from quadpatch.tasks.result import TaskResult
 from quadpatch.types import TriangleMesh
+from quadpatch_rules.coded_warnings import described, warning
 
 ERROR = "reconstruction_error"
 OVERLAP = "overlap"
@@ -75,7 +76,7 @@ def reconstruct_file(
     report = {
         **describe_task("reconstruct", scan, welded.mesh, card, options, stages),
         **_measures(result),
-        "warnings": [*describe_redundancy(welded.counts), *losses, *_unseen(result)],
+        **described([*describe_redundancy(welded.counts), *losses, *_unseen(result)]),
     }
     after = TriangleMesh(result.vertices, welded.mesh.triangles)
     return TaskResult(json_ready(report), welded.mesh, after, np.asarray(result.seen[after.triangles].any(axis=1)))
@@ -125,4 +126,4 @@ def _measures(result: Reconstruction) -> dict[str, Any]:
 
 def _unseen(result: Reconstruction) -> list[str]:
     n_unseen = int((~result.seen).sum())
-    return [f"no patch sees {n_unseen:,} vertices: they keep their place"] if n_unseen else []
+    return [warning("vertices_unseen", vertices=n_unseen)] if n_unseen else []

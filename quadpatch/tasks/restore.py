@@ -22,6 +22,7 @@ from quadpatch.stages import Stages, harmless
 from quadpatch.tasks.missing_vertices import NAN, missing_vertices
 from quadpatch.tasks.result import TaskResult
 from quadpatch.types import BoolArray, FloatArray, TriangleMesh, Vertices
+from quadpatch_rules.coded_warnings import described, warning
 
 RESTORED = "restored"
 EXPECTED_ERROR = "expected_error"
@@ -90,12 +91,12 @@ def restore_file(  # noqa: PLR0913, PLR0917  the same arguments as every task's
         warnings = [*result.warnings, *write_moved(output, scan, moved)]
     left = int((is_missing & ~restored).sum())
     if left:
-        warnings.append(f"{left:,} missing vertices are connected to no measured one: they are left as they were")
+        warnings.append(warning("vertices_unreachable", left=left))
     report = {
         **describe_task("restore", scan, after, card, options, stages),
         "vertices": {"missing": int(is_missing.sum()), "restored": int(restored.sum()), "left": left},
         **_measures(result),
-        "warnings": warnings,
+        **described(warnings),
     }
     changed = np.asarray(result.restored[after.triangles].any(axis=1))
     return TaskResult(json_ready(report), TriangleMesh(after.vertices, after.triangles[~changed]), after, changed)

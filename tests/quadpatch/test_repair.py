@@ -104,7 +104,8 @@ def test_the_report_is_plain_json_and_its_counts_add_up(repaired: tuple[str, Pat
     assert json.loads(json.dumps(report, allow_nan=False)) == report
     assert set(report) == {
         *("schema", "task", "source", "length_unit", "model", "options"),
-        *("counts", "patches", "colours", "texture", "holes", "calibration", "stages", "warnings", "welded"),
+        *("counts", "patches", "colours", "texture", "holes", "calibration", "stages", "welded"),
+        *("warnings", "warning_details"),
     }
     assert report["schema"] == 1
     assert report["model"]["name"] == model

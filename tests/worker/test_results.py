@@ -14,7 +14,7 @@ from worker.engine.limits import EngineLimits
 from worker.engine.request import EngineRequest
 from worker.failures import Failure
 from worker.result_facts import facts_of_task
-from worker.results import Cost, drop_result, missing_pictures, note_lost_pictures, store_result
+from worker.results import Cost, drop_result, missing_pictures, note_deprecation, note_lost_pictures, store_result
 
 ATTEMPT = Attempt("job_01jd7z3v5qk8m2x4c6b8n0a9de", 2)
 REQUEST = EngineRequest("repair", "mesh/source.stl", EngineLimits(60.0, 1024), output="repaired.stl")
@@ -118,6 +118,15 @@ def test_refused_holes_are_a_warning(
     tmp_path: Path, store: ObjectStore, report: dict[str, Any], warnings: list[str]
 ) -> None:
     assert store_result(finished_folder(tmp_path, **report), REQUEST, ATTEMPT, store, COST).warnings == warnings
+
+
+def test_warnings_of_a_result_have_their_codes(tmp_path: Path, store: ObjectStore) -> None:
+    folder = finished_folder(tmp_path, counts={"found": 2, "refused": 2})
+    note_deprecation(folder, "plaster@3", "a better one is there")
+    result = store_result(folder, REQUEST, ATTEMPT, store, COST)
+    (detail,) = result.warning_details
+    assert (detail.code, detail.message) == ("deprecated_model_for", result.warnings[0])
+    assert detail.values == {"model": "plaster@3", "reason": "a better one is there"}
 
 
 @pytest.mark.parametrize("error", [StoreUnavailableError("away"), OSError(5, "I/O error")])

@@ -17,6 +17,7 @@ from quadpatch_client.schema.batches import (
     MeshFilter,
     NewBatch,
 )
+from quadpatch_client.schema.codes import WarningDetail
 from quadpatch_client.schema.conflicts import conflict_of
 from quadpatch_client.schema.jobs import (
     Event,
@@ -322,6 +323,7 @@ __all__ = [
     "UploadState",
     "Usage",
     "Version",
+    "WarningDetail",
     "Webhook",
     "WebhookChange",
     "WebhookEvent",

@@ -1,4 +1,4 @@
-"""Codes of what goes wrong with jobs, meshes and models after they were accepted.
+"""Codes of what goes wrong with jobs, meshes and models after they were accepted, and of warnings.
 
 Tested in `tests/test_documents.py`.
 """
@@ -6,7 +6,10 @@ Tested in `tests/test_documents.py`.
 from collections.abc import Iterable
 from typing import Annotated, Any
 
-from pydantic import WithJsonSchema
+from pydantic import Field, WithJsonSchema
+
+from quadpatch_client.schema.base import Response
+from quadpatch_rules.coded_warnings import OTHER, WARNINGS
 
 FAILURE_CODES = (
     # Of the method, about a file or an option.
@@ -63,4 +66,33 @@ FailureCode = Annotated[
             examples=["unreadable_mesh"],
         )
     ),
+]
+
+WarningCode = Annotated[
+    str,
+    WithJsonSchema(
+        open_enum(
+            (*WARNINGS, OTHER),
+            description="Stable code, meant for programs; versions to come may have others.",
+            examples=["copies_ignored"],
+        )
+    ),
+]
+
+
+class WarningDetail(Response):
+    """A warning for programs, such as one that says it in another language."""
+
+    code: WarningCode
+    message: str = Field(description="The sentence that stands in `warnings`.", examples=["3 faces are exact copies"])
+    values: dict[str, str | int | float] = Field(
+        default_factory=dict,
+        description="What stands in the sentence, by name; lengths are in mesh units.",
+        examples=[{"copies": 3}],
+    )
+
+
+WarningDetails = Annotated[
+    list[WarningDetail],
+    Field(description="The same with codes; empty in what earlier versions wrote."),
 ]

@@ -10,7 +10,7 @@ from typing_extensions import TypedDict
 
 from quadpatch_client.schema.acceptance import Accepted
 from quadpatch_client.schema.base import BatchId, JobId, MeshId, Moment, Response, Sha256
-from quadpatch_client.schema.codes import FailureCode
+from quadpatch_client.schema.codes import FailureCode, WarningDetails
 from quadpatch_client.schema.learning import TrainingResult
 from quadpatch_client.schema.meshes import Hole
 from quadpatch_client.schema.models import ResolvedModel
@@ -98,6 +98,7 @@ class JobResult(Response):
         examples=["0.2.0"],
     )
     warnings: list[str] = Field(default_factory=list, description="Sentences for people.")
+    warning_details: WarningDetails = Field(default_factory=list)
     files: list[ResultFile] = Field(default_factory=list, description="What can be fetched.")
 
     def file(self, role: str) -> ResultFile | None:

@@ -5,7 +5,7 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import Field, model_validator
 
 from quadpatch_client.schema.base import MeshId, Moment, Response
-from quadpatch_client.schema.codes import FailureCode
+from quadpatch_client.schema.codes import FailureCode, WarningDetails
 from quadpatch_client.schema.spec import Format
 from quadpatch_client.schema.states import MeshState
 from quadpatch_rules.hole_selection import HoleKind
@@ -121,6 +121,7 @@ class MeshFacts(Response):
     warnings: list[str] = Field(
         default_factory=list, description="What the file holds more than once, or the wrong way round, for people."
     )
+    warning_details: WarningDetails = Field(default_factory=list)
 
 
 class MeshProblem(Response):

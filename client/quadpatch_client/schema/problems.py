@@ -14,6 +14,9 @@ class FieldError(Response):
     pointer: str = Field(description="JSON pointer, or the name of a parameter.", examples=["/holes/max_diameter"])
     message: str = Field(description="A sentence for people.", examples=["Input should be greater than 0"])
     code: str = Field(description="Kind of the error.", examples=["greater_than"])
+    values: dict[str, str | int | float] | None = Field(
+        default=None, description="What the kind speaks of, by name, such as a bound.", examples=[{"gt": 0}]
+    )
 
 
 class ProblemQuota(Response):

@@ -11,6 +11,7 @@ from pydantic import Field
 
 from quadpatch_client.schema.acceptance import Acceptance
 from quadpatch_client.schema.base import EXAMPLE_JOB_ID, Response, Sha256
+from quadpatch_client.schema.codes import WarningDetails
 
 Vector = list[float]
 ReportSchema = Literal[1]
@@ -154,3 +155,4 @@ class TaskReport(Response):
     options: dict[str, Any] = Field(description="What the task was told, defaults written out.", examples=[{"seed": 0}])
     stages: list[StageTime] = Field(description="Seconds of each stage, in order.")
     warnings: list[str] = Field(description="Sentences for people.", examples=[[]])
+    warning_details: WarningDetails = Field(default_factory=list)

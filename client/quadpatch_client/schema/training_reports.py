@@ -8,6 +8,7 @@ from typing import Literal
 from pydantic import Field
 
 from quadpatch_client.schema.base import Response
+from quadpatch_client.schema.codes import WarningDetails
 from quadpatch_client.schema.learning import JudgedMesh, TrainedKind
 from quadpatch_client.schema.report_parts import ReportSchema, StageTime
 
@@ -32,3 +33,4 @@ class TrainReport(Response):
     verdict: str = Field(description="A sentence for people.", examples=["worse than the plain fill on 3 of 4 meshes"])
     is_better: bool = Field(description="Whether it is better than the plain fill, all in all.")
     warnings: list[str] = Field(description="Sentences for people.", examples=[[]])
+    warning_details: WarningDetails = Field(default_factory=list)

@@ -18,6 +18,7 @@ from quadpatch_client.schema.base import (
     Response,
     SentMoment,
 )
+from quadpatch_client.schema.codes import WarningDetails
 from quadpatch_client.schema.jobs import Job, JobError
 from quadpatch_client.schema.learning import (
     MOST_MESHES,
@@ -149,6 +150,7 @@ class Training(Response):
     label: str | None = Field(default=None, description="A name for people.")
     error: JobError | None = Field(default=None, description="Set once the state is `failed`.")
     warnings: list[str] = Field(default_factory=list, description="Sentences for people.")
+    warning_details: WarningDetails = Field(default_factory=list)
     result: TrainingResult | None = Field(default=None, description="Set once it succeeded.")
     links: TrainingLinks = Field(description="Paths on this service.")
 
@@ -164,6 +166,7 @@ class Training(Response):
                 "train": job.spec.train,
                 "label": job.spec.label,
                 "warnings": [] if job.result is None else job.result.warnings,
+                "warning_details": [] if job.result is None else job.result.warning_details,
                 "result": result,
                 "links": TrainingLinks(
                     self=path,

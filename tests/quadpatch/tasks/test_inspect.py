@@ -39,6 +39,7 @@ def test_an_encoded_file_has_the_facts_of_its_header_whatever_its_name(tmp_path:
         "encoded": {"max_error": 0.25, "keeps_connectivity": False, "model": None, "model_sha256": None},
         "holes": [],
         "warnings": [],
+        "warning_details": [],
     }
 
 
