@@ -26,7 +26,9 @@ def test_a_scan_is_dropped_repaired_and_its_result_saved(visit: Visit, api: Serv
     expect(page).to_have_url(re.compile("#/meshes/"))
     expect(page.get_by_role("heading", level=1)).to_have_text("dropped.ply")
     expect(page.locator("nav [aria-current]")).to_have_text("Scans")
-    expect(page.get_by_role("status").filter(has_text="4 of 5 holes would be filled.")).to_be_visible()
+    expect(
+        page.get_by_role("status").filter(has_text="4 of 4 holes would be filled. Besides: outer border left open.")
+    ).to_be_visible()
 
     page.get_by_label("What to do with hole 2").select_option("leave open")
     page.get_by_label("What to do with hole 3").select_option("flat")
@@ -153,6 +155,8 @@ def test_errors_are_told_in_words(visit: Visit) -> None:
     ("address", "sentence"),
     [
         ("nonsense", "There is no such page."),
+        ("%", "There is no such page."),
+        ("jobs/%E0%A4%A", "There is no such page."),
         ("scans/nonsense", "There is no such page."),
         ("jobs/job_nope", "There is no such job, or no longer."),
         ("batches/bat_nope", "There is no such batch, or no longer."),
@@ -226,8 +230,12 @@ def test_the_first_key_may_administer_keys(
         page.get_by_label("Name").fill("office")
         page.get_by_role("button", name="Make key").click()
         secret = page.locator(".note code").inner_text()
+        expect(page.locator(".note")).to_contain_text("From now on every request needs a key")
         wait_until(lambda: page.request.get(f"{stack.url}/v1/limits").status == 401)
+        # This page goes on with the new key, until it signs out.
         page.reload()
+        expect(page.get_by_role("row").filter(has_text="office")).to_be_visible()
+        page.get_by_role("button", name="Sign out").click()
         page.get_by_label("Key").fill(secret)
         page.get_by_role("button", name="Sign in").click()
         visit.go("keys")
@@ -241,7 +249,7 @@ def test_a_repair_says_what_came_out_and_marks_holes_that_miss_the_limits(visit:
     job = api.repair(mesh, acceptance={"max_expected_error": 1e-12, "otherwise": "warn"})
     page = visit.page
     visit.go(f"jobs/{job}")
-    expect(page.get_by_text("4 of 5 holes filled, 1 left open (outer border)")).to_be_visible()
+    expect(page.get_by_text("4 of 4 holes filled; outer border left open")).to_be_visible()
     report = api.get(f"/v1/jobs/{job}/report")
     unmet = {str(hole["id"]) for hole in report["acceptance"]["unmet"]}
     marked = page.locator("tr[data-hole]").filter(has_text="misses the limits of the rule")
@@ -278,7 +286,7 @@ def test_everything_can_be_done_by_keyboard(visit: Visit, api: Service) -> None:
     mesh = api.upload(relief(28), "keyboard.ply")
     page = visit.page
     visit.go(f"meshes/{mesh}")
-    expect(page.get_by_role("status").filter(has_text="4 of 5 holes")).to_be_visible()
+    expect(page.get_by_role("status").filter(has_text="4 of 4 holes")).to_be_visible()
     page.get_by_role("button", name="Fly to hole 0").focus()
     for _ in range(3):
         page.keyboard.press("n")
@@ -321,6 +329,45 @@ def test_the_page_speaks_german(chromium: Browser, local_stack: RunningStack) ->
         expect(page.get_by_role("heading", name="Jobs")).to_be_visible()
         page.reload()
         expect(page.get_by_role("heading", name="Jobs")).to_be_visible()
+
+
+def test_what_the_service_says_is_told_in_german(chromium: Browser, local_stack: RunningStack, api: Service) -> None:
+    vertices, triangles = punched_relief(33)
+    mesh = api.upload(ply_bytes(vertices, np.vstack([triangles, triangles[:2]])), "doppelt.ply")
+    job = api.repair(mesh, acceptance={"max_expected_error": 1e-12, "otherwise": "warn"})
+    failed = api.repair(mesh, acceptance={"max_expected_error": 1e-12, "otherwise": "fail"})
+    broken = api.upload(b"Sehr geehrte Damen und Herren", "brief.ply")
+    with visiting(chromium, local_stack.url, locale="de-DE") as visit:
+        page, main = visit.page, visit.page.locator("main")
+
+        def sees(path: str, *sentences: str) -> None:
+            visit.go(path)
+            for sentence in sentences:
+                expect(main).to_contain_text(sentence)
+            expect(main.locator("[lang=en]:visible")).to_have_count(0)
+
+        copies = "2 Flächen sind genaue Kopien anderer"
+        sees(f"meshes/{mesh}", copies)
+        sees(
+            f"jobs/{job}",
+            copies,
+            "4 von 4 Löchern gefüllt; äußerer Rand offen gelassen",
+            "halten die Grenzen nicht ein",
+        )
+        sees(f"jobs/{failed}", "Manche Löcher halten die Grenzen der Regel nicht ein.")
+        sees(f"meshes/{broken}", "Die Datei ist beschädigt")
+        sees("jobs/job_nope", "Diesen Auftrag gibt es nicht")
+        # What it says in English is there for who opens it.
+        visit.go(f"jobs/{job}")
+        page.get_by_text("Wortlaut des Dienstes").first.click()
+        expect(main.locator("[lang=en]:visible").first).to_have_text(re.compile("exact copies|miss"))
+        visit.go("rules")
+        page.get_by_label("Name").fill("teile")
+        page.get_by_label("Weitestes Loch").fill("-1")
+        page.get_by_role("button", name="Speichern").click()
+        expect(page.get_by_role("alert")).to_contain_text("Ein Wert ist nicht möglich.")
+        expect(page.get_by_role("alert")).to_contain_text("muss größer sein als 0")
+        expect(main.locator("[lang=en]:visible")).to_have_count(0)
 
 
 def test_where_keys_are_set_the_page_asks_for_one(

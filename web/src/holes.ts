@@ -27,6 +27,14 @@ export function choicesOf(rules: readonly HoleRule[]): Choices {
   return new Map(rules.flatMap((rule) => (rule.ids ?? []).map((id): [number, Action] => [id, rule.action])));
 }
 
+/** Reasons that a loop is left open for what it is: the border of an open scan, or an open end, is no damage. */
+const OUTER = new Set(["border", "open_end", "largest"]);
+
+/** Whether a loop that no fill was tried for is no hole: an outer border, whatever rule leaves it open, or an open end. */
+export function isOuter(kind: string | undefined, why: string | null | undefined): boolean {
+  return kind === "border" || OUTER.has(why ?? "");
+}
+
 export function isLeftOpen({ verdict }: HoleReport): boolean {
   return verdict === "skipped" || verdict === "refused";
 }

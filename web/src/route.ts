@@ -9,7 +9,16 @@ export interface Route {
 
 export function currentRoute(): Route {
   const [path = "", query = ""] = location.hash.replace(/^#\/?/, "").split("?");
-  return { parts: path.split("/").filter(Boolean).map(decodeURIComponent), query: new URLSearchParams(query) };
+  return { parts: decoded(path), query: new URLSearchParams(query) };
+}
+
+/** Parts of a path. What is not well coded, such as `%`, is one part that names no page. */
+function decoded(path: string): string[] {
+  try {
+    return path.split("/").filter(Boolean).map(decodeURIComponent);
+  } catch {
+    return [path];
+  }
 }
 
 export function useRoute(): Route {

@@ -35,3 +35,4 @@ export type RuleContent = Schemas["RuleContent"];
 export type RulePage = Schemas["RulePage"];
 export type Scope = Schemas["Scope"];
 export type Version = Schemas["Version"];
+export type WarningDetail = Schemas["WarningDetail"];

@@ -9,7 +9,7 @@ import { type HoleRow, isLeftOpen } from "../holes";
 import { DropZone } from "../parts/dropzone";
 import { ActionButton, DownloadButton, Facts } from "../parts/forms";
 import { HoleList } from "../parts/hole_list";
-import { FailureNote, Loading, Note, ProblemNote } from "../parts/notes";
+import { FailureNote, Loading, ProblemNote, WarningNotes } from "../parts/notes";
 import { Outcome } from "../parts/outcome";
 import { Progress } from "../parts/progress";
 import { go } from "../route";
@@ -32,7 +32,7 @@ export function JobPage({ id }: { id: string }) {
       {!hasEnded(job) && <Progress job={job} />}
       {job.error && <FailureNote {...job.error} />}
       {report.value && <Outcome holes={report.value.holes} />}
-      {job.result?.warnings?.map((warning) => <Note key={warning}><span lang="en">{warning}</span></Note>)}
+      <WarningNotes details={job.result?.warning_details} warnings={job.result?.warnings} />
       {hasResult(job) && <Downloads job={job} />}
       <ProblemNote problem={report.problem} />
       {isFill && <Repaired job={job} report={report.value} />}

@@ -5,7 +5,7 @@ import type { Key, KeyList, KeyWithSecret, NewKey, Scope } from "../api/types";
 import { useAction, useAnswer, useTitle } from "../hooks";
 import { ActionButton, Check, Field, Table } from "../parts/forms";
 import { Loading, Note, ProblemNote } from "../parts/notes";
-import { key } from "../session";
+import { keepKey, key } from "../session";
 import { time } from "../text/format";
 import { t, tCode } from "../text/text";
 
@@ -15,10 +15,17 @@ const USUAL_SCOPES: Scope[] = ["read", "upload", "repair"];
 export function KeysPage() {
   const keys = useAnswer<KeyList>("/v1/keys");
   const [made, setMade] = useState<KeyWithSecret | null>(null);
+  const [madeFirst, setMadeFirst] = useState(false);
   useTitle(t("section_keys"));
-  const show = (key: KeyWithSecret | null) => (setMade(key), keys.reload());
   // Keys of the settings are not listed: who signed in has one of them.
   const isFirst = keys.value?.items.length === 0 && key() === null;
+  const show = (made: KeyWithSecret | null) => {
+    setMade(made);
+    setMadeFirst(isFirst && made !== null);
+    // The service asks for a key from now on, this page too.
+    if (isFirst && made !== null) keepKey(made.key);
+    keys.reload();
+  };
   return (
     <>
       <h1>{t("section_keys")}</h1>
@@ -29,6 +36,7 @@ export function KeysPage() {
         <Note>
           <p role="status">{t("key_made", { name: made.name })}</p>
           <p><code>{made.key}</code></p>
+          {madeFirst && <p>{t("first_key_made")}</p>}
         </Note>
       )}
       {keys.value && (

@@ -8,7 +8,7 @@ import { useAnswer, useTitle } from "../hooks";
 import { type Action, type Choices, choicesOf, type HoleRow, withChoice } from "../holes";
 import { ActionButton, DownloadButton, Facts } from "../parts/forms";
 import { HoleList } from "../parts/hole_list";
-import { FailureNote, Loading, Note, ProblemNote } from "../parts/notes";
+import { FailureNote, Loading, ProblemNote, WarningNotes } from "../parts/notes";
 import { draftOf, draftSpec, type Draft, EMPTY_DRAFT, RepairForm } from "../parts/repair_form";
 import { go, useRoute } from "../route";
 import { bytes, count, length, unitName } from "../text/format";
@@ -83,7 +83,7 @@ function MeshFacts({ mesh, unit }: { mesh: Mesh; unit: string | null }) {
     <section>
       <h2>{t("about_scan")}</h2>
       <Facts facts={lines} />
-      {facts?.warnings?.map((warning) => <Note key={warning}><span lang="en">{warning}</span></Note>)}
+      <WarningNotes details={facts?.warning_details} warnings={facts?.warnings} />
       <p class="actions">
         <DownloadButton path={`/v1/meshes/${mesh.id}/content`} label={t("download_scan")} />
         <a href={`#/jobs?mesh_id=${mesh.id}`}>{t("jobs_of_scan")}</a>

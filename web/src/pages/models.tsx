@@ -46,7 +46,7 @@ function Version({ version }: { version: ModelVersion }) {
   if (card.n_atoms) facts.push([t("atoms"), count(card.n_atoms)]);
   if (card.patch_resolution) facts.push([t("patch"), `${card.patch_resolution} × ${card.patch_resolution}`]);
   if (card.licence) facts.push([t("licence"), card.licence]);
-  const metrics = Object.entries(card.metrics ?? {}).map(([name, value]): [string, string] => [name.replaceAll("_", " "), number(value)]);
+  const metrics = Object.entries(card.metrics ?? {}).map(([name, value]): [string, string] => [name, number(value)]);
   return (
     <section class="card">
       <h2>{version.name}@{version.version}</h2>
@@ -56,7 +56,7 @@ function Version({ version }: { version: ModelVersion }) {
         <Facts facts={facts} />
         <Picture path={`${path}/picture`} label={t(version.kind === "dictionary" ? "picture_atoms" : "picture_filters", { name: version.name })} />
       </div>
-      {metrics.length > 0 && <details><summary>{t("metrics")}</summary><div lang="en"><Facts facts={metrics} /></div></details>}
+      {metrics.length > 0 && <details><summary>{t("metrics")}</summary><p>{t("metrics_why")}</p><Facts facts={metrics} /></details>}
       <p class="sha">sha256 <code>{version.sha256}</code></p>
       <DownloadButton path={`${path}/artifact`} label={t("download")} />
     </section>

@@ -1,7 +1,8 @@
 /** Errors and notes in words. */
 import type { ComponentChildren } from "preact";
 import type { Problem } from "../api/problem";
-import { hasText, t } from "../text/text";
+import type { WarningDetail } from "../api/types";
+import { hasText, t, tService, type Values } from "../text/text";
 
 /** Codes whose sentence says all: what the service says besides would only repeat it in English. */
 const SAID = new Set([
@@ -12,29 +13,62 @@ const SAID = new Set([
 /** What went wrong: a sentence on the code in the reader's language, and what the service says of this case. */
 export function ProblemNote({ problem }: { problem: Problem | null }) {
   if (problem === null) return null;
-  const key = `problem_${problem.code}`;
-  const sentence = hasText(key) ? t(key) : t("problem_other");
   const fields = problem.document?.errors ?? [];
   return (
     <div class="note error" role="alert">
-      <p><strong>{sentence}</strong></p>
-      {problem.detail && !SAID.has(problem.code) && <p>{t("service_says")}: <span lang="en">{problem.detail}</span></p>}
+      <Sentence group="problem" code={problem.code} message={SAID.has(problem.code) ? "" : problem.detail} />
       {fields.length > 0 && (
-        <ul lang="en">{fields.map((field) => <li key={field.pointer}>{field.pointer}: {field.message}</li>)}</ul>
+        <ul>
+          {fields.map(({ pointer, code, message, values }) => (
+            <li key={pointer}><code>{pointer}</code>: {tService("field", code, values ?? {}) ?? <span lang="en">{message}</span>}</li>
+          ))}
+        </ul>
       )}
     </div>
   );
 }
 
+/** A code in the reader's language, and what the service says of this case. */
+function Sentence({ group, code, message }: { group: "problem" | "failure"; code: string; message: string }) {
+  const key = `${group}_${code}`;
+  const own = hasText(key) ? t(key) : tService(group, code);
+  return (
+    <>
+      <p><strong>{own ?? t(`${group}_other`)}</strong></p>
+      <Wording group={group} code={code} message={message} />
+    </>
+  );
+}
+
+/** The service's own words: open where they say what nothing else does, else to be opened by who reads English. */
+function Wording({ group, code, message, values }: { group: "problem" | "failure" | "warning"; code: string; message: string; values?: Values }) {
+  if (!message) return null;
+  const words = <span lang="en">{message}</span>;
+  if (tService(group, code, values) === null) return <p>{t("service_says")}: {words}</p>;
+  return <details><summary>{t("wording")}</summary><p>{words}</p></details>;
+}
+
+/** Warnings in the reader's language; those of earlier versions have no codes, and stand as they are. */
+export function WarningNotes({ details = [], warnings = [] }: { details?: WarningDetail[] | undefined; warnings?: string[] | undefined }) {
+  const coded = details.length > 0 ? details : warnings.map((message) => ({ code: "other", message, values: {} }));
+  return (
+    <>
+      {coded.map(({ code, message, values = {} }) => {
+        const own = tService("warning", code, values);
+        return (
+          <Note key={message}>
+            {own === null ? <span lang="en">{message}</span> : <p>{own}</p>}
+            {own !== null && <Wording group="warning" code={code} message={message} values={values} />}
+          </Note>
+        );
+      })}
+    </>
+  );
+}
+
 /** A mesh or a job that failed: its code in words. */
 export function FailureNote({ code, message }: { code: string; message: string }) {
-  const key = `failure_${code}`;
-  return (
-    <div class="note error" role="alert">
-      <p><strong>{hasText(key) ? t(key) : t("failure_other")}</strong></p>
-      <p>{t("service_says")}: <span lang="en">{message}</span></p>
-    </div>
-  );
+  return <div class="note error" role="alert"><Sentence group="failure" code={code} message={message} /></div>;
 }
 
 export function Note({ children }: { children: ComponentChildren }) {

@@ -2,13 +2,14 @@
 import { post } from "../api/client";
 import type { Job, JobSpec, Mesh, Plan, RulePage } from "../api/types";
 import { useAction, useAnswer } from "../hooks";
-import { type Choices, rulesOf } from "../holes";
+import { type Choices, isOuter, rulesOf } from "../holes";
 import { go } from "../route";
 import { count, unitName } from "../text/format";
 import { t } from "../text/text";
 import { EffortChoice, type Effort } from "./effort";
 import { Check, Choice, Field } from "./forms";
 import { ProblemNote } from "./notes";
+import { outerInWords, outerName } from "./outcome";
 
 type Unit = NonNullable<JobSpec["length_unit"]>;
 const UNITS: readonly Unit[] = ["micron", "millimeter", "centimeter", "meter", "inch", "foot"];
@@ -101,9 +102,16 @@ export function RepairForm(props: {
         <Field label={t("label")} value={draft.label} onInput={(label) => change({ label })} />
         <Check label={t("with_report")} checked={draft.hasReport} onChange={(hasReport) => change({ hasReport })} />
       </details>
-      {plan && <p role="status">{t("plan_counts", { n: count(plan.selected), of: count(plan.holes.length) })}</p>}
+      {plan && <p role="status">{planInWords(plan)}</p>}
       <p class="actions"><button class="primary" disabled={action.isBusy}>{t("start_repair")}</button></p>
       <ProblemNote problem={action.problem} />
     </form>
   );
+}
+
+function planInWords({ holes, selected }: Plan): string {
+  const outer = holes.filter((hole) => !hole.selected && isOuter(hole.kind, hole.reason));
+  const counts = t("plan_counts", { n: count(selected), of: count(holes.length - outer.length) });
+  if (outer.length === 0) return counts;
+  return `${counts} ${t("plan_outer", { outer: outerInWords(outer.map(({ kind, reason }) => outerName(kind, reason))) })}`;
 }

@@ -1,5 +1,6 @@
 /** Sentences of the page in the language of the reader. */
 import { de } from "./de";
+import { deService } from "./de_service";
 import { en } from "./en";
 
 export type TextKey = keyof typeof en;
@@ -27,9 +28,30 @@ export function onLanguageChange(listener: () => void): () => void {
   return () => listeners.delete(listener);
 }
 
+/** Values in a sentence, by their names there. */
+export type Values = Record<string, string | number>;
+
 /** A sentence; `{name}` in it stands for what `values` has under that name. */
-export function t(key: TextKey, values: Record<string, string | number> = {}): string {
-  return MESSAGES[current][key].replace(/\{(\w+)\}/g, (_, name: string) => String(values[name] ?? `{${name}}`));
+export function t(key: TextKey, values: Values = {}): string {
+  return filledIn(MESSAGES[current][key], values);
+}
+
+/** What the service says in English under a code, in the reader's language; null where it has to be shown as it is. */
+export function tService(group: "warning" | "failure" | "problem" | "field", code: string, values: Values = {}): string | null {
+  const key = `${group}_${code}`;
+  if (current === "en") return null;
+  const sentence = hasText(key) ? MESSAGES[current][key] : deService[key];
+  return sentence === undefined ? null : filledIn(sentence, values);
+}
+
+function filledIn(sentence: string, values: Values): string {
+  return sentence.replace(/\{(\w+)\}/g, (_, name: string) => shown(values[name] ?? `{${name}}`));
+}
+
+function shown(value: string | number): string {
+  if (typeof value === "string") return value;
+  const digits = Number.isInteger(value) ? {} : { maximumSignificantDigits: 3 };
+  return new Intl.NumberFormat(current, digits).format(value);
 }
 
 /** The sentence of a code of the service, such as a state or a problem; the code where there is none. */
