@@ -70,7 +70,8 @@ _SHARES: Mapping[Task, Mapping[str, int]] = {
         "inpaint": 13,
         "reconstruct": 2,
         "write": 2,
-        "preview": 3,
+        "preview": 2,
+        "html_report": 1,
     },
     "denoise": {
         "read": 2,
@@ -80,7 +81,8 @@ _SHARES: Mapping[Task, Mapping[str, int]] = {
         "reconstruct": 16,
         "judge": 2,
         "write": 2,
-        "preview": 3,
+        "preview": 2,
+        "html_report": 1,
     },
     "encode": {
         "read": 4,
@@ -89,9 +91,10 @@ _SHARES: Mapping[Task, Mapping[str, int]] = {
         "reconstruct": 30,
         "judge": 12,
         "write": 4,
-        "preview": 5,
+        "preview": 3,
+        "html_report": 2,
     },
-    "decode": {"read": 30, "reconstruct": 50, "write": 15, "preview": 5},
+    "decode": {"read": 30, "reconstruct": 50, "write": 13, "preview": 4, "html_report": 3},
     "train": {"read": 8, "learn": 55, "judge": 35, "write": 2},
 }
 _MOST = 99.0

@@ -11,6 +11,7 @@ from quadpatch_client.options import (
     DEFAULT_URL,
     AgainOption,
     FormatOption,
+    HtmlOption,
     JsonOption,
     KeyOption,
     LabelOption,
@@ -66,6 +67,7 @@ def restore(  # noqa: PLR0913 - one parameter per option of the command line
     format_: FormatOption = None,
     report: ReportOption = None,
     preview: PreviewOption = None,
+    html: HtmlOption = None,
     overwrite: OverwriteOption = False,
     again: AgainOption = False,
     timeout: TimeoutOption = None,
@@ -79,7 +81,7 @@ def restore(  # noqa: PLR0913 - one parameter per option of the command line
     def task() -> Task:
         options = {"missing": read_missing(missing), "base": base}
         rest = {"task": "restore", "restore": options, "seed": seed, "label": label}
-        rest["output"] = _output(output, format_, preview)
+        rest["output"] = _output(output, format_, preview, html)
         return Task(
             mesh,
             output,
@@ -87,6 +89,7 @@ def restore(  # noqa: PLR0913 - one parameter per option of the command line
             rest=rest,
             report=report,
             preview=preview,
+            html=html,
             timeout_s=timeout,
             may_overwrite=overwrite,
             again=again,
@@ -127,6 +130,7 @@ def denoise(  # noqa: PLR0913 - one parameter per option of the command line
     format_: FormatOption = None,
     report: ReportOption = None,
     preview: PreviewOption = None,
+    html: HtmlOption = None,
     overwrite: OverwriteOption = False,
     again: AgainOption = False,
     timeout: TimeoutOption = None,
@@ -142,7 +146,7 @@ def denoise(  # noqa: PLR0913 - one parameter per option of the command line
         given = {"noise": noise, "max_shift": max_shift, "region": box}
         options = {name: value for name, value in given.items() if value is not None}
         rest = {"task": "denoise", "denoise": options, "seed": seed, "label": label}
-        rest["output"] = _output(output, format_, preview)
+        rest["output"] = _output(output, format_, preview, html)
         return Task(
             mesh,
             output,
@@ -150,6 +154,7 @@ def denoise(  # noqa: PLR0913 - one parameter per option of the command line
             rest=rest,
             report=report,
             preview=preview,
+            html=html,
             timeout_s=timeout,
             may_overwrite=overwrite,
             again=again,
@@ -174,6 +179,7 @@ def encode(  # noqa: PLR0913 - one parameter per option of the command line
     label: LabelOption = None,
     report: ReportOption = None,
     preview: PreviewOption = None,
+    html: HtmlOption = None,
     again: AgainOption = False,
     timeout: TimeoutOption = None,
     url: UrlOption = DEFAULT_URL,
@@ -188,7 +194,7 @@ def encode(  # noqa: PLR0913 - one parameter per option of the command line
             raise UsageError(f"{output} does not end in {_SUFFIX}, which is what encoding writes")
         options = {"max_error": max_error, "keep_connectivity": keep_connectivity}
         rest = {"task": "encode", "encode": options, "seed": seed, "label": label}
-        rest["output"] = {"preview": preview is not None}
+        rest["output"] = {"preview": preview is not None, "html_report": html is not None}
         return Task(
             mesh,
             output,
@@ -196,6 +202,7 @@ def encode(  # noqa: PLR0913 - one parameter per option of the command line
             rest=rest,
             report=report,
             preview=preview,
+            html=html,
             timeout_s=timeout,
             again=again,
         )
@@ -212,6 +219,7 @@ def decode(  # noqa: PLR0913 - one parameter per option of the command line
     format_: FormatOption = None,
     report: ReportOption = None,
     preview: PreviewOption = None,
+    html: HtmlOption = None,
     again: AgainOption = False,
     timeout: TimeoutOption = None,
     url: UrlOption = DEFAULT_URL,
@@ -222,7 +230,7 @@ def decode(  # noqa: PLR0913 - one parameter per option of the command line
     """Bring back the surface of a .qpz file, with the model that it was encoded with."""
 
     def task() -> Task:
-        rest = {"task": "decode", "label": label, "output": _output(output, format_, preview)}
+        rest = {"task": "decode", "label": label, "output": _output(output, format_, preview, html)}
         return Task(
             mesh,
             output,
@@ -230,6 +238,7 @@ def decode(  # noqa: PLR0913 - one parameter per option of the command line
             rest=rest,
             report=report,
             preview=preview,
+            html=html,
             timeout_s=timeout,
             again=again,
         )
@@ -242,5 +251,9 @@ def _method(model: str | None) -> MethodChoice:
     return MethodChoice("smooth") if model == "smooth" else MethodChoice(model=model)
 
 
-def _output(output: Path, format_: Any, preview: Path | None) -> dict[str, Any]:
-    return {"format": format_ or format_of(output), "preview": preview is not None}
+def _output(output: Path, format_: Any, preview: Path | None, html: Path | None) -> dict[str, Any]:
+    return {
+        "format": format_ or format_of(output),
+        "preview": preview is not None,
+        "html_report": html is not None,
+    }

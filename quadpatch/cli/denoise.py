@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from quadpatch.cli.flags import (
+    Html,
     Output,
     Overlap,
     Overwrite,
@@ -65,6 +66,7 @@ def denoise(  # noqa: PLR0913, PLR0917  one argument per flag
     ] = "self",
     report: Report = None,
     preview: Preview = None,
+    html: Html = None,
     overwrite: Overwrite = False,
     patch_length: PatchLength = None,
     resolution: Resolution = None,
@@ -95,7 +97,7 @@ def denoise(  # noqa: PLR0913, PLR0917  one argument per flag
         return denoise_file(source, output, model, DenoiseOptions.from_dict(values), progress, reference)
 
     inputs = [reference] if reference else []
-    run_task(Files(source, output, report, preview, overwrite, inputs), task, denoised, quiet)
+    run_task(Files(source, output, report, preview, overwrite, inputs, html), task, denoised, quiet)
 
 
 def denoised(report: dict[str, Any], unit: str) -> str:

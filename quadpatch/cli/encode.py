@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from quadpatch.cli.flags import Model, Output, PatchLength, Preview, Quiet, Report, Resolution, Seed, Source, Unit
+from quadpatch.cli.flags import Html, Model, Output, PatchLength, Preview, Quiet, Report, Resolution, Seed, Source, Unit
 from quadpatch.cli.tasks import Files, given, run_task, vertices
 from quadpatch.progress import Progress
 
@@ -28,6 +28,7 @@ def encode(  # noqa: PLR0913, PLR0917  one argument per flag
     model: Model = "self",
     report: Report = None,
     preview: Preview = None,
+    html: Html = None,
     patch_length: PatchLength = None,
     resolution: Resolution = None,
     length_unit: Unit = None,
@@ -50,10 +51,10 @@ def encode(  # noqa: PLR0913, PLR0917  one argument per flag
         )
         return encode_file(source, output, model, EncodeOptions.from_dict(values), progress)
 
-    run_task(Files(source, output, report, preview), task, encoded, quiet)
+    run_task(Files(source, output, report, preview, html=html), task, encoded, quiet)
 
 
-def decode(
+def decode(  # noqa: PLR0913, PLR0917  one argument per flag
     source: Annotated[Path, typer.Argument(metavar="IN.qpz", help="An encoded mesh.")],
     output: Output,
     model: Annotated[
@@ -62,6 +63,7 @@ def decode(
     ] = None,
     report: Report = None,
     preview: Preview = None,
+    html: Html = None,
     quiet: Quiet = False,
 ) -> None:
     """Bring back the surface of a .qpz file."""
@@ -71,7 +73,7 @@ def decode(
 
         return decode_file(source, output, model, progress)
 
-    run_task(Files(source, output, report, preview), task, decoded, quiet)
+    run_task(Files(source, output, report, preview, html=html), task, decoded, quiet)
 
 
 def encoded(report: dict[str, Any], unit: str) -> str:

@@ -9,6 +9,7 @@ import typer
 
 from quadpatch.cli.calibration_file import read_calibrations, write_calibrations
 from quadpatch.cli.flags import (
+    Html,
     Output,
     Overlap,
     Overwrite,
@@ -69,10 +70,7 @@ def fill(  # noqa: PLR0913, PLR0917  one argument per flag
         Path | None,
         typer.Option(metavar="DIR", help="Draw every chosen hole before and after, as hole_<id>.png in this folder."),
     ] = None,
-    html: Annotated[
-        Path | None,
-        typer.Option(metavar="FILE", help="Write the report as an HTML page that stands alone; -: standard output."),
-    ] = None,
+    html: Html = None,
     tint: Annotated[
         Tint,
         typer.Option(

@@ -17,6 +17,10 @@ Output = Annotated[
 ]
 Report = Annotated[Path | None, typer.Option(help="Write the report as JSON; -: standard output.")]
 Preview = Annotated[Path | None, typer.Option("--preview", "--picture", help="Write a before/after picture as PNG.")]
+Html = Annotated[
+    Path | None,
+    typer.Option(metavar="FILE", help="Write the report as an HTML page that stands alone; -: standard output."),
+]
 Overwrite = Annotated[bool, typer.Option("--overwrite", help="Let OUT take the place of IN.")]
 PatchLength = Annotated[float | None, typer.Option(help="Side of a patch (mesh units).")]
 Resolution = Annotated[int | None, typer.Option(help="Bins along one side of a patch.")]

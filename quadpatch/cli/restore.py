@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import typer
 
 from quadpatch.cli.flags import (
+    Html,
     Output,
     Overlap,
     Overwrite,
@@ -61,6 +62,7 @@ def restore(  # noqa: PLR0913, PLR0917  one argument per flag
     ] = "self",
     report: Report = None,
     preview: Preview = None,
+    html: Html = None,
     overwrite: Overwrite = False,
     patch_length: PatchLength = None,
     resolution: Resolution = None,
@@ -82,7 +84,7 @@ def restore(  # noqa: PLR0913, PLR0917  one argument per flag
         return restore_file(source, output, which, model, options, progress, coarse=coarse)
 
     inputs = [path for path in (which, coarse) if isinstance(path, Path)]
-    run_task(Files(source, output, report, preview, overwrite, inputs), task, restored, quiet)
+    run_task(Files(source, output, report, preview, overwrite, inputs, html), task, restored, quiet)
 
 
 def read_missing(text: str) -> str | Path:

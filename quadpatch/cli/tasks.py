@@ -16,6 +16,7 @@ from quadpatch.formats.output_files import check_outputs, is_stream
 from quadpatch.progress import Progress
 
 if TYPE_CHECKING:
+    from quadpatch.html_report.provenance import Start
     from quadpatch.tasks.result import TaskResult
 
 
@@ -31,6 +32,8 @@ class Files:
         Whether the output may take the place of the source.
     inputs : iterable of Path
         What else is read.
+    html : Path or None
+        Where the report goes as a page.
     """
 
     source: Path
@@ -39,6 +42,7 @@ class Files:
     preview: Path | None
     may_overwrite: bool = False
     inputs: Iterable[Path] = ()
+    html: Path | None = None
 
 
 def run_task(
@@ -59,10 +63,11 @@ def run_task(
     quiet : bool
     """
     with clear_errors(), progress_bars(quiet) as progress:
-        others = [path for path in (files.report, files.preview) if path]
+        others = [path for path in (files.report, files.preview, files.html) if path]
         check_outputs(files.source, files.output, others, may_overwrite=files.may_overwrite, inputs=files.inputs)
         logging.getLogger("quadpatch").addHandler(logging.NullHandler())  # what people read is in the warnings
         prepare_libraries()
+        start = _note_start(files.source) if files.html else None
         result = task(progress)
         if files.report and not is_stream(files.report):  # drawing may take the process down
             write_report(result.report, files.report)
@@ -70,9 +75,24 @@ def run_task(
             from quadpatch.preview.drawing import add_comparison  # noqa: PLC0415  slow to load
 
             add_comparison(result, files.preview)
+        if files.html and start:
+            _write_page(result, files, files.html, start)
         write_report(result.report, files.report)
     if not quiet:
         say(f"{sentence(result.report, result.report['length_unit'])}. {closing_words(result.report)}")
+
+
+def _note_start(source: Path) -> "Start":
+    """Note which bytes are worked on, and when: the output may overwrite them."""
+    from quadpatch.html_report.provenance import note_start  # noqa: PLC0415  slow to load
+
+    return note_start(source)
+
+
+def _write_page(result: "TaskResult", files: Files, page: Path, start: "Start") -> None:
+    from quadpatch.html_report.writing import PageOrder, add_task_report  # noqa: PLC0415  see above
+
+    add_task_report(result, PageOrder(start, files.output, overview=files.preview), page)
 
 
 def given(**values: Any) -> dict[str, Any]:

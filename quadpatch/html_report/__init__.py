@@ -1,1 +1,1 @@
-"""The report of a repair as one HTML file that stands alone, for people and auditors."""
+"""The report of a task as one HTML file that stands alone, for people and auditors."""

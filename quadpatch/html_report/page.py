@@ -1,5 +1,7 @@
 """From a report to its page. The page shows what stands in the report, and nothing else.
 
+Repairs and the other tasks share a template; each has parts of its own.
+
 It runs no script and loads nothing: its policy allows its own style sheet and pictures in the file itself. Jinja2
 escapes every text, whatever it holds.
 """
@@ -13,14 +15,16 @@ from functools import cache
 from importlib.resources import files
 from typing import Any
 
-from jinja2 import Environment, FunctionLoader, StrictUndefined, Template
+from jinja2 import Environment, FunctionLoader, StrictUndefined
 
-from quadpatch.html_report import histogram, words
+from quadpatch.html_report import histogram, task_words, words
+from quadpatch.html_report.in_short import in_short, invented_area
+from quadpatch_rules.tasks import FILL
 
 # A table of more rows is cut short, on the screen and on paper; the JSON inside the page has all holes.
 MOST_ROWS = 10_000
 MOST_PRINTED_ROWS = 400
-_TEMPLATE = "report.html.jinja"
+_TEMPLATE, _TEMPLATE_OF_TASKS = "report.html.jinja", "task.html.jinja"
 
 
 @dataclass(frozen=True)
@@ -37,7 +41,7 @@ def render_page(report: Mapping[str, Any], pictures: Pictures | None = None) -> 
     Parameters
     ----------
     report : mapping
-        Of a repair, JSON-ready.
+        Of a repair or another task, JSON-ready.
     pictures : Pictures, optional
 
     Returns
@@ -47,25 +51,27 @@ def render_page(report: Mapping[str, Any], pictures: Pictures | None = None) -> 
     """
     pictures = pictures or Pictures()
     style = _text("style.css")
-    return _template().render(
-        report=report,
-        style=style,
-        style_hash=base64.b64encode(hashlib.sha256(style.encode()).digest()).decode(),
-        overview=_data_url(pictures.overview) if pictures.overview else None,
-        close_ups=[(report["holes"][id_], _data_url(png)) for id_, png in pictures.close_ups.items()],
-        invented_area=_invented_area(report["provenance"]),
-        charts=_charts(report),
-        energy_names=words.energy_names(report),
-        json=json.dumps(report, indent=1),
-        most_rows=MOST_ROWS,
-        most_printed_rows=MOST_PRINTED_ROWS,
-    )
-
-
-def _invented_area(facts: Mapping[str, Any]) -> float | None:
-    """Share of the repaired surface that is invented."""
-    before, after = facts["before"]["area"], facts["after"]["area"]
-    return None if before is None or not after else max(0.0, 1 - before / after)
+    common = {
+        "report": report,
+        "title": task_words.TITLES[report["task"]],
+        "style": style,
+        "style_hash": base64.b64encode(hashlib.sha256(style.encode()).digest()).decode(),
+        "overview": _data_url(pictures.overview) if pictures.overview else None,
+        "json": json.dumps(report, indent=1),
+    }
+    if report["task"] != FILL:
+        own = {"in_short": task_words.task_in_short(report), "figures": task_words.figures(report)}
+        return _environment().get_template(_TEMPLATE_OF_TASKS).render(common | own)
+    own = {
+        "in_short": in_short(report),
+        "close_ups": [(report["holes"][id_], _data_url(png)) for id_, png in pictures.close_ups.items()],
+        "invented_area": invented_area(report["provenance"]),
+        "charts": _charts(report),
+        "energy_names": words.energy_names(report),
+        "most_rows": MOST_ROWS,
+        "most_printed_rows": MOST_PRINTED_ROWS,
+    }
+    return _environment().get_template(_TEMPLATE).render(common | own)
 
 
 def _charts(report: Mapping[str, Any]) -> list[dict[str, Any]]:
@@ -92,10 +98,10 @@ def _text(name: str) -> str:
 
 
 @cache
-def _template() -> Template:
+def _environment() -> Environment:
     environment = Environment(
         loader=FunctionLoader(_text), autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )
     environment.filters.update(figure=words.figure, percent=words.percent)
     environment.globals.update(words=words, size=histogram)
-    return environment.get_template(_TEMPLATE)
+    return environment

@@ -20,6 +20,8 @@ from quadpatch.mesh.surface_facts import surface_facts
 from quadpatch.recipes.result import Repair
 from quadpatch.repair import RepairedFile
 from quadpatch.report import json_ready
+from quadpatch.tasks.result import TaskResult
+from quadpatch.types import TriangleMesh
 
 
 @dataclass(frozen=True)
@@ -58,8 +60,31 @@ def provenance(
         Who asked: `job_id`, `tenant`, `asked_by`, the name of the key, if any, `request_id`, `label`, `metadata`,
         `rule`, `acceptance`, the limits of the result; and `mesh_name`, the name of the scan's file.
     """
-    filled, asked = repaired.repair.filled, dict(request or {})
-    source, name = start.source, asked.pop("mesh_name", None)
+    filled = repaired.repair.filled
+    surfaces = (filled.measured, filled.mesh)
+    return {**_facts(start, output, request, *surfaces), "displacement": json_ready(_displacement(repaired.repair))}
+
+
+def provenance_of_task(
+    start: Start, result: TaskResult, output: Path, request: Mapping[str, Any] | None = None
+) -> dict[str, Any]:
+    """Collect the facts of a task besides filling holes, as `provenance` does.
+
+    What was decoded has no surface before.
+    """
+    before = None if result.report["task"] == "decode" else result.before
+    return {**_facts(start, output, request, before, result.after), "displacement": None}
+
+
+def _facts(
+    start: Start,
+    output: Path,
+    request: Mapping[str, Any] | None,
+    before: TriangleMesh | None,
+    after: TriangleMesh,
+) -> dict[str, Any]:
+    asked, source = dict(request or {}), start.source
+    name = asked.pop("mesh_name", None)
     if source is not None and name is not None:
         source = {**source, "name": name}
     facts: dict[str, Any] = json_ready(
@@ -71,9 +96,8 @@ def provenance(
             "source": source,
             "output": None if is_stream(output) else _file(output),
             "request": asked if request is not None else None,
-            "before": asdict(surface_facts(filled.measured)),
-            "after": asdict(surface_facts(filled.mesh)),
-            "displacement": _displacement(repaired.repair),
+            "before": None if before is None else asdict(surface_facts(before)),
+            "after": asdict(surface_facts(after)),
         }
     )
     return facts

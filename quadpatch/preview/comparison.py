@@ -5,12 +5,13 @@ from pathlib import Path
 import numpy as np
 from scipy.spatial import cKDTree
 
+from quadpatch.formats.output_files import write_whole
 from quadpatch.mesh.measures import diagonal
 from quadpatch.mesh.normals import area_vectors
 from quadpatch.preview.invented import TINT
 from quadpatch.preview.pair import moved_pair
 from quadpatch.preview.parts import part_of
-from quadpatch.preview.png import write_png
+from quadpatch.preview.png import png_bytes
 from quadpatch.preview.shading import CLAY
 from quadpatch.preview.sheet import (
     N_CANDIDATES,
@@ -33,7 +34,12 @@ _N_BALLS = 300
 
 
 def render_comparison(before: TriangleMesh, after: TriangleMesh, change: BoolArray | FloatArray, path: Path) -> None:
-    """Draw a mesh before and after a task, and close-ups of where most has changed, as a PNG file.
+    """Draw a mesh before and after a task, as `comparison_png` does, into a file."""
+    write_whole(path, comparison_png(before, after, change))
+
+
+def comparison_png(before: TriangleMesh, after: TriangleMesh, change: BoolArray | FloatArray) -> bytes:
+    """Draw a mesh before and after a task, and close-ups of where most has changed.
 
     Parameters
     ----------
@@ -41,7 +47,11 @@ def render_comparison(before: TriangleMesh, after: TriangleMesh, change: BoolArr
         In the same place; triangles with a corner that is not finite are not drawn.
     change : (n_triangles of `after`,) bool or float64
         What is tinted; 0..1 for how strongly.
-    path : Path
+
+    Returns
+    -------
+    bytes
+        A PNG file.
 
     Raises
     ------
@@ -68,7 +78,7 @@ def render_comparison(before: TriangleMesh, after: TriangleMesh, change: BoolArr
         draw_legend(sheet, "changed", "as before", np.tile(TINT, (SWATCH[0], 1)))
     else:
         draw_legend(sheet, "moved far", "not moved", CLAY + np.linspace(0, 1, SWATCH[0])[:, None] * (TINT - CLAY))
-    write_png(path, sheet.image)
+    return png_bytes(sheet.image)
 
 
 def _is_finite(mesh: TriangleMesh) -> BoolArray:

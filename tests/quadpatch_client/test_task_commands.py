@@ -103,7 +103,7 @@ def test_an_effort_beside_another_method_is_wrong_usage(
 
 
 def test_restore_says_which_vertices_are_missing(run: Callable[..., Result], server: ScriptedServer) -> None:
-    done = run("restore", "out.ply", "--missing", "lost", "--seed", "4")
+    done = run("restore", "out.ply", "--missing", "lost", "--seed", "4", "--html", "page.html")
     assert done.exit_code == ExitCode.OK, done.stderr
     spec = sent_spec(server)
     assert (spec["task"], spec["seed"], spec["method"]["model"]) == ("restore", 4, "self")
@@ -113,7 +113,7 @@ def test_restore_says_which_vertices_are_missing(run: Callable[..., Result], ser
         "attributes": None,
         "preview": False,
         "closeups": False,
-        "html_report": False,
+        "html_report": True,
         "tint": "invented",
     }
     assert spec["output"] == output

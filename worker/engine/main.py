@@ -13,7 +13,7 @@ from typing import Any
 from quadpatch.calibration.kept import KeptCalibrations
 from quadpatch.formats.output_files import write_whole
 from quadpatch.html_report.provenance import note_start
-from quadpatch.html_report.writing import PageOrder, add_html_report
+from quadpatch.html_report.writing import PageOrder, add_html_report, add_task_report
 from quadpatch.inpainters.proof import prove_model
 from quadpatch.options import RepairOptions
 from quadpatch.preview.drawing import add_close_up_archive, add_comparison, add_picture
@@ -97,12 +97,17 @@ def _view(folder: Path, request: EngineRequest, reporter: Reporter, _pool: Proce
 
 
 def _do_task(folder: Path, request: EngineRequest, reporter: Reporter, _pool: ProcessPool) -> None:
+    start = None if request.html_report is None else note_start(folder / request.source)
     done = MESH_TASKS[request.task](folder, request, reporter.progress)
     _write_json(folder / REPORT_NAME, done.report)
     reporter.delivered()
     if request.with_preview:
         reporter.progress("preview", 0.0)
         add_comparison(done, folder / PREVIEW_NAME)
+        _write_json(folder / REPORT_NAME, done.report)
+    if start is not None:
+        order = PageOrder(start, folder / request.output, request.html_report, folder / PREVIEW_NAME)
+        add_task_report(done, order, folder / PAGE_NAME, reporter.progress)
         _write_json(folder / REPORT_NAME, done.report)
 
 

@@ -110,7 +110,6 @@ def _options_of_fill(spec: RepairSpec) -> str | None:
         "weld_tolerance": spec.weld_tolerance != "auto",
         "colours": spec.colours != "auto",
         "output.closeups": spec.output.closeups,
-        "output.html_report": spec.output.html_report,
         "output.tint": spec.output.tint != "invented",
         "output.attributes": spec.output.attributes is not None,
         "rule": spec.rule is not None,

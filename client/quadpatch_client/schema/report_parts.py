@@ -98,7 +98,7 @@ class CountedValues(Response):
 
 
 class Asked(Response):
-    """Who asked for a repair."""
+    """Who asked for a job."""
 
     job_id: str = Field(description="The job.", examples=[EXAMPLE_JOB_ID])
     tenant: str = Field(description="The tenant that it belongs to.", examples=["default"])
@@ -116,7 +116,7 @@ class Asked(Response):
 
 
 class Provenance(Response):
-    """From which bytes a repair made which, when, by what, for whom; and the surface before and after."""
+    """From which bytes a task made which, when, by what, for whom; and the surface before and after."""
 
     software: str = Field(description="What repaired it.", examples=["quadpatch"])
     software_version: str = Field(description="Its version.", examples=["0.2.0"])
@@ -125,8 +125,8 @@ class Provenance(Response):
     source: FileFacts | None = Field(description="The file that came in; null of a stream.")
     output: FileFacts | None = Field(description="The file that was written; null of a stream.")
     request: Asked | None = Field(description="Who asked over HTTP; null on the command line.")
-    before: SurfaceFacts = Field(description="The surface that came in.")
-    after: SurfaceFacts = Field(description="The repaired surface.")
+    before: SurfaceFacts | None = Field(description="The surface that came in; null of `decode`, which gets none.")
+    after: SurfaceFacts = Field(description="The surface that is handed back.")
     displacement: CountedValues | None = Field(
         description="How far the model moved new vertices off the geometric fill, in mesh units; null where it took no "
         "part."
@@ -156,3 +156,8 @@ class TaskReport(Response):
     stages: list[StageTime] = Field(description="Seconds of each stage, in order.")
     warnings: list[str] = Field(description="Sentences for people.", examples=[[]])
     warning_details: WarningDetails = Field(default_factory=list)
+    provenance: Provenance | None = Field(
+        default=None,
+        description="Files, times, who asked, and the surface before and after; there where the report was asked for "
+        "as a page as well.",
+    )

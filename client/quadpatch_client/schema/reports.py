@@ -13,7 +13,7 @@ from pydantic import Field
 from quadpatch_client.schema.acceptance import Accepted
 from quadpatch_client.schema.base import Response
 from quadpatch_client.schema.jobs import HoleCounts
-from quadpatch_client.schema.report_parts import AppliedPatches, Box, Provenance, SourceMesh, TaskReport, Vector, Welded
+from quadpatch_client.schema.report_parts import AppliedPatches, Box, SourceMesh, TaskReport, Vector, Welded
 from quadpatch_client.schema.task_reports import DecodeReport, DenoiseReport, EncodeReport, RestoreReport
 from quadpatch_client.schema.training_reports import TrainReport
 from quadpatch_rules.hole_selection import HoleKind
@@ -158,11 +158,6 @@ class FillReport(TaskReport):
     )
     texture: TextureReport | None = Field(
         default=None, description="Texture images; null where the mesh has none, or nothing is new."
-    )
-    provenance: Provenance | None = Field(
-        default=None,
-        description="Files, times, who asked, and the surface before and after; there where the report was asked for "
-        "as a page as well.",
     )
 
 

@@ -145,11 +145,13 @@ def test_what_is_encoded_is_decoded_within_the_error(plate: Path, tmp_path: Path
     assert content["task"] == "encode"
     assert content["options"]["max_error"] == 0.02
     assert content["options"]["keep_connectivity"] == bool(flags)
-    again = call("decode", packed, "-o", tmp_path / "again.obj", "--preview", tmp_path / "again.png")
+    page = tmp_path / "again.html"
+    again = call("decode", packed, "-o", tmp_path / "again.obj", "--preview", tmp_path / "again.png", "--html", page)
     assert again.exit_code == 0, again.output
     kind = "in the order of the scan" if flags else "as a regular mesh over the quads"
     assert f"triangles, {kind}, at most 0.02 mesh units from the scan. " in " ".join(again.stderr.split())
     assert (tmp_path / "again.png").exists()
+    assert f"Decompression report: {packed.name}" in page.read_text("utf-8")
     if flags:
         shift = read_scan(tmp_path / "again.obj").vertices - read_scan(plate).vertices
         assert np.linalg.norm(shift, axis=1).max() <= 0.02

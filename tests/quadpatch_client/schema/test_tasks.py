@@ -181,7 +181,6 @@ def test_what_came_later_is_part_of_the_identity_where_it_is_used() -> None:
         {"method": method | {"recipe": "paper", "dictionary": {"atoms": 8}}},
         {"method": method, "length_unit": "inch"},
         {"method": method, "output": {"attributes": []}},
-        {"method": method, "output": {"html_report": True}},
     ):
         assert identity_of(JobSpec.model_validate(MESH | changed)) != plain
 

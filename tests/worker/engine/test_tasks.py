@@ -12,7 +12,15 @@ from quadpatch.formats.reading import read_scan
 from tests.integration.conftest import ply_bytes, punched_relief
 from worker.engine.client import ForkServer
 from worker.engine.limits import EngineLimits
-from worker.engine.request import MESH_FOLDER, PREVIEW_NAME, REFERENCE_FOLDER, REPORT_NAME, EngineRequest, EngineTask
+from worker.engine.request import (
+    MESH_FOLDER,
+    PAGE_NAME,
+    PREVIEW_NAME,
+    REFERENCE_FOLDER,
+    REPORT_NAME,
+    EngineRequest,
+    EngineTask,
+)
 from worker.engine.supervision import Observer, run_engine
 from worker.failures import EngineFailedError
 
@@ -47,14 +55,19 @@ def run(fork_server: ForkServer, request: EngineRequest, folder: Path) -> tuple[
 
 def test_vertices_of_a_list_are_restored_and_drawn(fork_server: ForkServer, tmp_path: Path) -> None:
     missing = {"kind": "indices", "indices": MISSING}
-    request = request_of(tmp_path, "restore", "restored.ply", missing=missing, with_preview=True)
+    asked = {"job_id": "job_01", "tenant": "default", "request_id": None, "label": "hall 7", "mesh_name": "urn.ply"}
+    request = request_of(tmp_path, "restore", "restored.ply", missing=missing, with_preview=True, html_report=asked)
     report, stages = run(fork_server, request, tmp_path)
     restored = read_scan(tmp_path / "restored.ply")
     kept = np.setdiff1d(np.arange(len(VERTICES)), MISSING)
     assert np.array_equal(restored.vertices[kept], VERTICES[kept])
     assert (report["task"], report["vertices"]["restored"]) == ("restore", len(MISSING))
-    assert (stages[0], stages[-1]) == ("read", "preview")
+    assert (stages[0], *stages[-2:]) == ("read", "preview", "html_report")
     assert (tmp_path / PREVIEW_NAME).read_bytes().startswith(b"\x89PNG")
+    page = (tmp_path / PAGE_NAME).read_text("utf-8")
+    assert "Restoration report: urn.ply" in page
+    assert "hall 7" in page
+    assert report["provenance"]["source"]["name"] == "urn.ply"
 
 
 def test_noise_is_taken_away_as_a_reference_outside_of_the_folder_teaches(
