@@ -16,6 +16,7 @@ from quadpatch_client.errors import WaitTimeoutError
 from quadpatch_client.handles import files_by_role
 from quadpatch_client.progress import ByteProgress, no_progress
 from quadpatch_client.schema import (
+    CallerLimits,
     FileRole,
     Job,
     JobSpec,
@@ -27,6 +28,7 @@ from quadpatch_client.schema import (
     NewTraining,
     Plan,
     Rule,
+    RuleContent,
     Scope,
     Training,
 )
@@ -108,6 +110,18 @@ class AsyncClient:
     async def rules(self) -> list[Rule]:
         """Return all rules by name, each in its latest version."""
         return await self._call(self._client.rules)
+
+    async def rule(self, reference: str) -> Rule:
+        """Return a rule by its name, in its latest version, or by `name@version`."""
+        return await self._call(self._client.rule, reference)
+
+    async def save_rule(self, name: str, content: RuleContent) -> Rule:
+        """Save a rule; a name that is there gets its next version."""
+        return await self._call(self._client.save_rule, name, content)
+
+    async def limits(self) -> CallerLimits:
+        """Return what limits the caller, and what the service offers."""
+        return await self._call(self._client.limits)
 
     async def keys(self) -> list[Key]:
         """Return the keys of the tenant, without their secrets."""

@@ -4,7 +4,6 @@ Tested in `tests/integration/test_batch.py`.
 """
 
 import json
-from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated
 
@@ -12,12 +11,18 @@ import typer
 from rich.console import Console
 
 from quadpatch_client.batch import JOURNAL, Batch
-from quadpatch_client.batch_summary import print_summary, row_text, write_csv
+from quadpatch_client.batch_summary import figures, print_summary, row_text, write_csv
 from quadpatch_client.connection import connected
 from quadpatch_client.errors import UnreachableError, UsageError
 from quadpatch_client.exit_codes import ExitCode
 from quadpatch_client.file_repair import Row
-from quadpatch_client.folder_files import mesh_files, plans_in, remove_partial_files
+from quadpatch_client.folder_files import (
+    mesh_files,
+    passed_over,
+    passed_over_in_words,
+    plans_in,
+    remove_partial_files,
+)
 from quadpatch_client.folder_options import (
     FolderArgument,
     FolderHtmlOption,
@@ -107,6 +112,9 @@ def batch(  # noqa: PLR0913 - one parameter per option of the command line
             *(name for name, is_wanted in (("html_report", html), ("preview", preview)) if is_wanted),
         )
         _check_folders(folder, out)
+        others = passed_over(folder, recursive, out)
+        if others:
+            screen.say(f"passed over: {passed_over_in_words(others)}")
         sources = mesh_files(folder, recursive, out)
         plans = plans_in(sources, folder, out, format_, with_html=html, with_preview=preview)
         out.mkdir(parents=True, exist_ok=True)
@@ -116,7 +124,7 @@ def batch(  # noqa: PLR0913 - one parameter per option of the command line
             rows = _run(work, screen, f"quadpatch-client batch {folder} --out {out}")
             write_csv(csv or out / "summary.csv", rows)
     if as_json:
-        typer.echo(json.dumps([asdict(row) for row in rows], indent=2))
+        typer.echo(json.dumps([figures(row) for row in rows], indent=2))
     elif not quiet:
         print_summary(Console(highlight=False), rows)
         screen.say(f"wrote {csv or out / 'summary.csv'}", style="green")

@@ -8,8 +8,8 @@ import os
 import tempfile
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import asdict, fields
 from pathlib import Path
+from typing import Any
 
 from rich.console import Console
 from rich.table import Table
@@ -19,7 +19,19 @@ from quadpatch_client.journal import DONE
 from quadpatch_client.outputs import current_umask
 
 _MOST_ROWS = 20
-_FORMULA = ("=", "+", "-", "@", "\t", "\r")
+# What the table of the service calls the states of a file.
+_STATES = {"done": "succeeded", "done_with_warnings": "succeeded_with_warnings"}
+# Columns that an entry of an earlier version has in other places.
+_OF_ROW = {
+    "job_id": "job",
+    "holes_found": "found",
+    "holes_filled": "filled",
+    "holes_filled_smooth": "filled_smooth",
+    "holes_skipped": "skipped",
+    "holes_refused": "refused",
+    "new_triangles": "new_triangles",
+    "work_seconds": "seconds",
+}
 
 
 def row_text(row: Row) -> str:
@@ -62,19 +74,25 @@ def _print_some(console: Console, rows: Sequence[Row], style: str) -> None:
         console.print(f"… and {len(rows) - _MOST_ROWS:,} more; see the CSV file")
 
 
+def figures(row: Row) -> dict[str, Any]:
+    """Return what the table says of a file, by the columns that the service's table of a batch has."""
+    from quadpatch_client.schema import FIGURES  # noqa: PLC0415  loads the wire schema, which --help does without
+
+    known = {column: getattr(row, name) for column, name in _OF_ROW.items()} | row.figures
+    said = {"mesh_name": row.file, "state": _STATES.get(row.state, row.state), "reason": row.reason or None}
+    return {**dict.fromkeys(FIGURES), **known, **said}
+
+
 def write_csv(path: Path, rows: Sequence[Row]) -> None:
     """Write one line a file, in one step."""
+    from quadpatch_client.schema import FIGURES, spreadsheet_cell  # noqa: PLC0415  see figures
+
     descriptor, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.", suffix=".part")
     # With a byte order mark, or spreadsheets take names for another encoding.
     with os.fdopen(descriptor, "w", encoding="utf-8-sig", newline="") as file:
-        writer = csv.DictWriter(file, [field.name for field in fields(Row)])
+        writer = csv.DictWriter(file, FIGURES)
         writer.writeheader()
-        writer.writerows({name: _plain(value) for name, value in asdict(row).items()} for row in rows)
+        writer.writerows({name: spreadsheet_cell(value) for name, value in figures(row).items()} for row in rows)
     whole = Path(name)
     whole.chmod(0o666 & ~current_umask())
     whole.replace(path)
-
-
-def _plain(value: object) -> object:
-    """Keep a spreadsheet from taking a text of the service, or a file name, for a formula."""
-    return f"'{value}" if isinstance(value, str) and value.startswith(_FORMULA) else value

@@ -7,11 +7,13 @@ import hashlib
 from collections.abc import Iterator
 from datetime import datetime
 from typing import TypeVar
+from urllib.parse import quote
 
 from pydantic import BaseModel
 
 from quadpatch_client.polling import parse
 from quadpatch_client.schema import (
+    CallerLimits,
     Key,
     KeyList,
     KeyWithSecret,
@@ -19,6 +21,7 @@ from quadpatch_client.schema import (
     NewKey,
     NewTraining,
     Rule,
+    RuleContent,
     RulePage,
     Scope,
     Training,
@@ -52,6 +55,24 @@ class Catalogue:
     def rules(self) -> list[Rule]:
         """Return all rules by name, each in its latest version."""
         return [rule for page in self._pages("/v1/rules", RulePage) for rule in page.items]
+
+    def rule(self, reference: str) -> Rule:
+        """Return a rule by its name, in its latest version, or by `name@version`."""
+        name, _, version = reference.partition("@")
+        path = f"/v1/rules/{quote(name, safe='')}"
+        if version:
+            path += f"/versions/{quote(version, safe='')}"
+        return parse(Rule, self._transport.request("GET", path))
+
+    def save_rule(self, name: str, content: RuleContent) -> Rule:
+        """Save a rule; a name that is there gets its next version."""
+        # Fields that are left out are left to the service: it may know others.
+        values = content.model_dump(mode="json", exclude_unset=True)
+        return parse(Rule, self._transport.request("PUT", f"/v1/rules/{quote(name, safe='')}", json=values))
+
+    def limits(self) -> CallerLimits:
+        """Return what limits the caller, and what the service offers."""
+        return parse(CallerLimits, self._transport.request("GET", "/v1/limits"))
 
     def keys(self) -> list[Key]:
         """Return the keys of the tenant, without their secrets; needs the scope `admin`."""

@@ -1,4 +1,4 @@
-"""Commands on what a service keeps besides meshes and jobs: `models`, `rules`, `keys`; and `train`, which makes models.
+"""Commands on what a service keeps besides meshes and jobs: `models`, `keys`; and `train`, which makes models.
 
 Tested in `tests/integration/test_catalogue_commands.py`.
 """
@@ -15,7 +15,7 @@ from quadpatch_client.connection import connected, print_json
 from quadpatch_client.errors import UsageError
 from quadpatch_client.options import DEFAULT_URL, JsonOption, KeyOption, LabelOption, QuietOption, SeedOption, UrlOption
 from quadpatch_client.screen import Screen
-from quadpatch_client.tables import print_keys, print_models, print_rules
+from quadpatch_client.tables import print_keys, print_models
 from quadpatch_client.wording import suggestion
 
 if TYPE_CHECKING:
@@ -35,16 +35,6 @@ def models(url: UrlOption = DEFAULT_URL, api_key: KeyOption = None, as_json: Jso
         print_json(known)
     else:
         print_models(_stdout(), known)
-
-
-def rules(url: UrlOption = DEFAULT_URL, api_key: KeyOption = None, as_json: JsonOption = False) -> None:
-    """List the rules that the service keeps; --saved-rule of other commands names one."""
-    with connected(Screen(as_json=as_json), url, api_key) as client:
-        known = client.rules()
-    if as_json:
-        _print_list(known)
-    else:
-        print_rules(_stdout(), known)
 
 
 @keys.command("list")

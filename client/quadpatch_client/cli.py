@@ -11,7 +11,7 @@ import typer
 from rich.console import Console
 
 from quadpatch_client.batch_command import batch
-from quadpatch_client.catalogue_commands import keys, models, rules, train
+from quadpatch_client.catalogue_commands import keys, models, train
 from quadpatch_client.connection import connected, print_json
 from quadpatch_client.doctor_command import doctor
 from quadpatch_client.exit_codes import exit_codes_text
@@ -53,6 +53,7 @@ from quadpatch_client.options import (
     MethodChoice,
     OutputOption,
     OverwriteOption,
+    PdfOption,
     PreviewOption,
     PriorityOption,
     QuietOption,
@@ -69,6 +70,7 @@ from quadpatch_client.options import (
 )
 from quadpatch_client.plan_command import plan
 from quadpatch_client.repairing import Task, format_of
+from quadpatch_client.rule_commands import rules
 from quadpatch_client.running import Connection, run
 from quadpatch_client.screen import Screen
 from quadpatch_client.tables import print_holes, print_jobs
@@ -134,6 +136,7 @@ def repair(  # noqa: PLR0913 - one parameter per option of the command line
     preview: PreviewOption = None,
     closeups: CloseupsOption = None,
     html: HtmlOption = None,
+    pdf: PdfOption = None,
     tint: TintOption = "invented",
     overwrite: OverwriteOption = False,
     again: AgainOption = False,
@@ -165,7 +168,7 @@ def repair(  # noqa: PLR0913 - one parameter per option of the command line
                     "format": format_ or format_of(output),
                     "preview": preview is not None,
                     "closeups": closeups is not None,
-                    "html_report": html is not None,
+                    "html_report": html is not None or pdf is not None,
                     "tint": tint,
                 },
             },
@@ -173,6 +176,7 @@ def repair(  # noqa: PLR0913 - one parameter per option of the command line
             preview=preview,
             closeups=closeups,
             html=html,
+            pdf=pdf,
             timeout_s=timeout,
             may_overwrite=overwrite,
             again=again,
@@ -249,8 +253,9 @@ app.command()(plan)
 app.command()(doctor)
 for folder_command in (batch, watch, train):
     app.command(epilog=f"Exit codes:\n\n{exit_codes_text()}")(folder_command)
-for command in (wait, fetch, cancel, delete, pin, models, rules):
+for command in (wait, fetch, cancel, delete, pin, models):
     app.command()(command)
+app.add_typer(rules)
 app.add_typer(keys)
 
 

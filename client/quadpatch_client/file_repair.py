@@ -7,7 +7,7 @@ import hashlib
 import json
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, field
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING, Any
 
 from quadpatch_client.conditions import Condition, first_fault, quantities_of
@@ -70,7 +70,22 @@ class FilePlan:
 
 @dataclass(frozen=True)
 class Row:
-    """What came of a file, as the summary has it."""
+    """What came of a file, as journal and screen have it.
+
+    Attributes
+    ----------
+    file : str
+        Path in its folder, with `/`.
+    state : str
+    found, filled, filled_smooth, skipped, refused, new_triangles, seconds
+        As the job's result counts them.
+    job : str or None
+        Its id.
+    reason : str
+        What to look at, or why there is no result.
+    figures : dict
+        What the table says of its job, by column; empty where no job has a result, or an earlier version wrote it.
+    """
 
     file: str
     state: State
@@ -83,6 +98,7 @@ class Row:
     seconds: float | None = None
     job: str | None = None
     reason: str = ""
+    figures: dict[str, Any] = field(default_factory=dict)
 
     def facts(self) -> dict[str, Any]:
         """Return it as the journal keeps it."""
@@ -123,11 +139,14 @@ def repair_file(client: "Client", plan: FilePlan, options: JobOptions, on_job: C
     on_job(job.id)
     job = client.wait(job.id)
     reasons = [*(job.result.warnings if job.result else ()), *_fetch(client, job, plan)]
-    return row_of(plan.name, job, "; ".join(reasons))
+    return row_of(plan, job, "; ".join(reasons))
 
 
-def row_of(file: str, job: "Job", reason: str = "") -> Row:
+def row_of(plan: FilePlan, job: "Job", reason: str = "") -> Row:
     """Return the row of a file whose job has a result; a reason is what to look at in it."""
+    from quadpatch_client.schema import figures_of  # noqa: PLC0415  see repair_file
+
+    file = plan.name
     if job.result is None:
         return Row(file, "failed", job=job.id, reason=reason)
     counts = job.result.holes
@@ -143,6 +162,7 @@ def row_of(file: str, job: "Job", reason: str = "") -> Row:
         job.result.seconds,
         job.id,
         reason,
+        figures_of(job, PurePosixPath(file).with_name(plan.output.name).as_posix()),
     )
 
 
@@ -165,5 +185,9 @@ def _fetch(client: "Client", job: "Job", plan: FilePlan) -> Sequence[str]:
 
 def failure(file: str, error: ClientError | OSError) -> Row:
     """Return the row of a file that could not be repaired."""
+    from quadpatch_client.schema import figures_of  # noqa: PLC0415  see repair_file
+
     job = getattr(error, "job", None)
-    return Row(file, "failed", job=None if job is None else job.id, reason=str(error))
+    if job is None:
+        return Row(file, "failed", reason=str(error))
+    return Row(file, "failed", job=job.id, reason=str(error), figures=figures_of(job, None))

@@ -4,7 +4,7 @@ Tested in `tests/quadpatch_client/test_batch.py`.
 """
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import get_args
 
@@ -14,6 +14,7 @@ from quadpatch_rules.option_words import OutputFormat
 
 SUFFIXES = frozenset({*(f".{name}" for name in get_args(OutputFormat)), ".gltf"})
 _PARTIAL = ".*.part"
+_MOST_NAMED = 20
 
 
 def mesh_files(folder: Path, is_recursive: bool, *left_out: Path) -> Iterator[Path]:
@@ -27,14 +28,45 @@ def mesh_files(folder: Path, is_recursive: bool, *left_out: Path) -> Iterator[Pa
     *left_out : Path
         Folders that are not looked into.
     """
-    passed_over = {path.resolve() for path in left_out}
+    for path in _files(folder, is_recursive, *left_out):
+        if why_passed_over(path) is None:
+            yield path
+
+
+def passed_over(folder: Path, is_recursive: bool, *left_out: Path) -> dict[str, list[str]]:
+    """Return the files of a folder that are no meshes by their names, by the reason; parameters as `mesh_files`."""
+    found: dict[str, list[str]] = {}
+    for path in _files(folder, is_recursive, *left_out):
+        why = why_passed_over(path)
+        if why is not None:
+            found.setdefault(why, []).append(path.relative_to(folder).as_posix())
+    return found
+
+
+def passed_over_in_words(found: Mapping[str, Sequence[str]]) -> str:
+    """Name the files that are passed over, at most 20 for each reason."""
+    return "; ".join(f"{_some(names)} ({why})" for why, names in found.items())
+
+
+def why_passed_over(path: Path) -> str | None:
+    """Say why a file is not taken for a mesh; None where it is."""
+    if path.name.startswith("."):
+        return "hidden: the name begins with a dot"
+    return None if path.suffix.lower() in SUFFIXES else "no suffix of a mesh"
+
+
+def _some(names: Sequence[str]) -> str:
+    more = f" and {len(names) - _MOST_NAMED:,} more" if len(names) > _MOST_NAMED else ""
+    return ", ".join(names[:_MOST_NAMED]) + more
+
+
+def _files(folder: Path, is_recursive: bool, *left_out: Path) -> Iterator[Path]:
+    passed = {path.resolve() for path in left_out}
     for place, folders, names in os.walk(folder):
         here = Path(place)
-        inner = sorted(n for n in folders if not n.startswith(".") and (here / n).resolve() not in passed_over)
+        inner = sorted(n for n in folders if not n.startswith(".") and (here / n).resolve() not in passed)
         folders[:] = inner if is_recursive else []
-        for name in sorted(names):
-            if not name.startswith(".") and Path(name).suffix.lower() in SUFFIXES:
-                yield here / name
+        yield from (here / name for name in sorted(names))
 
 
 def plans_in(

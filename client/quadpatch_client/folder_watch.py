@@ -24,7 +24,7 @@ from quadpatch_client.errors import (
     UnreachableError,
 )
 from quadpatch_client.file_repair import FilePlan, JobOptions, Row, failure, repair_file
-from quadpatch_client.folder_files import mesh_files
+from quadpatch_client.folder_files import mesh_files, passed_over, passed_over_in_words
 from quadpatch_client.journal import DONE, Entry, Journal, Stamp, sync
 from quadpatch_client.rejected_files import set_aside
 from quadpatch_client.workers import Workers
@@ -97,6 +97,8 @@ class FolderWatch:
         self._seen: dict[Path, _Waiting] = {}
         self._busy: dict[Path, Future[Row]] = {}
         self._pause_s = 0.0
+        self._others: dict[Path, float] = {}
+        self._told = set[Path]()
 
     @property
     def is_idle(self) -> bool:
@@ -114,6 +116,7 @@ class FolderWatch:
         for path in [path for path, future in self._busy.items() if future.done()]:
             self._end(path, self._busy.pop(path))
         self._note_files()
+        self._note_others()
         ready = [(p, waiting) for p, waiting in self._seen.items() if p not in self._busy and self._is_whole(waiting)]
         for path, waiting in ready[: self._n_parallel - len(self._busy)]:
             self._busy[path] = self._workers.submit(partial(self._repair, path, waiting.stamp))
@@ -134,6 +137,23 @@ class FolderWatch:
                 self._seen[path] = _Waiting(stamp, self._clock())
         for path in self._seen.keys() - set(found) - self._busy.keys():
             del self._seen[path]
+
+    def _note_others(self) -> None:
+        """Say once of each file that lies there and is no mesh by its name that it is passed over.
+
+        What is renamed at its end, such as a file that a station still writes, is not told.
+        """
+        now = self._clock()
+        found = passed_over(self._folder, False)
+        lying = {self._folder / name: why for why, names in found.items() for name in names}
+        self._others = {path: self._others.get(path, now) for path in lying if not is_own(path)}
+        new = [path for path, since in self._others.items() if now - since >= self._settle_s and path not in self._told]
+        self._told.update(new)
+        told: dict[str, list[str]] = {}
+        for path in new:
+            told.setdefault(lying[path], []).append(path.name)
+        if told:
+            self._tell(f"passed over: {passed_over_in_words(told)}")
 
     def _is_whole(self, waiting: _Waiting) -> bool:
         now = self._clock()
@@ -200,6 +220,11 @@ class FolderWatch:
         del self._seen[path]
         self._note(waiting.stamp, row)
         self._tell(f"{path.name} can't be repaired and was moved to {moved}: {error}")
+
+
+def is_own(path: Path) -> bool:
+    """Whether a file was made by this client: what came back, or is still on its way."""
+    return path.stem.endswith(REPAIRED) or (path.name.startswith(".") and path.suffix == ".part")
 
 
 def plan_beside(path: Path, with_html: bool) -> FilePlan:

@@ -16,6 +16,7 @@ from quadpatch_client.options import (
     JsonOption,
     KeyOption,
     OutputOption,
+    PdfOption,
     PreviewOption,
     QuietOption,
     ReportOption,
@@ -63,6 +64,7 @@ def fetch(  # noqa: PLR0913 - one parameter per option of the command line
         ),
     ] = None,
     html: HtmlOption = None,
+    pdf: PdfOption = None,
     timeout: TimeoutOption = None,
     url: UrlOption = DEFAULT_URL,
     api_key: KeyOption = None,
@@ -72,11 +74,11 @@ def fetch(  # noqa: PLR0913 - one parameter per option of the command line
     """Wait for a job that was started before, and fetch what it made."""
     screen = Screen(quiet, as_json=as_json)
     with connected(screen, url, api_key) as client:
-        Files("", output, report, preview, closeups, html).check()
-        check_stdout([output, report, preview, html], as_json)
+        Files("", output, report, preview, closeups, html, pdf).check()
+        check_stdout([output, report, preview, html, pdf], as_json)
         with screen.repair() as on_change:
             ended = client.wait(job, on_change, timeout)
-        files = Files(ended.mesh_name or "the mesh", output, report, preview, closeups, html)
+        files = Files(ended.mesh_name or "the mesh", output, report, preview, closeups, html, pdf)
         fetch_files(client, screen, files, ended)
     if as_json:
         print_json(ended)

@@ -107,6 +107,12 @@ HtmlOption = Annotated[
     Path | None,
     typer.Option("--html", help="Where to put the report as an HTML page that stands alone.", rich_help_panel=OUTPUT),
 ]
+PdfOption = Annotated[
+    Path | None,
+    typer.Option(
+        "--pdf", help="Where to put that page as a PDF, of a service that prints one.", rich_help_panel=OUTPUT
+    ),
+]
 PreviewOption = Annotated[
     Path | None,
     typer.Option(

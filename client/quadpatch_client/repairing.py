@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 # A mesh that can't be read fails here; its analysis may still be waiting for a worker.
 _FIRST_STAGE = "read"
 _ANALYSIS_S = 60.0
-_SPOKEN = {"html_report": "HTML report"}
+_SPOKEN = {"html_report": "HTML report", "pdf_report": "PDF"}
 
 
 @dataclass(frozen=True)
@@ -49,8 +49,8 @@ class Task:
         Where to put the report and the picture.
     closeups : Path, optional
         Folder for a picture of each chosen hole.
-    html : Path, optional
-        Where to put the report as a page.
+    html, pdf : Path, optional
+        Where to put the report as a page, and that page printed.
     timeout_s : float, optional
         How long to wait for the job.
     may_overwrite : bool
@@ -70,6 +70,7 @@ class Task:
     preview: Path | None = None
     closeups: Path | None = None
     html: Path | None = None
+    pdf: Path | None = None
     timeout_s: float | None = None
     may_overwrite: bool = False
     again: bool = False
@@ -86,13 +87,14 @@ class Files:
     preview: Path | None = None
     closeups: Path | None = None
     html: Path | None = None
+    pdf: Path | None = None
 
     def check(self, *others: Path) -> None:
         """Raise UsageError where one can't be written, or would overwrite another one or one of the others."""
         check_place(self.output)
-        check_apart([*others, self.output], [self.report, self.preview, self.html])
+        check_apart([*others, self.output], [self.report, self.preview, self.html, self.pdf])
         if self.closeups is not None:
-            files = [self.output, self.report, self.preview, self.html, *others]
+            files = [self.output, self.report, self.preview, self.html, self.pdf, *others]
             check_closeups_folder(self.closeups, [path for path in files if path is not None])
 
 
@@ -112,6 +114,8 @@ def repair(client: "Client", screen: Screen, task: Task) -> "Job":
     # A wrong option or path should show before a large file has been sent and an hour been spent on it.
     make_spec("0" * 64, task.holes, task.method, **_rest(task, "0" * 64))
     check_outputs(task)
+    if task.pdf is not None:
+        check_renderer(client)
     mesh_id = _upload(client, screen, task.source)
     rest = _rest(task, "" if task.reference is None else _upload(client, screen, task.reference))
     named = {"mesh_name": sent_name(task.source) or None, **rest, "label": rest.get("label") or label_of(task.source)}
@@ -152,6 +156,12 @@ def _rest(task: Task, reference_id: str) -> dict[str, Any]:
     return {**task.rest, "denoise": {**task.rest.get("denoise", {}), "reference": reference_id}}
 
 
+def check_renderer(client: "Client") -> None:
+    """Raise UsageError where the service prints no PDFs: that should show before a large file has been sent."""
+    if not client.limits().pdf_reports:
+        raise UsageError("the service prints no PDFs; leave out --pdf, take --html, and print the page in a browser")
+
+
 def check_outputs(task: Task) -> None:
     """Raise UsageError where an output has no folder, is one, or would overwrite another one or the scan."""
     check_place(task.output)
@@ -163,7 +173,7 @@ def check_outputs(task: Task) -> None:
 
 
 def _files(task: Task) -> Files:
-    return Files(task.source.name, task.output, task.report, task.preview, task.closeups, task.html)
+    return Files(task.source.name, task.output, task.report, task.preview, task.closeups, task.html, task.pdf)
 
 
 def check_apart(taken: list[Path], others: list[Path | None]) -> None:
@@ -254,6 +264,8 @@ def fetch(client: "Client", screen: Screen, files: Files, job: "Job") -> None:
         written.append(files.preview)
     if files.html is not None and _is_fetched(client, screen, job, "html_report", files.html):
         written.append(files.html)
+    if files.pdf is not None and _is_fetched(client, screen, job, "pdf_report", files.pdf):
+        written.append(files.pdf)
     if files.closeups is not None:
         written += _fetch_closeups(client, screen, job, files.closeups)
     with tempfile.TemporaryDirectory() as folder:
@@ -267,7 +279,11 @@ def fetch(client: "Client", screen: Screen, files: Files, job: "Job") -> None:
 
 
 def _is_fetched(
-    client: "Client", screen: Screen, job: "Job", role: Literal["report", "preview", "html_report"], path: Path
+    client: "Client",
+    screen: Screen,
+    job: "Job",
+    role: Literal["report", "preview", "html_report", "pdf_report"],
+    path: Path,
 ) -> bool:
     """Fetch a file that is optional: without it the repair has succeeded all the same."""
     try:

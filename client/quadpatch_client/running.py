@@ -41,7 +41,7 @@ def run(make: Callable[[], Task], connection: Connection) -> None:
     screen = Screen(connection.quiet, as_json=connection.as_json)
     with connected(screen, connection.url, connection.api_key) as client:
         task = make()
-        check_stdout([task.output, task.report, task.preview, task.html], connection.as_json)
+        check_stdout([task.output, task.report, task.preview, task.html, task.pdf], connection.as_json)
         job = repair(client, screen, task)
     if connection.as_json:
         print_json(job)

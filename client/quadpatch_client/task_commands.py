@@ -19,6 +19,7 @@ from quadpatch_client.options import (
     MethodChoice,
     OutputOption,
     OverwriteOption,
+    PdfOption,
     PreviewOption,
     QuietOption,
     ReportOption,
@@ -68,6 +69,7 @@ def restore(  # noqa: PLR0913 - one parameter per option of the command line
     report: ReportOption = None,
     preview: PreviewOption = None,
     html: HtmlOption = None,
+    pdf: PdfOption = None,
     overwrite: OverwriteOption = False,
     again: AgainOption = False,
     timeout: TimeoutOption = None,
@@ -81,7 +83,7 @@ def restore(  # noqa: PLR0913 - one parameter per option of the command line
     def task() -> Task:
         options = {"missing": read_missing(missing), "base": base}
         rest = {"task": "restore", "restore": options, "seed": seed, "label": label}
-        rest["output"] = _output(output, format_, preview, html)
+        rest["output"] = _output(output, format_, preview, html or pdf)
         return Task(
             mesh,
             output,
@@ -90,6 +92,7 @@ def restore(  # noqa: PLR0913 - one parameter per option of the command line
             report=report,
             preview=preview,
             html=html,
+            pdf=pdf,
             timeout_s=timeout,
             may_overwrite=overwrite,
             again=again,
@@ -131,6 +134,7 @@ def denoise(  # noqa: PLR0913 - one parameter per option of the command line
     report: ReportOption = None,
     preview: PreviewOption = None,
     html: HtmlOption = None,
+    pdf: PdfOption = None,
     overwrite: OverwriteOption = False,
     again: AgainOption = False,
     timeout: TimeoutOption = None,
@@ -146,7 +150,7 @@ def denoise(  # noqa: PLR0913 - one parameter per option of the command line
         given = {"noise": noise, "max_shift": max_shift, "region": box}
         options = {name: value for name, value in given.items() if value is not None}
         rest = {"task": "denoise", "denoise": options, "seed": seed, "label": label}
-        rest["output"] = _output(output, format_, preview, html)
+        rest["output"] = _output(output, format_, preview, html or pdf)
         return Task(
             mesh,
             output,
@@ -155,6 +159,7 @@ def denoise(  # noqa: PLR0913 - one parameter per option of the command line
             report=report,
             preview=preview,
             html=html,
+            pdf=pdf,
             timeout_s=timeout,
             may_overwrite=overwrite,
             again=again,
@@ -180,6 +185,7 @@ def encode(  # noqa: PLR0913 - one parameter per option of the command line
     report: ReportOption = None,
     preview: PreviewOption = None,
     html: HtmlOption = None,
+    pdf: PdfOption = None,
     again: AgainOption = False,
     timeout: TimeoutOption = None,
     url: UrlOption = DEFAULT_URL,
@@ -194,7 +200,7 @@ def encode(  # noqa: PLR0913 - one parameter per option of the command line
             raise UsageError(f"{output} does not end in {_SUFFIX}, which is what encoding writes")
         options = {"max_error": max_error, "keep_connectivity": keep_connectivity}
         rest = {"task": "encode", "encode": options, "seed": seed, "label": label}
-        rest["output"] = {"preview": preview is not None, "html_report": html is not None}
+        rest["output"] = {"preview": preview is not None, "html_report": (html or pdf) is not None}
         return Task(
             mesh,
             output,
@@ -203,6 +209,7 @@ def encode(  # noqa: PLR0913 - one parameter per option of the command line
             report=report,
             preview=preview,
             html=html,
+            pdf=pdf,
             timeout_s=timeout,
             again=again,
         )
@@ -220,6 +227,7 @@ def decode(  # noqa: PLR0913 - one parameter per option of the command line
     report: ReportOption = None,
     preview: PreviewOption = None,
     html: HtmlOption = None,
+    pdf: PdfOption = None,
     again: AgainOption = False,
     timeout: TimeoutOption = None,
     url: UrlOption = DEFAULT_URL,
@@ -230,7 +238,7 @@ def decode(  # noqa: PLR0913 - one parameter per option of the command line
     """Bring back the surface of a .qpz file, with the model that it was encoded with."""
 
     def task() -> Task:
-        rest = {"task": "decode", "label": label, "output": _output(output, format_, preview, html)}
+        rest = {"task": "decode", "label": label, "output": _output(output, format_, preview, html or pdf)}
         return Task(
             mesh,
             output,
@@ -239,6 +247,7 @@ def decode(  # noqa: PLR0913 - one parameter per option of the command line
             report=report,
             preview=preview,
             html=html,
+            pdf=pdf,
             timeout_s=timeout,
             again=again,
         )
@@ -251,9 +260,9 @@ def _method(model: str | None) -> MethodChoice:
     return MethodChoice("smooth") if model == "smooth" else MethodChoice(model=model)
 
 
-def _output(output: Path, format_: Any, preview: Path | None, html: Path | None) -> dict[str, Any]:
+def _output(output: Path, format_: Any, preview: Path | None, page: Path | None) -> dict[str, Any]:
     return {
         "format": format_ or format_of(output),
         "preview": preview is not None,
-        "html_report": html is not None,
+        "html_report": page is not None,
     }

@@ -4,6 +4,7 @@ Also tests `quadpatch_client.batch`, `quadpatch_client.batch_command` and `quadp
 """
 
 import csv
+import hashlib
 import json
 import os
 import signal
@@ -22,6 +23,7 @@ from typer.testing import CliRunner, Result
 from quadpatch_client.batch import JOURNAL
 from quadpatch_client.cli import app
 from quadpatch_client.exit_codes import ExitCode
+from quadpatch_client.schema import FIGURES
 from quadpatch_client.sdk import Client
 from tests.integration.conftest import ply_bytes, punched_relief
 from tests.waiting import GUARD_S, wait_until
@@ -108,14 +110,18 @@ def test_results_lie_where_their_scans_do_and_the_summary_tells_of_all(
         assert json.loads((out / f"{name}.report.json").read_text())["counts"]["found"] == 3
         assert (out / f"{name}.report.html").read_text().lower().startswith("<!doctype html>")
     with (out / "summary.csv").open(encoding="utf-8-sig", newline="") as file:
-        rows = {row["file"]: row for row in csv.DictReader(file)}
-    assert {name: row["state"] for name, row in rows.items()} == {
-        "broken.stl": "failed",
-        "deep/summed_000.ply": "done",
-        "summed_000.ply": "done",
-        "summed_001.ply": "skipped",
+        rows = {row["mesh_name"]: row for row in csv.DictReader(file)}
+    assert {name: (row["state"], row["file"]) for name, row in rows.items()} == {
+        "broken.stl": ("failed", ""),
+        "deep/summed_000.ply": ("succeeded", "deep/summed_000.ply"),
+        "summed_000.ply": ("succeeded", "summed_000.ply"),
+        "summed_001.ply": ("skipped", ""),
     }
-    assert rows["summed_000.ply"]["filled_smooth"] == "2"
+    row = rows["summed_000.ply"]
+    assert row["holes_filled_smooth"] == "2"
+    assert row["file_sha256"] == hashlib.sha256((out / "summed_000.ply").read_bytes()).hexdigest()
+    assert tuple(row) == FIGURES
+    assert "passed over: notes.txt (no suffix of a mesh)" in done.stderr
     assert rows["summed_001.ply"]["reason"] == "name is summed_001.ply, not != *_001*"
 
 
@@ -133,7 +139,7 @@ def test_a_result_with_warnings_is_no_clean_success(
         assert "WARNING: " in done.stdout
         with (out / "summary.csv").open(encoding="utf-8-sig", newline="") as file:
             (row,) = csv.DictReader(file)
-        assert row["state"] == "done_with_warnings"
+        assert (row["state"], row["warnings"]) == ("succeeded_with_warnings", "1")
         assert "exact@1" in row["reason"]
     assert "1 of 1 files were finished before" in done.stderr
     watched = run("watch", folder, "--once", "--settle", "0", "--saved-rule", "exact")

@@ -1,6 +1,7 @@
 """Models, rules, keys, trainings and plans on the command line, against a real local stack.
 
-Also tests `quadpatch_client.catalogue`, `quadpatch_client.catalogue_commands` and `quadpatch_client.plan_command`.
+Also tests `quadpatch_client.catalogue`, `quadpatch_client.catalogue_commands`, `quadpatch_client.rule_commands` and
+`quadpatch_client.plan_command`.
 """
 
 import json
@@ -46,6 +47,39 @@ def test_a_saved_rule_is_listed_planned_and_followed(
     assert "float.ply: fill 0 of 5 holes" in planned.stdout
     done = run("repair", relief_file("float.ply"), "-o", tmp_path / "out.ply", "--saved-rule", "narrow@1")
     assert "5 left open by rule" in done.stderr
+
+
+def test_a_rule_is_saved_shown_and_saved_again(run: Callable[..., Result], tmp_path: Path) -> None:
+    content = {"holes": {"max_diameter": 20.0}, "acceptance": {"min_confidence": 0.8}}
+    file = tmp_path / "rule.json"
+    file.write_text(json.dumps(content))
+    assert "saved from-a-file@1" in run("rules", "save", "from-a-file", file).stderr
+    shown = run("rules", "show", "from-a-file")
+    assert shown.exit_code == ExitCode.OK, shown.stderr
+    assert json.loads(shown.stdout) == content
+    file.write_text(shown.stdout.replace("20.0", "30.0"))
+    saved = run("rules", "save", "from-a-file", file, "--json")
+    assert json.loads(saved.stdout)["version"] == 2
+    first = json.loads(run("rules", "show", "from-a-file@1", "--json").stdout)
+    assert (first["version"], first["content"]["holes"]["max_diameter"]) == (1, 20.0)
+    assert "from-a-file@2" in run("rules").stdout
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("{", "can't be read as JSON"),
+        ("[]", "holds no rule"),
+        ('{"holes": {"max_diameter": -1}}', "has to be greater than 0"),
+        ('{"hoels": {}}', "hoels"),
+    ],
+)
+def test_what_is_no_rule_is_refused_in_words(run: Callable[..., Result], tmp_path: Path, text: str, said: str) -> None:
+    (tmp_path / "rule.json").write_text(text)
+    refused = run("rules", "save", "wrong", tmp_path / "rule.json")
+    assert refused.exit_code == ExitCode.USAGE
+    assert said in " ".join(refused.stderr.split())
+    assert run("rules", "show", "wrong").exit_code == ExitCode.REJECTED
 
 
 def test_a_plan_names_model_and_limits(run: Callable[..., Result], relief_file: Callable[[str], Path]) -> None:

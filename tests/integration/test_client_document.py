@@ -12,6 +12,7 @@ import pytest
 from typer.testing import CliRunner
 
 from quadpatch_client.cli import app
+from quadpatch_client.schema import RuleContent
 from quadpatch_client.sdk import Client
 from tests.integration.test_batch import small_scans
 from tests.waiting import GUARD_S
@@ -28,6 +29,7 @@ def folder(relief_file: Callable[[str], Path], tmp_path: Path, monkeypatch: pyte
         small_scans(tmp_path / name, 2, "documented")
     for name in ("a.ply", "b.ply"):
         (tmp_path / "good_scans" / name).write_bytes(scan.read_bytes())
+    (tmp_path / "rule.json").write_text('{"holes": {"max_diameter": 20}}')
     monkeypatch.chdir(tmp_path)
     return tmp_path
 
@@ -45,6 +47,9 @@ def test_commands_of_the_document_run(line: str, local_stack: Any, folder: Path)
     if "$JOB" in words:
         with Client(local_stack.url) as client:
             words = [client.repair(folder / "scan.ply").id if word == "$JOB" else word for word in words]
+    if words[:2] == ["rules", "show"]:
+        with Client(local_stack.url) as client:
+            client.save_rule(words[2], RuleContent())
     if words[0] == "watch":
         words.append("--once")
     done = CliRunner().invoke(app, words, env={"QUADPATCH_CLIENT_URL": local_stack.url})

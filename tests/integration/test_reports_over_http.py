@@ -3,9 +3,13 @@
 import shutil
 from collections.abc import Callable
 from contextlib import AbstractContextManager
+from pathlib import Path
 
 import httpx
+from typer.testing import CliRunner
 
+from quadpatch_client.cli import app
+from quadpatch_client.exit_codes import ExitCode
 from tests.integration.conftest import RunningStack, punched_relief, stl_bytes
 from tests.waiting import GUARD_S, wait_until
 
@@ -38,3 +42,28 @@ def test_a_report_names_the_key_that_asked_for_it_and_no_other(
             printed = client.get(f"{path}/report.pdf")
             # Where there is no Chromium, it says so.
             assert printed.content.startswith(b"%PDF-") if CHROMIUM else "no renderer" in printed.json()["detail"]
+
+
+def test_a_pdf_is_fetched_where_the_service_prints_one(
+    run_stack: Callable[..., AbstractContextManager[RunningStack]], tmp_path: Path
+) -> None:
+    (tmp_path / "scan.stl").write_bytes(stl_bytes(*punched_relief(20)))
+    pdf = tmp_path / "report.pdf"
+    command = ["repair", tmp_path / "scan.stl", "-o", tmp_path / "out.stl", "--method", "smooth", "--pdf", pdf]
+    with run_stack(QUADPATCH_PDF_RENDERER=CHROMIUM) as stack:
+        done = CliRunner().invoke(app, [*map(str, command)], env={"QUADPATCH_CLIENT_URL": stack.url})
+    if CHROMIUM:
+        assert done.exit_code == ExitCode.OK, done.stderr
+        assert pdf.read_bytes().startswith(b"%PDF-")
+    else:
+        assert done.exit_code == ExitCode.USAGE
+        assert "prints no PDFs" in " ".join(done.stderr.split())
+
+
+def test_a_service_that_prints_none_is_told_before_a_scan_is_sent(local_stack: RunningStack, tmp_path: Path) -> None:
+    (tmp_path / "unsent.stl").write_bytes(stl_bytes(*punched_relief(21)))
+    command = ["repair", tmp_path / "unsent.stl", "-o", tmp_path / "out.stl", "--pdf", tmp_path / "report.pdf"]
+    refused = CliRunner().invoke(app, [*map(str, command)], env={"QUADPATCH_CLIENT_URL": local_stack.url})
+    assert refused.exit_code == ExitCode.USAGE
+    assert "prints no PDFs; leave out --pdf, take --html" in " ".join(refused.stderr.split())
+    assert httpx.get(f"{local_stack.url}/v1/meshes?filename=unsent.stl", timeout=GUARD_S).json()["items"] == []

@@ -20,6 +20,10 @@ from typer.testing import CliRunner
 
 from quadpatch_client.cli import app
 from quadpatch_client.exit_codes import ExitCode
+from quadpatch_client.file_repair import JobOptions
+from quadpatch_client.folder_watch import STATE, FolderWatch
+from quadpatch_client.journal import Journal
+from quadpatch_client.options import MethodChoice
 from quadpatch_client.sdk import Client
 from tests.integration.conftest import ply_bytes, punched_relief
 from tests.integration.test_batch import SMOOTH, small_scans
@@ -54,26 +58,46 @@ def watching(folder: Path, url: str) -> Iterator[subprocess.Popen[bytes]]:
             end(process)
 
 
-def test_nothing_is_lost_though_the_line_goes_down_and_the_client_dies_in_an_upload(
-    local_stack: Any, tmp_path: Path
-) -> None:
-    folder = tmp_path / "drop"
+def killed_in_an_upload(line: Line, folder: Path, name: str, content: bytes, accidents: list[Any]) -> None:
+    """Let a client that watches a folder die in the middle of an upload, and the line go down at the same moment."""
     folder.mkdir()
-    content = ply_bytes(*punched_relief(121, n_holes=3))
+    with watching(folder, line.url) as client:
+        accidents.append(client)
+        (folder / name).write_bytes(content)
+        wait_until(lambda: line.is_down)
+        client.wait(GUARD_S)
+
+
+@contextmanager
+def line_with_an_accident(url: str, size: int, seed: int) -> Iterator[tuple[Line, list[Any]]]:
+    """A line that goes down in the middle of so many bytes, and kills the client that is listed first then."""
     clients: list[subprocess.Popen[bytes]] = []
 
     def accident() -> None:
         line.is_down = True
         clients[0].kill()
 
-    port = urlsplit(local_stack.url).port or 0
-    line = Line(port, len(content), [accident], random.Random(0))
+    line = Line(urlsplit(url).port or 0, size, [accident], random.Random(seed))
     with line.running():
-        with watching(folder, line.url) as client:
-            clients.append(client)
-            (folder / "lost_0.ply").write_bytes(content)
-            wait_until(lambda: line.is_down)
-            client.wait(GUARD_S)
+        yield line, clients
+
+
+def check_nothing_is_lost(url: str, folder: Path, names: set[str], label: str) -> None:
+    """Assert that scans and results of all files are there, and each was repaired once."""
+    assert {path.name for path in folder.glob(label) if "repaired" not in path.name} == names
+    for name in names:
+        report = json.loads((folder / name.replace(".ply", "-repaired.json")).read_text())
+        assert report["counts"]["filled_smooth"] == report["counts"]["found"] - 1
+    with Client(url) as service:
+        assert Counter(job.mesh_name for job in service.jobs(label=label)) == dict.fromkeys(names, 1)
+
+
+def test_nothing_is_lost_though_the_line_goes_down_and_the_client_dies_in_an_upload(
+    local_stack: Any, tmp_path: Path
+) -> None:
+    folder, content = tmp_path / "drop", ply_bytes(*punched_relief(121, n_holes=3))
+    with line_with_an_accident(local_stack.url, len(content), 0) as (line, clients):
+        killed_in_an_upload(line, folder, "lost_0.ply", content, clients)
         small_scans(folder, 2, "lost_more")
         with watching(folder, line.url):
             wait_until(lambda: line.n_refused > 0)
@@ -81,12 +105,41 @@ def test_nothing_is_lost_though_the_line_goes_down_and_the_client_dies_in_an_upl
             line.is_down = False
             wait_until(lambda: len(list(folder.glob("*-repaired.ply"))) == 3)
     names = {"lost_0.ply", "lost_more_000.ply", "lost_more_001.ply"}
-    assert {path.name for path in folder.glob("lost*") if "repaired" not in path.name} == names
-    for name in names:
-        report = json.loads((folder / name.replace(".ply", "-repaired.json")).read_text())
-        assert report["counts"]["filled_smooth"] == report["counts"]["found"] - 1
-    with Client(local_stack.url) as service:
-        assert Counter(job.mesh_name for job in service.jobs(label="lost_*")) == dict.fromkeys(names, 1)
+    check_nothing_is_lost(local_stack.url, folder, names, "lost_*")
+
+
+def test_ten_minutes_without_a_service_lose_nothing(local_stack: Any, tmp_path: Path) -> None:
+    """The client dies in an upload and is started again; the minutes pass by a clock that is set by hand."""
+    folder, content = tmp_path / "drop", ply_bytes(*punched_relief(123, n_holes=3))
+    with line_with_an_accident(local_stack.url, len(content), 1) as (line, clients):
+        killed_in_an_upload(line, folder, "away_0.ply", content, clients)
+        small_scans(folder, 1, "away_before")
+        waits = [said for said in watched_for_eleven_minutes(folder, line.url) if " waits, " in said]
+        assert len(waits) >= 15
+        assert "next try in 60 s" in waits[-1]
+        assert not list(folder.glob("*-repaired.*"))
+        assert not (folder / "failed").exists()
+        line.is_down = False
+        with watching(folder, line.url):
+            wait_until(lambda: len(list(folder.glob("*-repaired.ply"))) == 3)
+    assert (folder / "away_0.ply").read_bytes() == content
+    names = {"away_0.ply", "away_before_000.ply", "away_during_000.ply"}
+    check_nothing_is_lost(local_stack.url, folder, names, "away_*")
+
+
+def watched_for_eleven_minutes(folder: Path, url: str) -> list[str]:
+    """Watch a folder by a clock that is set by hand, while one more scan is dropped; return what was told."""
+    now, told, options = 0.0, list[str](), JobOptions(method=MethodChoice("smooth"))
+    with Client(url, patience_s=0.0) as service, Journal(folder / STATE / "journal.jsonl") as journal:
+        watch = FolderWatch(service, folder, options, journal, 2, 0.2, told.append, clock=lambda: now)
+        while now < 660.0:
+            watch.look()
+            wait_until(lambda: all(future.done() for future in watch._busy.values()))
+            now += 5.0
+            if now == 300.0:
+                small_scans(folder, 1, "away_during")
+        watch.look()
+    return told
 
 
 def test_what_lies_there_is_repaired_once_and_what_is_no_mesh_is_set_aside(

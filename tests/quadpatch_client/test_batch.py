@@ -1,5 +1,6 @@
 """Also tests `quadpatch_client.batch_summary`, `quadpatch_client.folder_files` and `quadpatch_client.workers`."""
 
+import csv
 import io
 import re
 import threading
@@ -15,8 +16,14 @@ from quadpatch_client.cli import app
 from quadpatch_client.errors import UsageError
 from quadpatch_client.exit_codes import ExitCode
 from quadpatch_client.file_repair import Row
-from quadpatch_client.folder_files import mesh_files, plans_in, remove_partial_files
-from quadpatch_client.schema import PROBLEM_MEDIA_TYPE, Problem
+from quadpatch_client.folder_files import (
+    mesh_files,
+    passed_over,
+    passed_over_in_words,
+    plans_in,
+    remove_partial_files,
+)
+from quadpatch_client.schema import FIGURES, PROBLEM_MEDIA_TYPE, Problem
 from quadpatch_client.workers import Workers
 from tests.waiting import GUARD_S
 
@@ -67,9 +74,10 @@ def test_a_file_is_told_in_a_line() -> None:
 def test_no_text_of_others_becomes_a_formula_in_a_spreadsheet(tmp_path: Path) -> None:
     write_csv(tmp_path / "s.csv", [DONE, FAILED])
     lines = (tmp_path / "s.csv").read_text("utf-8-sig").splitlines()
-    assert lines[0].startswith("file,state,found,filled")
-    assert lines[1] == "a.ply,done,5,1,2,1,1,70,2.5,job_1,"
-    assert lines[2].endswith(",'=the file is empty (invalid_mesh)")
+    assert lines[0] == ",".join(FIGURES)
+    rows = list(csv.DictReader(lines))
+    assert (rows[0]["mesh_name"], rows[0]["state"], rows[0]["holes_found"]) == ("a.ply", "succeeded", "5")
+    assert rows[1]["reason"] == "'=the file is empty (invalid_mesh)"
 
 
 def test_the_document_names_every_column_of_the_summary(tmp_path: Path) -> None:
@@ -86,6 +94,15 @@ def test_meshes_are_found_by_their_suffix(tmp_path: Path) -> None:
     names = [path.relative_to(tmp_path).as_posix() for path in mesh_files(tmp_path, True, tmp_path / "out")]
     assert names == ["a.ply", "b.STL", "in/c.obj"]
     assert [path.name for path in mesh_files(tmp_path, False)] == ["a.ply", "b.STL"]
+    others = passed_over(tmp_path, True, tmp_path / "out")
+    hidden = "hidden: the name begins with a dot"
+    assert others == {hidden: [".hidden.ply"], "no suffix of a mesh": ["notes.txt"]}
+    assert passed_over_in_words(others) == f".hidden.ply ({hidden}); notes.txt (no suffix of a mesh)"
+
+
+def test_at_most_twenty_names_are_said() -> None:
+    said = passed_over_in_words({"no suffix of a mesh": [f"{i}.txt" for i in range(1023)]})
+    assert said.endswith("19.txt and 1,003 more (no suffix of a mesh)")
 
 
 def test_two_files_never_share_a_place() -> None:

@@ -1,6 +1,7 @@
 """Also tests `quadpatch_client.rejected_files`."""
 
 import os
+import re
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -9,7 +10,7 @@ import pytest
 
 from quadpatch_client.errors import AnswerError, ClientError, JobFailedError, RefusedError, UnreachableError
 from quadpatch_client.file_repair import JobOptions, Row
-from quadpatch_client.folder_watch import FolderWatch
+from quadpatch_client.folder_watch import STATE, FolderWatch
 from quadpatch_client.journal import Journal
 from quadpatch_client.rejected_files import set_aside
 from quadpatch_client.schema import Job, Problem
@@ -35,7 +36,8 @@ class Watched:
 
     def __init__(self, folder: Path, client: Client) -> None:
         self.now, self.told = 0.0, list[str]()
-        self.journal = Journal(folder / "journal")
+        (folder / STATE).mkdir(exist_ok=True)
+        self.journal = Journal(folder / STATE / "journal")
         self.watch = FolderWatch(
             client, folder, JobOptions(), self.journal, 1, 2.0, self.told.append, clock=lambda: self.now
         )
@@ -145,3 +147,21 @@ def test_no_file_that_was_set_aside_is_overwritten(tmp_path: Path) -> None:
     assert found == {"a.ply": b"1", "a-2.ply": b"2"}
     assert "job: job_1" in (tmp_path / "failed" / "a-2.ply.reason.txt").read_text()
     assert os.listdir(tmp_path) == ["failed"]
+
+
+def test_a_file_that_is_no_mesh_by_its_name_is_told_once(tmp_path: Path, watched: Callable[..., Any]) -> None:
+    watch = watched(UnreachableError("away"))
+    for name in ("notes.txt", ".hidden.ply", "a-repaired.json", ".a.ply.x.part"):
+        (tmp_path / name).write_bytes(b"1")
+    watch.at(0.0)
+    assert watch.told == []
+    # A station writes under another name, and renames.
+    (tmp_path / "scan.ply.tmp").write_bytes(b"1")
+    watch.at(1.0)
+    (tmp_path / "scan.ply.tmp").rename(tmp_path / "-repaired.ply")
+    for now in (2.0, 4.0, 8.0):
+        watch.at(now)
+    (said,) = [line for line in watch.told if "passed over" in line]
+    assert ".hidden.ply (hidden: the name begins with a dot)" in said
+    assert "notes.txt" in said
+    assert not re.search(r"tmp|repaired|part", said)

@@ -19,6 +19,7 @@ from quadpatch_client.schema.batches import (
 )
 from quadpatch_client.schema.codes import WarningDetail
 from quadpatch_client.schema.conflicts import conflict_of
+from quadpatch_client.schema.figures import FIGURES, figures_of, spreadsheet_cell
 from quadpatch_client.schema.jobs import (
     Event,
     EventPage,
@@ -167,6 +168,7 @@ __all__ = [
     "DEFAULT_PAPER_MODEL",
     "DEFAULT_PAPER_NETWORK",
     "ENDINGS",
+    "FIGURES",
     "MOST_JOBS",
     "PROBLEM_MEDIA_TYPE",
     "SELF",
@@ -331,6 +333,8 @@ __all__ = [
     "WebhookList",
     "WebhookWithSecret",
     "conflict_of",
+    "figures_of",
     "identity_of",
     "rfc3339",
+    "spreadsheet_cell",
 ]
