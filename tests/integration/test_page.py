@@ -27,7 +27,7 @@ def test_a_scan_is_dropped_repaired_and_its_result_saved(visit: Visit, api: Serv
     expect(page.get_by_role("heading", level=1)).to_have_text("dropped.ply")
     expect(page.locator("nav [aria-current]")).to_have_text("Scans")
     expect(
-        page.get_by_role("status").filter(has_text="4 of 4 holes would be filled. Besides: outer border left open.")
+        page.get_by_role("status").filter(has_text="4 of 4 holes would be filled. Stays open besides: outer border.")
     ).to_be_visible()
 
     page.get_by_label("What to do with hole 2").select_option("leave open")
@@ -357,6 +357,7 @@ def test_what_the_service_says_is_told_in_german(chromium: Browser, local_stack:
         sees(f"jobs/{failed}", "Manche Löcher halten die Grenzen der Regel nicht ein.")
         sees(f"meshes/{broken}", "Die Datei ist beschädigt")
         sees("jobs/job_nope", "Diesen Auftrag gibt es nicht")
+        sees("models", "general-dictionary@1", "Beschreibung in der Modellkarte (englisch)")
         # What it says in English is there for who opens it.
         visit.go(f"jobs/{job}")
         page.get_by_text("Wortlaut des Dienstes").first.click()

@@ -2,7 +2,7 @@
 import { useAnswer, useTitle } from "../hooks";
 import type { ModelList, ModelVersion } from "../api/types";
 import { DownloadButton, Facts, Table } from "../parts/forms";
-import { Loading, ProblemNote } from "../parts/notes";
+import { EnglishText, Loading, ProblemNote } from "../parts/notes";
 import { Picture } from "../parts/picture";
 import { bytes, count, number, time } from "../text/format";
 import { t, tCode } from "../text/text";
@@ -50,8 +50,8 @@ function Version({ version }: { version: ModelVersion }) {
   return (
     <section class="card">
       <h2>{version.name}@{version.version}</h2>
-      {version.deprecated && <p class="note">{t("deprecated")} <span lang="en">{version.deprecated.reason}</span></p>}
-      {card.description && <p lang="en">{card.description}</p>}
+      {version.deprecated && <p class="note">{t("deprecated")} {version.deprecated.reason}</p>}
+      {card.description && <EnglishText text={card.description} summary={t("card_wording")} />}
       <div class="beside">
         <Facts facts={facts} />
         <Picture path={`${path}/picture`} label={t(version.kind === "dictionary" ? "picture_atoms" : "picture_filters", { name: version.name })} />

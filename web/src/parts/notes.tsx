@@ -2,7 +2,7 @@
 import type { ComponentChildren } from "preact";
 import type { Problem } from "../api/problem";
 import type { WarningDetail } from "../api/types";
-import { hasText, t, tService, type Values } from "../text/text";
+import { hasText, language, t, tService, type Values } from "../text/text";
 
 /** Codes whose sentence says all: what the service says besides would only repeat it in English. */
 const SAID = new Set([
@@ -46,6 +46,12 @@ function Wording({ group, code, message, values }: { group: "problem" | "failure
   const words = <span lang="en">{message}</span>;
   if (tService(group, code, values) === null) return <p>{t("service_says")}: {words}</p>;
   return <details><summary>{t("wording")}</summary><p>{words}</p></details>;
+}
+
+/** A text in English that others wrote: open for who reads English, else to be opened. */
+export function EnglishText({ text, summary }: { text: string; summary: string }) {
+  if (language() === "en") return <p>{text}</p>;
+  return <details><summary>{summary}</summary><p lang="en">{text}</p></details>;
 }
 
 /** Warnings in the reader's language; those of earlier versions have no codes, and stand as they are. */

@@ -10,7 +10,7 @@ export function Outcome({ holes }: { holes: readonly HoleReport[] }) {
   const n = holes.length - outer.length;
   const filled = t("outcome_filled", { n: count(n - open.length), of: count(n) });
   const left = open.length > 0 && t("outcome_open", { n: count(open.length), why: reasons(open) });
-  const apart = outer.length > 0 && outerInWords(outer.map(({ kind, code }) => outerName(kind, code)));
+  const apart = outer.length > 0 && t("outcome_outer", { which: outerInWords(outer.map(({ kind, code }) => outerName(kind, code))) });
   const counted = [filled, left].filter(Boolean).join(", ");
   return <p><strong>{[counted, apart].filter(Boolean).join("; ")}</strong></p>;
 }
@@ -25,7 +25,7 @@ export function outerInWords(names: readonly string[]): string {
   const counts = new Map<string, number>();
   for (const name of names) counts.set(name, (counts.get(name) ?? 0) + 1);
   const each = [...counts].map(([name, n]) => (n > 1 ? `${count(n)} × ${name}` : name));
-  return t("outcome_outer", { which: each.join(", ") });
+  return each.join(", ");
 }
 
 /** Why holes stay open; where there are several reasons, with the number of holes of each. */

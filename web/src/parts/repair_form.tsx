@@ -113,5 +113,5 @@ function planInWords({ holes, selected }: Plan): string {
   const outer = holes.filter((hole) => !hole.selected && isOuter(hole.kind, hole.reason));
   const counts = t("plan_counts", { n: count(selected), of: count(holes.length - outer.length) });
   if (outer.length === 0) return counts;
-  return `${counts} ${t("plan_outer", { outer: outerInWords(outer.map(({ kind, reason }) => outerName(kind, reason))) })}`;
+  return `${counts} ${t("plan_outer", { which: outerInWords(outer.map(({ kind, reason }) => outerName(kind, reason))) })}`;
 }
