@@ -7,7 +7,7 @@ from typing import Any
 from quadpatch.formats.output_files import write_whole
 from quadpatch_client.schema import Accepted, JobSpec
 from quadpatch_rules.acceptance import judge, unmet_in_words
-from quadpatch_rules.coded_warnings import CodedWarning, add_warning
+from quadpatch_rules.coded_warnings import CodedWarning, Value, add_warning
 from worker.engine.request import REPORT_NAME
 from worker.failures import EngineFailedError, Failure
 
@@ -30,7 +30,7 @@ def check_acceptance(folder: Path, spec: JobSpec) -> None:
         message = unmet_in_words(accepted.model_dump(), spec.rule, limits)
         if spec.acceptance.otherwise == "fail":
             raise EngineFailedError(Failure("acceptance_not_met", message, "judge"))
-        missed = {"missed": len(accepted.unmet), "holes": accepted.holes, "rule": spec.rule or ""}
+        missed: dict[str, Value] = {"missed": len(accepted.unmet), "holes": accepted.holes, "rule": spec.rule or ""}
         add_warning(report, CodedWarning(message, "limits_missed", missed))
     report["acceptance"] = accepted.model_dump(mode="json")
     write_whole(path, json.dumps(report).encode())

@@ -17,6 +17,7 @@ from quadpatch_client.errors import UnreachableError, UsageError
 from quadpatch_client.exit_codes import ExitCode
 from quadpatch_client.file_repair import Row
 from quadpatch_client.folder_files import (
+    inner_folders,
     mesh_files,
     passed_over,
     passed_over_in_words,
@@ -113,6 +114,9 @@ def batch(  # noqa: PLR0913 - one parameter per option of the command line
         )
         _check_folders(folder, out)
         others = passed_over(folder, recursive, out)
+        inner = [] if recursive else inner_folders(folder, out)
+        if inner:
+            others["folders: --recursive takes them"] = inner
         if others:
             screen.say(f"passed over: {passed_over_in_words(others)}")
         sources = mesh_files(folder, recursive, out)

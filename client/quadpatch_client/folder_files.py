@@ -43,6 +43,13 @@ def passed_over(folder: Path, is_recursive: bool, *left_out: Path) -> dict[str, 
     return found
 
 
+def inner_folders(folder: Path, *left_out: Path) -> list[str]:
+    """Return the names of the folders in a folder that are neither hidden nor left out, sorted."""
+    passed = {path.resolve() for path in left_out}
+    found = [path for path in folder.iterdir() if path.is_dir() and not path.name.startswith(".")]
+    return sorted(path.name for path in found if path.resolve() not in passed)
+
+
 def passed_over_in_words(found: Mapping[str, Sequence[str]]) -> str:
     """Name the files that are passed over, at most 20 for each reason."""
     return "; ".join(f"{_some(names)} ({why})" for why, names in found.items())

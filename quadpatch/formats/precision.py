@@ -14,7 +14,7 @@ from quadpatch.formats.scan import Scan
 from quadpatch.mesh.measures import mean_edge_length
 from quadpatch.mesh.normals import cross
 from quadpatch.types import BoolArray, FloatArray, TriangleMesh
-from quadpatch_rules.coded_warnings import warning
+from quadpatch_rules.coded_warnings import Value, warning
 
 _SINGLE = {"stl": "STL", "glb": "glTF", "gltf": "glTF"}
 # A step of rounding above this share of the mean edge length shows in the shape.
@@ -62,7 +62,7 @@ def check_precision(scan: Scan, output: Path) -> list[str]:
             f"{where}: {n_collapsed:,} of {len(scan.triangles):,} triangles would collapse. "
             "Take PLY or OBJ, or move the mesh to the origin first"
         )
-    values = {"format": _SINGLE[suffix], "step": step, "edge": edge}
+    values: dict[str, Value] = {"format": _SINGLE[suffix], "step": step, "edge": edge}
     if n_collapsed:
         return [warning("triangles_collapse", **values, collapsed=n_collapsed)]
     return [warning("precision_short", **values)]

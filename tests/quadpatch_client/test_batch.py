@@ -17,6 +17,7 @@ from quadpatch_client.errors import UsageError
 from quadpatch_client.exit_codes import ExitCode
 from quadpatch_client.file_repair import Row
 from quadpatch_client.folder_files import (
+    inner_folders,
     mesh_files,
     passed_over,
     passed_over_in_words,
@@ -94,6 +95,7 @@ def test_meshes_are_found_by_their_suffix(tmp_path: Path) -> None:
     names = [path.relative_to(tmp_path).as_posix() for path in mesh_files(tmp_path, True, tmp_path / "out")]
     assert names == ["a.ply", "b.STL", "in/c.obj"]
     assert [path.name for path in mesh_files(tmp_path, False)] == ["a.ply", "b.STL"]
+    assert inner_folders(tmp_path, tmp_path / "out") == ["in"]
     others = passed_over(tmp_path, True, tmp_path / "out")
     hidden = "hidden: the name begins with a dot"
     assert others == {hidden: [".hidden.ply"], "no suffix of a mesh": ["notes.txt"]}

@@ -9,8 +9,9 @@ from typing import get_args
 import pytest
 
 from quadpatch_client.schema.codes import FAILURE_CODES
-from quadpatch_client.schema.models import ModelKind, ModelState
+from quadpatch_client.schema.models import ModelKind
 from quadpatch_client.schema.reports import HoleVerdict
+from quadpatch_client.schema.states import ModelState
 from quadpatch_rules.coded_warnings import WARNINGS
 from quadpatch_rules.hole_selection import HoleKind, RuleAction
 from service.contract.codes import problem_codes
