@@ -109,10 +109,12 @@ def _next(report: Mapping[str, Any]) -> list[Answer]:
         todo.append(Answer(f"Look at hole {known[0]['id']}, and judge by what you know of the object.", known[0]["id"]))
     if refused:
         said = f"{_named(refused)} {_verb(refused, 'stays', 'stay')} open: no sound fill was found. "
-        todo.append(Answer(f"{said}Look at the rim, or have it closed flat.", refused[0]["id"]))
+        rims = _verb(refused, "the rim, or have it", "their rims, or have them")
+        todo.append(Answer(f"{said}Look at {rims} closed flat.", refused[0]["id"]))
     if skipped:
         said = f"{_named(skipped)} {_verb(skipped, 'was', 'were')} left open by rule ({_reasons(skipped)})."
-        todo.append(Answer(f"{said} If it is damage, choose it and repair again.", skipped[0]["id"]))
+        chosen = _verb(skipped, "it is damage, choose it", "they are damage, choose them")
+        todo.append(Answer(f"{said} If {chosen} and repair again.", skipped[0]["id"]))
     if outer:
         kinds = _counted_kinds(outer)
         todo.append(Answer(f"{kinds} {_verb(outer, 'stays', 'stay')} open, as on every scan that is not closed."))

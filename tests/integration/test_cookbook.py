@@ -43,6 +43,8 @@ def folder(relief_file: Callable[[str], Path], tmp_path: Path, monkeypatch: pyte
     for name in ("scans", "drop"):
         small_scans(tmp_path / name, 2, "documented")
     (tmp_path / "scans" / "broken.ply").write_bytes(b"ply\n" + bytes(range(256)))
+    (rule,) = re.findall(r"```\n(\{.*\})\n```", STATIONS)
+    (tmp_path / "rule.json").write_text(rule)
     monkeypatch.chdir(tmp_path)
     return tmp_path
 

@@ -56,8 +56,8 @@ def test_holes_that_stay_open_are_named_with_what_to_do() -> None:
     wide = hole(0, "skipped", code="too_wide")
     todo = answers(wide, hole(1, "refused", code="folds_over"), hole(2, "refused", code="folds_over"), hole(3))
     said = todo[QUESTIONS[3]]
-    assert "Holes 1 and 2 stay open: no sound fill was found." in said
-    assert "Hole 0 was left open by rule (too wide)." in said
+    assert "Holes 1 and 2 stay open: no sound fill was found. Look at their rims, or have them closed flat." in said
+    assert "Hole 0 was left open by rule (too wide). If it is damage, choose it and repair again." in said
     many = answers(*(hole(i, "refused", code="folds_over") for i in range(8)))[QUESTIONS[3]]
     assert "8 holes (0, 1, 2, 3, 4 …) stay open" in many
 

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from pydantic import BaseModel
 
 from quadpatch.compression.encode import EncodeOptions
 from quadpatch.html_report.in_short import QUESTIONS
@@ -34,7 +35,12 @@ ASKED = {
     "rule": None,
     "mesh_name": HOSTILE,
 }
-MODELS = {"restore": RestoreReport, "denoise": DenoiseReport, "encode": EncodeReport, "decode": DecodeReport}
+MODELS: dict[str, type[BaseModel]] = {
+    "restore": RestoreReport,
+    "denoise": DenoiseReport,
+    "encode": EncodeReport,
+    "decode": DecodeReport,
+}
 
 
 def scan(folder: Path) -> Path:
@@ -95,7 +101,7 @@ def test_every_figure_is_that_of_the_json(written: tuple[dict[str, Any], str]) -
                 assert float(cells[0].text.replace(",", "")) == pytest.approx(part, rel=1e-3)
             else:
                 said = {True: "yes", False: "no", None: "–"}.get(part, part)
-                assert cells[0].text.strip() == said.replace("_", " ")
+                assert cells[0].text.strip() == str(said).replace("_", " ")
     assert shown == {}
 
 
@@ -110,10 +116,10 @@ def test_surfaces_files_and_who_asked_are_told(written: tuple[dict[str, Any], st
         assert [float(cell.attributes["value"]) for cell in cells if cell.tag == "data"] == [
             side[name] for side in sides
         ]
-    cells = {cell.text for cell in page.all("td")}
-    assert {facts["source"]["sha256"], facts["output"]["sha256"], "station 4", HOSTILE} <= cells
+    texts = {cell.text for cell in page.all("td")}
+    assert {facts["source"]["sha256"], facts["output"]["sha256"], "station 4", HOSTILE} <= texts
     assert "seed" in {cell.text for cell in page.all("th")} or report["task"] == "decode"
-    assert f"quadpatch {facts['software_version']}" in cells
+    assert f"quadpatch {facts['software_version']}" in texts
     assert report["stages"][-1]["name"] == "html_report"
     assert not page.all("script", "iframe", "link")
 
