@@ -6,8 +6,8 @@ twice. What has come of a file stands in the journal once all its results are on
 Tested in `tests/integration/test_batch.py`.
 """
 
-from collections.abc import Callable, Sequence
-from concurrent.futures import FIRST_COMPLETED, wait
+from collections.abc import Callable, Iterable, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, wait
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -78,9 +78,13 @@ class Batch:
                     row = future.result()
                     rows[row.file] = row
                     tell(row)
+        except RefusedError:
+            _cancel(left)
+            # Files at work are refused as well, or come to their end: no connection is closed under them.
+            wait(left)
+            raise
         finally:
-            for future in left:
-                future.cancel()
+            _cancel(left)
         return [rows[plan.name] for plan in self.plans]
 
     def _holds(self, entry: Entry, plan: FilePlan) -> bool:
@@ -107,6 +111,11 @@ class Batch:
             row = failure(plan.name, error)
         note(row)
         return row
+
+
+def _cancel(futures: Iterable[Future[Row]]) -> None:
+    for future in futures:
+        future.cancel()
 
 
 def _sync_outputs(plan: FilePlan) -> None:

@@ -9,7 +9,7 @@ Tested in `tests/quadpatch_client/test_folder_watch.py`.
 
 import time
 from collections.abc import Callable
-from concurrent.futures import Future
+from concurrent.futures import Future, wait
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -188,14 +188,18 @@ class FolderWatch:
             self._tell(_told(row))
         elif isinstance(error, FileNotFoundError):
             del self._seen[path]
-        elif not isinstance(error, ClientError | OSError) or self._is_final(error):
+        elif self._is_final(error):
+            # No connection is closed under other files at work.
+            wait(self._busy.values())
+            raise error
+        elif not isinstance(error, ClientError | OSError):
             raise error
         elif self._may_pass(error, waiting):
             self._wait_for(path, waiting, error)
         else:
             self._set_aside(path, waiting, error)
 
-    def _is_final(self, error: ClientError | OSError) -> bool:
+    def _is_final(self, error: BaseException) -> bool:
         return not self._is_patient and isinstance(error, RefusedError) and error.concerns_every_file
 
     def _may_pass(self, error: ClientError | OSError, waiting: _Waiting) -> bool:

@@ -4,6 +4,7 @@ import csv
 import io
 import re
 import threading
+from concurrent.futures import ALL_COMPLETED, wait
 from pathlib import Path
 from typing import Any
 
@@ -11,11 +12,12 @@ import pytest
 from rich.console import Console
 from typer.testing import CliRunner
 
+from quadpatch_client.batch import Batch
 from quadpatch_client.batch_summary import print_summary, row_text, write_csv
 from quadpatch_client.cli import app
-from quadpatch_client.errors import UsageError
+from quadpatch_client.errors import MeshRejectedError, RefusedError, UsageError
 from quadpatch_client.exit_codes import ExitCode
-from quadpatch_client.file_repair import Row
+from quadpatch_client.file_repair import FilePlan, JobOptions, Row, failure
 from quadpatch_client.folder_files import (
     inner_folders,
     mesh_files,
@@ -24,7 +26,9 @@ from quadpatch_client.folder_files import (
     plans_in,
     remove_partial_files,
 )
-from quadpatch_client.schema import FIGURES, PROBLEM_MEDIA_TYPE, Problem
+from quadpatch_client.journal import Journal
+from quadpatch_client.schema import FIGURES, PROBLEM_MEDIA_TYPE, MeshProblem, Problem
+from quadpatch_client.sdk import Client
 from quadpatch_client.workers import Workers
 from tests.waiting import GUARD_S
 
@@ -55,6 +59,35 @@ def test_a_key_that_is_refused_is_no_fault_of_any_file(  # noqa: PLR0917 - what 
     assert f"({code})" in done.stderr
     assert sorted(path.name for path in Path("in").glob("*.ply")) == ["a.ply", "b.ply"]
     assert not Path("out/summary.csv").exists()
+
+
+def test_a_batch_that_is_refused_ends_after_the_files_at_work(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    problem = Problem(type="x", title="x", status=401, code="unauthorized", detail="words", instance="x")
+    both_at_work, is_waited_for, ended = threading.Barrier(2), threading.Event(), list[str]()
+
+    def repair(_client: object, plan: FilePlan, *_: object) -> Row:
+        both_at_work.wait(GUARD_S)
+        if plan.name == "a.ply":
+            raise RefusedError(problem)
+        is_waited_for.wait(GUARD_S)
+        ended.append(plan.name)
+        return failure(plan.name, MeshRejectedError(MeshProblem(code="invalid_mesh", message="words")))
+
+    def wait_for(futures: Any, return_when: str = ALL_COMPLETED) -> Any:
+        if return_when == ALL_COMPLETED:
+            is_waited_for.set()
+        return wait(futures, return_when=return_when)
+
+    monkeypatch.setattr("quadpatch_client.batch.repair_file", repair)
+    monkeypatch.setattr("quadpatch_client.batch.wait", wait_for)
+    for name in ("a.ply", "b.ply"):
+        (tmp_path / name).write_bytes(b"ply")
+    out = tmp_path / "out"
+    plans = plans_in(mesh_files(tmp_path, False), tmp_path, out, None, with_html=False, with_preview=False)
+    with Journal(tmp_path / "journal") as journal, Client("http://127.0.0.1:1") as client:
+        with pytest.raises(RefusedError):
+            Batch(client, plans, JobOptions(), journal, 2).run(lambda _: None)
+        assert ended == ["b.ply"]
 
 
 def test_the_summary_counts_and_names_what_failed() -> None:
