@@ -41,7 +41,8 @@ def test_a_saved_rule_is_listed_planned_and_followed(
     assert listed.exit_code == ExitCode.OK, listed.stderr
     assert "narrow@1" in listed.stdout
     assert "max diameter 0.01" in listed.stdout
-    assert [rule["name"] for rule in json.loads(run("rules", "--json").stdout)] == ["narrow"]
+    # Other tests save rules on the same stack.
+    assert "narrow" in {rule["name"] for rule in json.loads(run("rules", "--json").stdout)}
     planned = run("plan", relief_file("float.ply"), "--saved-rule", "narrow")
     assert planned.exit_code == ExitCode.OK, planned.stderr
     assert "float.ply: fill 0 of 5 holes" in planned.stdout
