@@ -25,7 +25,7 @@ ShortText = Annotated[str, Field(max_length=2000)]
 
 
 class ModelCard(Response):
-    """What is known about a model version; stated by whoever trained it."""
+    """What is known about a model version; stated by those who trained it."""
 
     description: ShortText = Field(default="", description="One paragraph for people.", examples=["256 atoms …"])
     patch_resolution: int | None = Field(
