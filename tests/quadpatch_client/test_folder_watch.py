@@ -2,21 +2,23 @@
 
 import os
 import re
+import threading
 from collections.abc import Callable, Iterator
+from concurrent.futures import wait
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from quadpatch_client.errors import AnswerError, ClientError, JobFailedError, RefusedError, UnreachableError
-from quadpatch_client.file_repair import JobOptions, Row
+from quadpatch_client.file_repair import FilePlan, JobOptions, Row
 from quadpatch_client.folder_watch import STATE, FolderWatch
 from quadpatch_client.journal import Journal
 from quadpatch_client.rejected_files import set_aside
 from quadpatch_client.schema import Job, Problem
 from quadpatch_client.sdk import Client
 from tests.quadpatch_client.wire_jobs import body
-from tests.waiting import wait_until
+from tests.waiting import GUARD_S, wait_until
 
 
 class Refusing(Client):
@@ -165,3 +167,33 @@ def test_a_file_that_is_no_mesh_by_its_name_is_told_once(tmp_path: Path, watched
     assert ".hidden.ply (hidden: the name begins with a dot)" in said
     assert "notes.txt" in said
     assert not re.search(r"tmp|repaired|part", said)
+
+
+def test_a_watch_that_is_refused_ends_after_the_files_at_work(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    is_waited_for, ended = threading.Event(), list[str]()
+
+    def repair(_client: object, plan: FilePlan, *_: object) -> Row:
+        if plan.name == "a.ply":
+            raise problem(401, "unauthorized")
+        is_waited_for.wait(GUARD_S)
+        ended.append(plan.name)
+        raise problem(401, "unauthorized")
+
+    def wait_for(futures: Any) -> Any:
+        is_waited_for.set()
+        return wait(futures)
+
+    monkeypatch.setattr("quadpatch_client.folder_watch.repair_file", repair)
+    monkeypatch.setattr("quadpatch_client.folder_watch.wait", wait_for)
+    for name in ("a.ply", "b.ply"):
+        (tmp_path / name).write_bytes(b"ply")
+    (tmp_path / STATE).mkdir()
+    with Journal(tmp_path / STATE / "journal") as journal, Client("http://127.0.0.1:9") as client:
+        watch = FolderWatch(
+            client, tmp_path, JobOptions(), journal, 2, 0.0, lambda _: None, is_patient=False, clock=lambda: 0.0
+        )
+        watch.look()
+        wait_until(watch._busy[tmp_path / "a.ply"].done)
+        with pytest.raises(RefusedError):
+            watch.look()
+        assert ended == ["b.ply"]
