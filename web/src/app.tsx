@@ -56,14 +56,24 @@ interface Access {
 function useAccess(): Access {
   const [access, setAccess] = useState<Access>({ state: "asking", problem: null });
   const [round, askAgain] = useReducer((n: number, _: void) => n + 1, 0);
-  useEffect(() => onKeyChange(() => askAgain()), []);
+  useEffect(() =>
+    onKeyChange(() => {
+      // Who signs out sees nothing more of the service, however long it takes to answer.
+      if (key() === null) setAccess({ state: "asking", problem: null });
+      askAgain();
+    }), []);
   useEffect(() => {
+    let isLatest = true;
+    const show = (access: Access) => isLatest && setAccess(access);
     get<Limits>("/v1/limits")
-      .then(() => setAccess({ state: "open", problem: null }))
+      .then(() => show({ state: "open", problem: null }))
       .catch((error: unknown) => {
         const problem = asProblem(error);
-        setAccess({ state: problem.status === 401 ? "closed" : "failed", problem });
+        show({ state: problem.status === 401 ? "closed" : "failed", problem });
       });
+    return () => {
+      isLatest = false;
+    };
   }, [round]);
   return access;
 }
