@@ -51,7 +51,7 @@ class Connectivity:
     def _entries(self) -> "sparse.csr_array[np.int64]":
         """Where each entry of a matrix comes from: from an edge, in either direction, or from a vertex."""
         n, (start, end) = len(self.free), self._ends.T
-        number = np.zeros(n, np.int64)
+        number = np.zeros(n, _index_type(n + 2 * len(start)))
         number[self.place] = np.arange(n)
         rows, columns = (number[np.concatenate([*ends, np.arange(n)])] for ends in ((start, end), (end, start)))
         return sparse.csr_array((np.arange(len(rows)), (rows, columns)), shape=(n, n))
@@ -67,12 +67,18 @@ class Connectivity:
         return sparse.csr_array((values[entries.data], entries.indices, entries.indptr), shape=(n, n))
 
 
+def _index_type(n_entries: int) -> type[np.signedinteger]:
+    """Of matrices with so many entries: products of sparse matrices take a third longer with wide indices."""
+    index_type: type[np.signedinteger] = sparse.get_index_dtype(maxval=n_entries)
+    return index_type
+
+
 def _links(edges: IntArray, free: BoolArray) -> "sparse.csr_array[np.bool_]":
     """Link free vertices up to three of these edges (k, 2) apart, as the widest term does in whatever shape.
 
     The term itself would not do: a link may have the weight 0 in one shape, and another one in the next.
     """
-    n, (start, end) = len(free), edges.T
+    n, (start, end) = len(free), edges.T.astype(_index_type(len(edges)))
     half = sparse.csr_array((np.ones(len(start), bool), (start, end)), shape=(n, n))
     step = sparse.csr_array(half + half.T + sparse.eye_array(n, dtype=bool))
     return sparse.csr_array((step[free] @ step) @ step[:, free])

@@ -4,7 +4,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from quadpatch.filling.fairing import THIN_PLATE, Energy, FairingEquations, fair, triangles_around
-from quadpatch.filling.laplacian import Connectivity
+from quadpatch.filling.laplacian import Connectivity, cotangent_weights
 from quadpatch.types import BoolArray, FloatArray, TriangleMesh
 from tests.quadpatch.shapes import bumpy_plate, cylinder, open_grid, random_rotation, sphere
 
@@ -203,3 +203,11 @@ def test_what_one_shape_is_solved_by_serves_another_in_which_other_links_have_no
     for energy in ENERGIES.values():
         found = FairingEquations(rough, connectivity).minimise(energy)
         np.testing.assert_allclose(found, fair(rough, flat.triangles, free, energy), atol=1e-9)
+
+
+def test_matrices_have_narrow_indices() -> None:
+    """Products of them take a third longer with wide ones."""
+    mesh = open_grid(6, 1.0)
+    connectivity = Connectivity(mesh.triangles, within(mesh, (0, 0, 0), 0.5))
+    laplacian = connectivity.laplacian(cotangent_weights(mesh.vertices, mesh.triangles)[0])
+    assert laplacian.indices.dtype == laplacian.indptr.dtype == np.int32
