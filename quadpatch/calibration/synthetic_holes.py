@@ -74,13 +74,8 @@ class UncutSurface:
 
     @cached_property
     def tree(self) -> cKDTree:
-        """Of the vertices."""
-        return cKDTree(self.mesh.vertices)
-
-    @cached_property
-    def normals(self) -> FloatArray:
-        """At the vertices (n_vertices, 3)."""
-        return vertex_normals(self.mesh.vertices, self.mesh.triangles)
+        """Of the vertices; it is built quickly, since few holes ask it."""
+        return cKDTree(self.mesh.vertices, balanced_tree=False, compact_nodes=False)
 
     @cached_property
     def _by_corner(self) -> tuple[IntArray, IntArray]:
@@ -93,6 +88,14 @@ class UncutSurface:
         triangle, begin = self._by_corner
         which = [triangle[start:end] for start, end in zip(begin[vertices], begin[vertices + 1], strict=True)]
         return self.mesh.triangles[np.unique(np.concatenate(which))]
+
+    def facing(self, disk: IntArray, centre: int) -> IntArray:
+        """Those of some vertices (k,) whose normals are less than a right angle from that of a centre among them."""
+        used, local = np.unique(self.triangles_at(disk), return_inverse=True)
+        normals = vertex_normals(self.mesh.vertices[used], local.reshape(-1, 3))
+        disk = disk[np.isin(disk, used)]
+        faces = normals[np.searchsorted(used, disk)] @ normals[np.searchsorted(used, centre)] > 0
+        return np.asarray(disk[faces])
 
     def is_clear(self, distance: float) -> BoolArray:
         """Vertices (n_vertices,) that a triangle uses and that keep a distance from every boundary edge."""
@@ -141,7 +144,7 @@ def _disks(surface: UncutSurface, radius: float, spacing: Spacing, rng: np.rando
             continue
         nearby = np.array(surface.tree.query_ball_point(vertices[centre], 2 * (radius + spacing.margin)))
         disk = nearby[np.linalg.norm(vertices[nearby] - vertices[centre], axis=1) < radius]
-        facing = disk[surface.normals[disk] @ surface.normals[centre] > 0]
+        facing = surface.facing(disk, centre)
         if not len(facing) or not _is_disk(surface.triangles_at(facing)):
             clear[disk] = False
             continue

@@ -176,7 +176,9 @@ def box_contacts(low: FloatArray, high: FloatArray, mesh: TriangleMesh) -> IntAr
     found = [np.zeros((0, 2), np.int64)]
     # Triangles up to twice as large share a tree: a few large ones do not widen the search among all others.
     for alike in (np.flatnonzero(size == s) for s in np.unique(size)):
-        tree, reaches = cKDTree(centres[alike]), length(high - low) / 2 + radii[alike].max()
+        # Boxes are few: a tree that is built quickly is worth more than one that answers quickly.
+        tree = cKDTree(centres[alike], balanced_tree=False, compact_nodes=False)
+        reaches = length(high - low) / 2 + radii[alike].max()
         n_near = np.cumsum(tree.query_ball_point(middles, reaches, return_length=True))
         for boxes in np.split(np.arange(len(low)), np.flatnonzero(np.diff(n_near // _PAIRS_AT_A_TIME)) + 1):
             rows = tree.query_ball_point(middles[boxes], reaches[boxes], return_sorted=False)
