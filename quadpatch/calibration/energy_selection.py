@@ -71,12 +71,15 @@ class EnergyBlend:
         return cls((energy,), np.zeros(1), np.zeros(1))
 
     def fill(self, mesh: TriangleMesh, loops: list[IntArray], reach: Fraction = no_fraction) -> FilledMesh:
-        """Close boundary loops of a mesh, given as `boundary_loops` gives them; `reach` is told the done fraction."""
+        """Close boundary loops of a mesh, given as `boundary_loops` gives them, and fair them as `fill_closed` does."""
+        return self.fill_closed(close_holes(mesh, loops), loops, reach)
+
+    def fill_closed(self, closed: ClosedMesh, loops: list[IntArray], reach: Fraction = no_fraction) -> FilledMesh:
+        """Fair boundary loops that `close_holes` has closed; `reach` is told the done fraction."""
         if len(self.energies) == 1 or not loops:
-            fill = fair_holes(close_holes(mesh, loops), self.energies[0])
-            return replace(fill, energy_weights=np.ones((len(loops), 1)))
-        is_wide = np.array([loop_diameter(mesh.vertices[loop]) for loop in loops]) > self.widest
-        misses, closed = np.full((len(loops), len(self.energies)), np.nan), close_holes(mesh, loops)
+            return replace(fair_holes(closed, self.energies[0]), energy_weights=np.ones((len(loops), 1)))
+        is_wide = np.array([loop_diameter(closed.mesh.vertices[loop]) for loop in loops]) > self.widest
+        misses = np.full((len(loops), len(self.energies)), np.nan)
         if self.belief:
             misses = rim_residuals(closed.coarse(), self.energies, part_of(reach, 0.0, 0.5))
         return self.fill_weighted(closed, self.weights(misses, is_wide), part_of(reach, 0.5, 1.0))
@@ -184,7 +187,7 @@ def learn_energy_blend(
 class _Residuals:
     """What `rim_residuals` finds at calibration holes: a helper looks for it at once, by all energies.
 
-    It is cheaper to wait until it is known which energies are worth it, and that is done where there is no helper.
+    It is cheaper to wait until it is known which energies are worth it, and that is done where no helper has begun.
     """
 
     def __init__(self, calibration: CalibrationSet, energies: Sequence[Energy], pool: ProcessPool) -> None:
@@ -196,7 +199,7 @@ class _Residuals:
 
     def of(self, chosen: list[int], reach: Fraction) -> FloatArray:
         """Give the residuals (n_holes, k) of some energies (k,)."""
-        if self._found is not None:
+        if self._found is not None and not self._found.cancel():
             return self._found.result()[:, chosen]
         energies = [self._energies[i] for i in chosen]
         return rim_residuals(self._calibration.closed, energies, reach)

@@ -66,7 +66,7 @@ class CalibrationRecord:
     def fill_others(self, holes: CalibrationSet, pool: ProcessPool) -> FilledMesh:
         """Fill calibration holes like real ones, of which it is not known by which weights; a pool shares the work."""
         filling = FillInParts(holes.opened, holes.loops, pool)
-        filling.begin(self.blend.fill)
+        filling.begin(self.blend.fill_closed)
         return self._with_creases(filling.finish())
 
     def _with_creases(self, filled: FilledMesh) -> FilledMesh:

@@ -7,12 +7,14 @@ Tested in `tests/quadpatch/filling/test_parts.py`.
 """
 
 from collections.abc import Callable
+from concurrent.futures import Future
 from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
 
 from quadpatch.filling.fairing import triangles_around
+from quadpatch.filling.fill import ClosedMesh, close_holes
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.filling.region import Region
 from quadpatch.mesh.loops import cut_at, laid_out
@@ -21,8 +23,8 @@ from quadpatch.processes import ProcessPool
 from quadpatch.progress import Fraction, no_fraction
 from quadpatch.types import IntArray, TriangleMesh, Triangles
 
-# How boundary loops of a mesh are filled, and what is told the done fraction.
-Fill = Callable[[TriangleMesh, list[IntArray], Fraction], FilledMesh]
+# How boundary loops of a mesh that are closed are faired, and what is told the done fraction.
+Fill = Callable[[ClosedMesh, list[IntArray], Fraction], FilledMesh]
 
 # A hole of n edges gets about as many new vertices as n squared. Parts of this many cost no more than all at once do.
 _PART_WORK = 40_000
@@ -30,6 +32,8 @@ _PART_WORK = 40_000
 # touch: other rims, three edges away at least, are in none of a fill's equations, but move with the rims let go.
 _NEIGHBOURS = (2, 1)
 _LARGEST_GROUP = 10 * _PART_WORK
+# Closed holes of a part are up to 15 MB: no more of them wait for each helper until it is known how to fill.
+_CLOSED_AHEAD = 4
 # Rings of triangles around a part: leaving one ring out reads three, and finds new loops by the ring behind them.
 _RINGS = 4
 
@@ -70,8 +74,36 @@ def surroundings(mesh: TriangleMesh, loops: list[IntArray]) -> tuple[Region, lis
     return region, cut_at(region.local(rim), starts)
 
 
+@dataclass(frozen=True)
+class _Work:
+    """A part to be filled. Pickled, it is sent with its holes closed, once they are, where a helper has begun that.
+
+    Attributes
+    ----------
+    mesh : TriangleMesh
+    loops : list of (n_loop,) int64
+    begun : Future, ClosedMesh or None
+        Its holes, closed, as far as that has been begun.
+    """
+
+    mesh: TriangleMesh
+    loops: list[IntArray]
+    begun: "Future[ClosedMesh] | ClosedMesh | None"
+
+    def known(self) -> ClosedMesh | None:
+        """Wait for what has been begun; None if nothing has."""
+        return self.begun.result() if isinstance(self.begun, Future) else self.begun
+
+    def __reduce__(self) -> "tuple[type[_Work], tuple[object, ...]]":
+        """Send what is known."""
+        closed = self.known()
+        return _Work, (self.mesh if closed is None else closed.mesh, self.loops, closed)
+
+
 class FillInParts:
     """A fill of boundary loops, in parts where there are many of them.
+
+    Helpers close the holes of the first parts at once: that does not depend on how they are filled.
 
     Parameters
     ----------
@@ -87,23 +119,28 @@ class FillInParts:
         if number.any():
             near, local = surroundings(mesh, loops)
             self._parts = [_Part.of(near, local, np.flatnonzero(number == i)) for i in range(int(number.max()) + 1)]
+        ahead = self._parts[: _CLOSED_AHEAD * len(pool.process_ids)]
+        self._closings = [pool.submit(close_holes, part.region.mesh, part.local) for part in ahead]
 
     def begin(self, fill: Fill) -> None:
         """Let helpers begin to fill parts; the function is pickled."""
         self._fill = fill
         if self._parts:
-            parts = [(part.region.mesh, part.local) for part in self._parts]
-            self._shared = self._pool.begin(partial(_fill, fill), parts)
+            begun = [None if closing.cancel() else closing for closing in self._closings]
+            begun += [None] * (len(self._parts) - len(begun))
+            parts = zip(self._parts, begun, strict=True)
+            work = [_Work(part.region.mesh, part.local, closing) for part, closing in parts]
+            self._shared = self._pool.begin(partial(_fill, fill), work)
 
     def finish(self, reach: Fraction = no_fraction) -> FilledMesh:
         """Fill what has not been filled yet; `reach` is told the done fraction."""
         if not self._parts:
-            return self._fill(self._mesh, self._loops, reach)
+            return self._fill(close_holes(self._mesh, self._loops), self._loops, reach)
         return _joined(self._mesh, self._parts, self._shared.finish(reach))
 
 
-def _fill(fill: Fill, part: tuple[TriangleMesh, list[IntArray]]) -> FilledMesh:
-    return fill(*part, no_fraction)
+def _fill(fill: Fill, work: _Work) -> FilledMesh:
+    return fill(work.known() or close_holes(work.mesh, work.loops), work.loops, no_fraction)
 
 
 def _part_of_each(triangles: Triangles, loops: list[IntArray]) -> IntArray:

@@ -260,7 +260,7 @@ def _calibrate(
         # Only models are tried on calibration holes again.
         holes = cut() if record.n_holes and task.inpainter is not None and task.by_model.any() else None
         if holes is None or len(holes.loops) == record.n_holes:
-            filling.begin(record.blend.fill)
+            filling.begin(record.blend.fill_closed)
             return Calibration(task.diameters, edge, record, holes, partial(cut, MORE_HOLES), is_reused=True)
     calibration = _calibrated(task, cut, filling, reach, pool)
     kept.add(key, calibration.record)
@@ -284,7 +284,7 @@ def _calibrated(
     start, edge = time.perf_counter(), task.edges.mean
     holes = cut()
     blend, filled = suitable_blend(holes, task.median_diameter(), reach, pool)
-    filling.begin(blend.fill)
+    filling.begin(blend.fill_closed)
     if holes is None or filled is None:
         return Calibration(task.diameters, edge, CalibrationRecord(blend, PRIOR, seconds=time.perf_counter() - start))
     creases = calibrate_creases(holes, blend, filled)

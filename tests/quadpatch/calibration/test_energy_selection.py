@@ -1,3 +1,4 @@
+import signal
 from dataclasses import replace
 
 import numpy as np
@@ -10,6 +11,7 @@ from quadpatch.filling.fill import close_holes, fair_holes
 from quadpatch.filling.rim_residuals import rim_residuals
 from quadpatch.mesh.holes import find_holes
 from quadpatch.mesh.measures import mean_edge_length
+from quadpatch.processes import ProcessPool
 from quadpatch.recipes.fairing_energies import CALIBRATED_ENERGIES, DEFAULT_ENERGY, FAIRING_ENERGIES
 from quadpatch.types import FloatArray, IntArray, TriangleMesh
 from tests.quadpatch.shapes import bumpy_plate, open_grid, punched, sphere
@@ -128,6 +130,20 @@ def test_learning_takes_what_fills_the_calibration_holes_best() -> None:
     )
     chosen = FAIRING_ENERGIES.index(choose_energy(errors, calibration.diameter, FAIRING_ENERGIES, DEFAULT_ENERGY))
     assert error_per_hole(calibration, filled).mean() <= errors[chosen].mean()
+
+
+def test_rims_of_calibration_holes_that_no_helper_looks_at_are_looked_at_here() -> None:
+    """The helper waits for a signal that never comes."""
+    mesh = bumpy_plate(100, 2.0)
+    calibration = cut_calibration_set(mesh, 0.3, mean_edge_length(mesh), np.random.default_rng(0))
+    assert calibration is not None
+    alone, _ = learn_energy_blend(calibration, FAIRING_ENERGIES, DEFAULT_ENERGY)
+    with ProcessPool(2) as pool:
+        pool.submit(signal.pause)
+        beside, _ = learn_energy_blend(calibration, FAIRING_ENERGIES, DEFAULT_ENERGY, pool=pool)
+    assert beside.log_error.tobytes() == alone.log_error.tobytes()
+    assert beside.log_miss.tobytes() == alone.log_miss.tobytes()
+    assert beside.belief == alone.belief
 
 
 def test_where_weighing_gains_nothing_one_energy_fills_all_holes() -> None:

@@ -1,4 +1,8 @@
+import os
+from collections.abc import Callable
+from concurrent.futures import Future
 from functools import cache, partial
+from typing import Any
 
 import numpy as np
 import pytest
@@ -6,6 +10,7 @@ from scipy.spatial import cKDTree
 
 from quadpatch.calibration.energy_selection import EnergyBlend
 from quadpatch.filling.fairing import Energy
+from quadpatch.filling.fill import ClosedMesh, close_holes
 from quadpatch.filling.filled_mesh import FilledMesh
 from quadpatch.filling.parts import FillInParts, surroundings
 from quadpatch.processes import ProcessPool
@@ -30,13 +35,13 @@ def with_many_holes(distance: float = 0.6, radius: float = 0.18) -> tuple[Triang
 def fill_by(mesh: TriangleMesh, loops: list[IntArray], n_processes: int) -> FilledMesh:
     with ProcessPool(n_processes) as pool:
         filling = FillInParts(mesh, loops, pool)
-        filling.begin(BLEND.fill)
+        filling.begin(BLEND.fill_closed)
         return filling.finish()
 
 
-def count_and_fill(counts: list[int], mesh: TriangleMesh, loops: list[IntArray], reach: Fraction) -> FilledMesh:
+def count_and_fill(counts: list[int], closed: ClosedMesh, loops: list[IntArray], reach: Fraction) -> FilledMesh:
     counts.append(len(loops))
-    return BLEND.fill(mesh, loops, reach)
+    return BLEND.fill_closed(closed, loops, reach)
 
 
 def test_a_fill_has_the_same_bits_whatever_the_number_of_processes() -> None:
@@ -50,6 +55,40 @@ def test_a_fill_has_the_same_bits_whatever_the_number_of_processes() -> None:
         assert other.energy_weights is not None
         assert alone.energy_weights is not None
         assert other.energy_weights.tobytes() == alone.energy_weights.tobytes()
+
+
+def test_holes_that_helpers_have_closed_meanwhile_are_filled_by_the_same_bits() -> None:
+    mesh, loops = with_many_holes()
+    alone = fill_by(mesh, loops, 1)
+    with ProcessPool(2) as pool:
+        filling = FillInParts(mesh, loops, pool)
+        # Answered by the only helper once it has closed what was asked for before.
+        assert pool.submit(os.getpid).result() == pool.process_ids[0]
+        filling.begin(BLEND.fill_closed)
+        closed_ahead = filling.finish()
+    assert closed_ahead.mesh.vertices.tobytes() == alone.mesh.vertices.tobytes()
+    assert closed_ahead.mesh.triangles.tobytes() == alone.mesh.triangles.tobytes()
+
+
+def test_few_parts_are_closed_before_it_is_known_how_to_fill(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Closed holes take memory."""
+    submitted: list[Callable[..., object]] = []
+    mesh, loops = with_many_holes()
+    monkeypatch.setattr("quadpatch.filling.parts._PART_WORK", 1_000)
+    monkeypatch.setattr("quadpatch.filling.parts._CLOSED_AHEAD", 2)
+    with ProcessPool(2) as pool:
+        submit = pool.submit
+
+        def counted(function: Callable[..., Any], *arguments: object) -> "Future[Any]":
+            submitted.append(function)
+            return submit(function, *arguments)
+
+        monkeypatch.setattr(pool, "submit", counted)
+        filling = FillInParts(mesh, loops, pool)
+        assert submitted == [close_holes] * 2
+        filling.begin(BLEND.fill_closed)
+        filling.finish()
+    assert len(submitted) > 10
 
 
 @pytest.mark.parametrize(
