@@ -1,4 +1,5 @@
 import os
+import signal
 from collections.abc import Callable
 from concurrent.futures import Future
 from functools import cache, partial
@@ -9,6 +10,7 @@ import pytest
 from scipy.spatial import cKDTree
 
 from quadpatch.calibration.energy_selection import EnergyBlend
+from quadpatch.errors import ProcessLostError
 from quadpatch.filling.fairing import Energy
 from quadpatch.filling.fill import ClosedMesh, close_holes
 from quadpatch.filling.filled_mesh import FilledMesh
@@ -68,6 +70,16 @@ def test_holes_that_helpers_have_closed_meanwhile_are_filled_by_the_same_bits() 
         closed_ahead = filling.finish()
     assert closed_ahead.mesh.vertices.tobytes() == alone.mesh.vertices.tobytes()
     assert closed_ahead.mesh.triangles.tobytes() == alone.mesh.triangles.tobytes()
+
+
+def test_a_helper_that_is_killed_while_it_closes_holes_is_an_error() -> None:
+    mesh, loops = with_many_holes()
+    with ProcessPool(2) as pool:
+        filling = FillInParts(mesh, loops, pool)
+        os.kill(pool.process_ids[0], signal.SIGKILL)
+        filling.begin(BLEND.fill_closed)
+        with pytest.raises(ProcessLostError):
+            filling.finish()
 
 
 def test_few_parts_are_closed_before_it_is_known_how_to_fill(monkeypatch: pytest.MonkeyPatch) -> None:
