@@ -137,12 +137,16 @@ def cut_holes(surface: UncutSurface, diameter: float, spacing: Spacing, rng: np.
 def _disks(surface: UncutSurface, radius: float, spacing: Spacing, rng: np.random.Generator) -> BoolArray:
     """Choose the vertices (n,) to take."""
     vertices = surface.mesh.vertices
+    if radius <= 0:
+        # All vertices were rounded to one place.
+        return np.zeros(len(vertices), bool)
     clear = surface.is_clear(radius + spacing.margin)
     removed, n_disks = np.zeros(len(vertices), bool), 0
     for centre in rng.permutation(np.flatnonzero(clear)).tolist():
         if not clear[centre]:
             continue
-        nearby = np.array(surface.tree.query_ball_point(vertices[centre], 2 * (radius + spacing.margin)))
+        reach = 2 * (radius + spacing.margin)
+        nearby = np.array(surface.tree.query_ball_point(vertices[centre], reach), np.int64)
         disk = nearby[np.linalg.norm(vertices[nearby] - vertices[centre], axis=1) < radius]
         facing = surface.facing(disk, centre)
         if not len(facing) or not _is_disk(surface.triangles_at(facing)):

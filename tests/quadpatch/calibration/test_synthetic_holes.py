@@ -8,6 +8,7 @@ from quadpatch.calibration.synthetic_holes import MeshWithHoles, Spacing, UncutS
 from quadpatch.mesh.boundary import boundary_edges, boundary_loops
 from quadpatch.mesh.loop_diameter import loop_diameter
 from quadpatch.mesh.measures import mean_edge_length
+from quadpatch.mesh.normals import vertex_normals
 from quadpatch.mesh.topology import directed_edges
 from quadpatch.types import IntArray, TriangleMesh
 from tests.quadpatch.shapes import bumpy_plate, cylinder, euler_characteristic, open_grid, punched, sphere
@@ -94,6 +95,21 @@ def test_every_hole_takes_one_disk(mesh: TriangleMesh) -> None:
     cut = punched_at_random(mesh, 6 * edge, Spacing(edge, 2 * edge))
     assert len(cut.loops) > 5
     assert euler_characteristic(cut.mesh.triangles) == euler_characteristic(mesh.triangles) - len(cut.loops)
+
+
+def test_what_faces_as_a_centre_does_goes_by_all_triangles_around_each_vertex() -> None:
+    ball = sphere(3)
+    surface, normals = UncutSurface(ball), vertex_normals(ball.vertices, ball.triangles)
+    disk = np.arange(0, len(ball.vertices), 3)
+    for centre in disk[:5].tolist():
+        assert surface.facing(disk, centre).tolist() == disk[normals[disk] @ normals[centre] > 0].tolist()
+
+
+def test_nothing_is_cut_where_all_vertices_were_rounded_to_one_place() -> None:
+    one_place = TriangleMesh(np.full_like(SHEET.vertices, 1e17), SHEET.triangles)
+    cut = punched_at_random(one_place, 0.0, Spacing(0.0, 0.0))
+    assert cut.loops == []
+    assert not cut.removed.any()
 
 
 def test_a_hole_never_takes_the_surface_that_lies_behind_it() -> None:
