@@ -90,12 +90,11 @@ class UncutSurface:
         return self.mesh.triangles[np.unique(np.concatenate(which))]
 
     def facing(self, disk: IntArray, centre: int) -> IntArray:
-        """Those of some vertices (k,) whose normals are less than a right angle from that of a centre among them."""
+        """Those of some vertices (k,), ascending, whose normals are within a right angle of a centre's among them."""
         used, local = np.unique(self.triangles_at(disk), return_inverse=True)
         normals = vertex_normals(self.mesh.vertices[used], local.reshape(-1, 3))
-        disk = disk[np.isin(disk, used)]
-        faces = normals[np.searchsorted(used, disk)] @ normals[np.searchsorted(used, centre)] > 0
-        return np.asarray(disk[faces])
+        faces = normals @ normals[np.searchsorted(used, centre)] > 0
+        return np.intersect1d(disk, used[faces])
 
     def is_clear(self, distance: float) -> BoolArray:
         """Vertices (n_vertices,) that a triangle uses and that keep a distance from every boundary edge."""

@@ -10,6 +10,7 @@ from collections.abc import Callable
 from concurrent.futures import Future
 from dataclasses import dataclass, replace
 from functools import partial
+from itertools import zip_longest
 
 import numpy as np
 
@@ -126,10 +127,10 @@ class FillInParts:
         """Let helpers begin to fill parts; the function is pickled."""
         self._fill = fill
         if self._parts:
-            begun = [None if closing.cancel() else closing for closing in self._closings]
-            begun += [None] * (len(self._parts) - len(begun))
-            parts = zip(self._parts, begun, strict=True)
-            work = [_Work(part.region.mesh, part.local, closing) for part, closing in parts]
+            work = [
+                _Work(part.region.mesh, part.local, None if closing is None or closing.cancel() else closing)
+                for part, closing in zip_longest(self._parts, self._closings)
+            ]
             self._shared = self._pool.begin(partial(_fill, fill), work)
 
     def finish(self, reach: Fraction = no_fraction) -> FilledMesh:
